@@ -25,6 +25,22 @@ Comes are_words_of(const SensorRecord& other, const SensorRecord& silent, HostTi
     return now - *newest < kSure ? Comes::unclear : Comes::no;
 }
 
+/// In the newest step or in all: where all lose as much, or lose no more, each is found out at its own next
+/// SENSOR_HEALTH.
+bool loses_some(const SentCount& sent, HostTime now) {
+    constexpr double kSome = 0.2;
+    const auto is_some = [](const std::optional<SentCount::Loss>& loss) {
+        return loss && loss->lost > SentCount::kOnTheWay && loss->is_over(kSome);
+    };
+    return is_some(sent.newest_loss(now, 1)) || is_some(sent.newest_loss(now));
+}
+
+/// And still: in the newest step it loses half of that.
+bool is_mostly_lost(const SentCount& sent, HostTime now) {
+    const auto loss = sent.newest_loss(now);
+    return loss && loss->is_over(kMostlyLost) && sent.newest_loss(now, 1)->is_over(kMostlyLost / 2);
+}
+
 /// One that came by chance is no sign, nor one of a slow sensor that was on its way when all fell silent.
 Comes are_readings_of(const Look& other, const Look& silent, HostTime now) {
     constexpr Nanoseconds kSure{1'000'000'000};
@@ -32,6 +48,10 @@ Comes are_readings_of(const Look& other, const Look& silent, HostTime now) {
     const auto& newest = arrivals.newest();
     const Nanoseconds break_after = SensorRecord::break_after(other.period);
     if (other.what != SensorSilence::none || !newest || now - *newest > break_after) return Comes::no;
+    if (silent.what == SensorSilence::mostly_lost) {
+        const bool is_well = arrivals.length() >= kSure && !loses_some(other.record.sent, now);
+        return is_well ? Comes::yes : Comes::no;
+    }
     const auto& before = silent.record.arrivals.newest();
     const bool is_later = !before || *newest - *before > SensorRecord::break_after(silent.period);
     return is_later && arrivals.length() >= kSure ? Comes::yes : Comes::unclear;
@@ -46,6 +66,13 @@ Comes comes_of_others(const std::vector<Look>& looks, const Look& silent, HostTi
     Comes most = Comes::no;
     for (const Look& other : looks) most = std::max(most, comes_of(other, silent, now));
     return most;
+}
+
+/// Unheard is what all are; of readings that are lost the lesser is true of all.
+SensorSilence of_both(SensorSilence some, SensorSilence others) {
+    const bool is_first = some == SensorSilence::none;
+    const bool is_unheard = some == SensorSilence::unheard || others == SensorSilence::unheard;
+    return is_first || is_unheard ? std::max(some, others) : std::min(some, others);
 }
 
 std::vector<Look> look_at(const RangeGate& ranges, const HostNode& node, HostTime now) {
@@ -74,7 +101,8 @@ SensorSilence silence_of(const SensorRecord& sensor, Nanoseconds period, HostTim
     const bool is_recent = newest && now - *newest < std::max(kSilent, 3 * period);
     const bool is_silent =
         is_ranging && !is_recent && sensor.sent.are_missing(now, std::max(kOvertaken, 2 * period));
-    return is_silent ? SensorSilence::no_readings : SensorSilence::none;
+    if (is_silent) return SensorSilence::no_readings;
+    return is_mostly_lost(sensor.sent, now) ? SensorSilence::mostly_lost : SensorSilence::none;
 }
 
 NodeSilence silence_of(const RangeGate& ranges, const HostNode& node, HostTime now) {
@@ -85,9 +113,12 @@ NodeSilence silence_of(const RangeGate& ranges, const HostNode& node, HostTime n
         if (silent.what == SensorSilence::none) continue;
         const Comes of_others = comes_of_others(looks, silent, now);
         if (of_others == Comes::yes) silence.sensors.push_back({i, silent.what});
-        if (of_others == Comes::no) silence.of_all = std::max(silence.of_all, silent.what);
+        if (of_others == Comes::no) silence.of_all = of_both(silence.of_all, silent.what);
     }
-    std::erase_if(silence.sensors, [&](const auto& sensor) { return sensor.what <= silence.of_all; });
+    if (silence.of_all == SensorSilence::none) return silence;
+    std::erase_if(silence.sensors, [&](const auto& sensor) {
+        return sensor.what != SensorSilence::unheard || silence.of_all == SensorSilence::unheard;
+    });
     return silence;
 }
 

@@ -14,7 +14,8 @@ namespace octoskin {
 
 /// The worst that holds of a sensor.
 enum class SensorSilence : std::uint8_t {
-    none,  ///< or what there is to judge by does not suffice yet
+    none,         ///< or what there is to judge by does not suffice yet
+    mostly_lost,  ///< of the readings that its node sent within some 3 s over half did not come
     /// No reading for a second and three periods, though its node says that it ranges, and sent more
     /// meanwhile than may be on the way.
     no_readings,
@@ -25,6 +26,8 @@ enum class SensorSilence : std::uint8_t {
 /// meanwhile: how it is, is not known. False while "now" is unknown.
 [[nodiscard]] bool is_unheard(const SensorRecord& sensor, std::optional<HostTime> now);
 
+/// More than this share of what is sent is mostly lost.
+inline constexpr double kMostlyLost = 0.5;
 /// `period`: as configured.
 [[nodiscard]] SensorSilence silence_of(const SensorRecord& sensor, Nanoseconds period, HostTime now);
 

@@ -76,7 +76,7 @@ void RangeGate::on_arrival(wire::NodeId node, const wire::RangeReading& reading,
     record.sent.on_arrival();
     record.newest = reading;
     record.arrivals.note(now, SensorRecord::break_after(Nanoseconds{sensor.expected.period}));
-    record.words.note(now, SensorRecord::kUnheardAfter);
+    record.note_word(now);
 }
 
 void RangeGate::on_fate(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected) {
@@ -273,9 +273,9 @@ std::optional<HostTime> RangeGate::held_until(const RangeMeasurement& measuremen
 
 void RangeGate::on_health(wire::NodeId node, const wire::SensorHealth& health, std::optional<HostTime> now) {
     SensorRecord& record = sensors_.at({node, health.sensor}).record;
+    record.note_word(now);
     record.sent.on_health(health.sent, record.received, now);
     record.health = health;
-    record.words.note(now, SensorRecord::kUnheardAfter);
     record.capture_bound = Microseconds{wire::kClassicalTimeStepUs} * health.capture_bound_64us;
 }
 
@@ -301,7 +301,7 @@ void RangeGate::expect(wire::NodeId node, std::optional<HostTime> now) {
     for (auto& [key, sensor] : sensors_) {
         if (key.first == node) {
             sensor.record.words = {};
-            sensor.record.words.note(now, SensorRecord::kUnheardAfter);
+            sensor.record.note_word(now);
         }
     }
 }

@@ -45,6 +45,12 @@ struct SensorRecord {
     /// Its readings and SENSOR_HEALTH; begun when its node became usable (RangeGate::expect).
     Stretch words;
     static constexpr Nanoseconds kUnheardAfter{3'000'000'000};
+    /// What was lost while nothing at all came is no sign of what is lost from here on.
+    void note_word(std::optional<HostTime> now) noexcept {
+        const auto& before = words.newest();
+        if (!now || !before || *now - *before > kUnheardAfter) sent.forget_steps();
+        words.note(now, kUnheardAfter);
+    }
     /// Of a sensor of this period, configured, the readings do not come while none does for so long.
     [[nodiscard]] static constexpr Nanoseconds break_after(Nanoseconds period) noexcept {
         return std::max(Nanoseconds{500'000'000}, 2 * period);

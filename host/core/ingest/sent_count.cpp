@@ -1,5 +1,7 @@
 #include "host/core/ingest/sent_count.hpp"
 
+#include <algorithm>
+
 namespace octoskin {
 namespace {
 
@@ -29,12 +31,38 @@ void SentCount::on_health(std::uint16_t sent, std::uint64_t received, std::optio
     missing_ += beyond(step, beyond(received, received_newest_));
     received_newest_ = received;
     if (missing_ > kOnTheWay && !missing_since_) missing_since_ = now;
+    told_ = now;
+    if (now) set_mark({*now, sent_, received});
+}
+
+/// Steps of a second: a node that is asked, or whose sensor changes, sends more messages between.
+void SentCount::set_mark(const Mark& mark) noexcept {
+    constexpr Nanoseconds kStep{900'000'000};
+    if (marks_count_ > 0) {
+        const Mark& newest = marks_[marks_count_ - 1];
+        if (mark.at - newest.at < kStep || mark.sent - newest.sent < kStepSent) return;
+    }
+    if (marks_count_ == marks_.size()) {
+        std::rotate(marks_.begin(), marks_.begin() + 1, marks_.end());
+        --marks_count_;
+    }
+    marks_[marks_count_++] = mark;
+}
+
+std::optional<SentCount::Loss> SentCount::newest_loss(HostTime now, std::size_t steps) const noexcept {
+    constexpr Nanoseconds kStale{3'000'000'000};
+    if (marks_count_ <= steps || !told_ || now - *told_ >= kStale) return std::nullopt;
+    const Mark& newest = marks_[marks_count_ - 1];
+    const Mark& oldest = marks_[marks_count_ - 1 - steps];
+    const std::uint64_t sent = newest.sent - oldest.sent;
+    return Loss{beyond(sent, newest.received - oldest.received), sent, newest.at - oldest.at};
 }
 
 void SentCount::restart() noexcept {
     lost_before_ = lost_;
     newest_.reset();
     on_arrival();
+    forget_steps();
 }
 
 bool SentCount::are_missing(HostTime now, Nanoseconds patience) const noexcept {

@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 
-#include "common/wire/names.hpp"
+#include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/problems/problem_groups.hpp"
 #include "host/core/ingest/node_silence.hpp"
 #include "host/core/rig/sensor_text.hpp"
@@ -26,6 +27,31 @@ std::string lost_where(const DaemonView& view, const HostNode& node) {
                : "RANGE_FD frames are lost where classical ones pass: look at the FD setting and the "
                  "data bit rate of the adapter, and for a gateway, a filter or a part between that "
                  "passes no FD frames";
+}
+
+constexpr const char* kLossRemedy =
+    "look for a line that is disturbed (wrong_crc, can.error_frames), a bus that is full (can.busy_s), and a "
+    "gateway or an adapter between that leaves frames out";
+
+/// "39 of the 45 readings that its node sent within the last 3 s did not come (lost, 120)".
+std::string lost_text(const SentCount::Loss& loss, const char* sender, std::uint64_t lost_ever) {
+    return fmt::format("{} of the {} readings that {} sent within the last {:.0f} s did not come (lost, {})",
+                       loss.lost, loss.sent, sender, seconds_of(loss.within), lost_ever);
+}
+
+/// What was lost of all sensors together.
+std::string lost_of_node(const DaemonView& view, const HostNode& node) {
+    SentCount::Loss all;
+    std::uint64_t lost_ever = 0;
+    for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+        const SentCount& sent = record_of(view, node, i).sent;
+        const auto loss = sent.newest_loss(*view.bus_now).value_or(SentCount::Loss{});
+        all.lost += loss.lost;
+        all.sent += loss.sent;
+        all.within = std::max(all.within, loss.within);
+        lost_ever += sent.lost();
+    }
+    return lost_text(all, "it", lost_ever);
 }
 
 /// A node that is not at work says nothing of its sensors.
@@ -55,6 +81,12 @@ void add_of_node(const DaemonView& view, const HostNode& node, SensorSilence wha
                          on, node.name, lost_where(view, node)),
              {},
              on});
+    } else if (what == SensorSilence::mostly_lost) {
+        problems.push_back(
+            {on + " silence",
+             fmt::format("{} '{}': {}: {}", on, node.name, lost_of_node(view, node), kLossRemedy),
+             {},
+             on});
     }
 }
 
@@ -62,6 +94,7 @@ void add_of_sensor(const DaemonView& view, const HostNode& node, const NodeSilen
                    Problems& problems) {
     const std::string on = node_subject(node.node_id);
     const std::string sensor = sensor_text(node, silent.index);
+    const SentCount& sent = record_of(view, node, silent.index).sent;
     if (silent.what == SensorSilence::unheard) {
         problems.push_back({sensor + " unheard",
                             fmt::format("{}: neither readings nor SENSOR_HEALTH of it come, and what else "
@@ -69,13 +102,20 @@ void add_of_sensor(const DaemonView& view, const HostNode& node, const NodeSilen
                                         "leaves them out",
                                         sensor),
                             sensor, on});
+    } else if (const auto loss = sent.newest_loss(*view.bus_now);
+               loss && silent.what == SensorSilence::mostly_lost) {
+        problems.push_back({sensor + " silence",
+                            fmt::format("{}: {}, and those of others of the node do: {}", sensor,
+                                        lost_text(*loss, "its node", sent.lost()), kLossRemedy),
+                            {},
+                            on});
     } else {
         problems.push_back(
             {sensor + " silence",
              fmt::format(
                  "{}: none of its readings comes, though its node sends them (lost, {}), and those of "
                  "others of the node do: look for a gateway or a program between that leaves them out",
-                 sensor, record_of(view, node, silent.index).sent.lost()),
+                 sensor, sent.lost()),
              {},
              on});
     }

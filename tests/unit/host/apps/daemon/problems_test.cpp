@@ -75,6 +75,29 @@ TEST_F(ProblemsTest, have_a_sensor_whose_readings_do_not_come_and_a_node_none_of
     EXPECT_EQ(told(of_sensor) + told("node 1 silence"), "") << "it sends none";
 }
 
+TEST_F(ProblemsTest, have_a_sensor_and_a_node_most_of_whose_readings_are_lost_with_how_many_of_how_many) {
+    const std::string of_sensor = sensor_text(scene_.rig.nodes[0], kGood) + " silence";
+    for (const bool does_another_come : {true, false}) {
+        play_changed(
+            [&](Scene& scene) {
+                for (int k = 0; k <= 4; ++k) {
+                    scene.bus.send(4.5 + k,
+                                   wire::SensorHealth{.sensor = kGood,
+                                                      .state = wire::SensorState::ranging,
+                                                      .sent = static_cast<std::uint16_t>(10 + 30 * k),
+                                                      .capture_bound_64us = 3},
+                                   kLeft);
+                    scene.bus.range(4.9 + k, kLeft, good_reading());
+                }
+                for (double t = 4.5; does_another_come && t < 8.6; t += 0.033)
+                    scene.bus.range(t, kLeft, good_reading(kSpare));
+            },
+            8.6);
+        EXPECT_THAT(told(does_another_come ? of_sensor : "node 1 silence"), HasSubstr("87 of the 90"));
+        EXPECT_EQ(told(does_another_come ? "node 1 silence" : of_sensor), "");
+    }
+}
+
 // What else the node sends does come: heartbeats, NODE_INFO, SYNC_REPORT.
 TEST_F(ProblemsTest, have_a_node_and_a_sensor_of_which_neither_readings_nor_health_come) {
     const std::string of_sensor = sensor_text(scene_.rig.nodes[0], kSpare) + " unheard";

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <optional>
 
 #include "host/core/ingest/node_silence.hpp"
@@ -50,6 +51,31 @@ TEST(SentCount, keeps_what_was_lost_when_the_node_begins_anew) {
     EXPECT_EQ(count.lost(), 6U);
     count.on_health(5, 5, kUnknown);
     EXPECT_EQ(count.lost(), 7U);
+}
+
+TEST(SentCount, tells_what_was_lost_over_the_newest_steps_of_a_second_and_four_readings) {
+    SentCount count;
+    const auto at = [](double seconds) { return HostTime{std::llround(1e9 * seconds)}; };
+    for (std::uint16_t k = 0; k <= 3; ++k) {
+        EXPECT_FALSE(count.newest_loss(at(k))) << k;
+        count.on_health(static_cast<std::uint16_t>(50 * k), 10U * k, at(k));
+        count.on_health(static_cast<std::uint16_t>(50 * k + 5), 10U * k, at(k + 0.1));  // asked for
+    }
+    const auto loss = count.newest_loss(at(3.5));
+    ASSERT_TRUE(loss);
+    EXPECT_EQ(loss->sent, 150U);
+    EXPECT_EQ(loss->lost, 120U);
+    EXPECT_EQ(loss->within, 3s);
+    EXPECT_TRUE(loss->is_over(0.79));
+    EXPECT_FALSE(loss->is_over(0.8));
+    EXPECT_EQ(count.newest_loss(at(3.5), 1)->sent, 50U);
+    EXPECT_FALSE(count.newest_loss(at(6.2))) << "no message for over 3 s";
+    count.forget_steps();
+    EXPECT_FALSE(count.newest_loss(at(3.5)));
+    for (std::uint16_t k = 0; k <= 12; ++k) {  // a slow one
+        count.on_health(static_cast<std::uint16_t>(160 + k), 30U + k, at(4.0 + k));
+        EXPECT_EQ(count.newest_loss(at(4.0 + k)).has_value(), k == 12) << k;
+    }
 }
 
 /// A sensor of 50 Hz whose node sends a health message each second, by milliseconds. What a test changes of
