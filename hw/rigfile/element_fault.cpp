@@ -6,6 +6,8 @@
 #include <cassert>
 #include <utility>
 
+#include "common/cut_text.hpp"
+
 namespace octoskin::rig {
 
 RigError one_error_of(std::vector<ElementFault> faults) {
@@ -19,10 +21,9 @@ RigError one_error_of(std::vector<ElementFault> faults) {
     constexpr std::size_t kKeyMax = 100;
     const std::size_t end = std::min(faults.size(), 1 + kNamed);
     for (std::size_t i = 1; i < end; ++i) {
-        std::string& key = faults[i].error.key;
-        if (key.size() > kKeyMax) key = key.substr(0, kKeyMax) + "...";
-        error.what += fmt::format("{}{} (line {}, {})", i == 1 ? "" : ", ", faults[i].error.key,
-                                  faults[i].error.line, faults[i].kind);
+        error.what +=
+            fmt::format("{}{} (line {}, {})", i == 1 ? "" : ", ", cut_text(faults[i].error.key, kKeyMax),
+                        faults[i].error.line, faults[i].kind);
     }
     if (end < faults.size()) error.what += fmt::format(", and {} further ones", faults.size() - end);
     return error;

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "common/cut_text.hpp"
 #include "common/wire/codec.hpp"
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
@@ -240,7 +241,7 @@ class Forwarder {
     /// Of a line that may be long, as much as tells what it is.
     static std::string shown(const std::string& line) {
         constexpr std::size_t kShown = 120;
-        return line.size() <= kShown ? line : line.substr(0, kShown) + "...";
+        return cut_text(line, kShown);
     }
 
     void lose() {

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "common/cut_text.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -53,8 +55,7 @@ std::string shown(const Json& json) {
     if (json.is_array()) return "a list";
     if (json.is_object()) return "an object";
     constexpr std::size_t kShown = 40;
-    const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
-    return text.size() <= kShown ? text : text.substr(0, kShown) + "...";
+    return cut_text(json.dump(-1, ' ', true, Json::error_handler_t::replace), kShown);
 }
 
 /// Takes what is there out of `json`; throws std::invalid_argument, which names the key.

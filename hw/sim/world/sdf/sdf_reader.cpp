@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/cut_text.hpp"
 #include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/sdf/sdf_shapes.hpp"
 #include "hw/sim/world/sdf/written_out.hpp"
@@ -33,14 +34,17 @@ bool is_near_enough(const Eigen::Vector3d& vertex) {
     return vertex.cwiseAbs().maxCoeff() <= kCoordinateMax_m;
 }
 
-/// The text of a file's line, so that a message shows the value that the parser does not tell.
+/// The text of a file's line, so that a message shows the value that the parser does not tell. All of a file
+/// may be one line.
 std::string line_of(const std::filesystem::path& file, int number) {
     std::ifstream input(file);
     std::string line;
     for (int i = 0; i < number && std::getline(input, line); ++i) {
     }
     const auto first = line.find_first_not_of(" \t");
-    return first == std::string::npos ? "" : line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
+    if (first == std::string::npos) return "";
+    constexpr std::size_t kShown = 200;
+    return cut_text(std::string_view(line).substr(first, line.find_last_not_of(" \t\r") + 1 - first), kShown);
 }
 
 /// "box" of ".../geometry/box" if `up` is 0, "geometry" if it is 1; without its number or name in brackets.
