@@ -58,7 +58,7 @@ Nanoseconds clock_monotonic() {
 }
 
 SleepWatch::SleepWatch(Clock boottime, Clock monotonic)
-    : boottime_(std::move(boottime)), monotonic_(std::move(monotonic)), told_(read().most) {}
+    : boottime_(std::move(boottime)), monotonic_(std::move(monotonic)), reported_(read().most) {}
 
 /// This thread may lose the processor, or the machine sleep, between two readings.
 SleepWatch::Slept SleepWatch::read() const {
@@ -69,12 +69,12 @@ SleepWatch::Slept SleepWatch::read() const {
 
 Nanoseconds SleepWatch::look() {
     const Slept now = read();
-    const Nanoseconds slept = now.least - told_;
+    const Nanoseconds slept = now.least - reported_;
     if (slept < Nanoseconds{kSecond_ns}) {
-        told_ = std::min(told_, now.most);
+        reported_ = std::min(reported_, now.most);
         return Nanoseconds{0};
     }
-    told_ = now.most;
+    reported_ = now.most;
     return slept;
 }
 

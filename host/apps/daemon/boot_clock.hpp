@@ -55,7 +55,7 @@ class SleepWatch {
 
     Clock boottime_;
     Clock monotonic_;
-    Nanoseconds told_;  ///< no less than what was slept when `look` last said something
+    Nanoseconds reported_;  ///< no less than what was slept when `look` last said something
 };
 
 /// When the map's clock came to what it shows, for the next start; and what makes the map older where no
@@ -73,7 +73,7 @@ class MapTime {
     /// To be called every now and then. The pipeline's map grows older by what passes while it waits for its
     /// first measurement: of the program, or after the machine slept, which is noticed here: the map then
     /// waits as it does when the program begins, and the answer is how long it slept. Else the answer is 0.
-    /// `bus`: what the bus's time is now, as far as can be told.
+    /// `bus`: what the bus's time is now, as well as it is known.
     Nanoseconds attend(Pipeline& pipeline, HostTime bus);
     /// How many seconds have passed since the map began to wait; empty: it never did, or that is not known.
     [[nodiscard]] std::optional<std::int64_t> since_saved() const {

@@ -50,7 +50,7 @@ class CommitListener {
     virtual void on_wait(const WaitCommit&) {}
     /// After each reading and frame, and after what was told of it.
     virtual void on_maps(std::span<const FedMap>) {}
-    /// What comes next is told by another time, from before what came so far or far ahead of it, or the
+    /// What comes next has another time, from before what came so far or far ahead of it, or the
     /// machine slept: a replay in this order ends here.
     virtual void on_time_leap() {}
 };

@@ -73,7 +73,7 @@ class Pipeline {
     /// Of a map that was saved, until its first measurement: FusedMap::wait.
     void wait(std::int64_t seconds) { builder_.wait(seconds); }
     /// The machine slept, and the clocks of what comes stood still, or are those of others: as where the time
-    /// leaps, what waits is settled, what was remembered of the time before is forgotten, a listener is told
+    /// leaps, what waits is settled, what was remembered of the time before is forgotten, a listener learns
     /// that its order ends, and what was captured before and comes late is not used. The fused map waits as
     /// one that was saved: `wait` says what has passed.
     void go_on_after_sleep();
@@ -93,7 +93,7 @@ class Pipeline {
     /// Depth frames in the order of their capture, at about the time when they arrive among the CAN frames.
     void on_depth(DepthFrame frame);
     /// From now on `worker` turns depth frames into terms, and what is captured after a frame may go into the
-    /// maps before it: a listener is told the order. While it is at one, two more wait, and the oldest gives
+    /// maps before it: a listener learns the order. While it is at one, two more wait, and the oldest gives
     /// way; where what waits has to be settled at once, they are counted as `queue_overflow`. Null: the call
     /// that releases a frame does, and everything waits for it. For `Release::once_placed` (asserted). While
     /// a frame is worked on, the pipeline must not be moved; the worker lives as long as it is named here.

@@ -1,4 +1,4 @@
-// Saves files so that at every instant a name stands for the old content or the new, never for a mixture:
+// Saves files so that at every instant a name has the old content or the new, never for a mixture:
 // written under another name beside it, flushed to the disk, then renamed. Several that belong together are
 // all written before the first is renamed.
 #pragma once
