@@ -78,7 +78,7 @@ Result<Playback, AppError> play_film(const PlaybackRequest& request, const Repla
                     opened ? film->shown().string() + ": cannot be read" : opened.error().message());
     }
     auto reader = openni2::OniReader::open_alone(*film);
-    if (!reader) return fail(ExitCode::bad_data, reader.error().what);
+    if (!reader) return unexpected(unread_depth(reader.error()));
     auto playback = play_camera(request, rig_of_camera(*camera, "film"), *crc32, *reader, report);
     if (!playback) return playback;
     playback->outcome.progress.begin = HostTime{0};

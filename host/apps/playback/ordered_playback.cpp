@@ -32,6 +32,9 @@ std::uint32_t crc32_of_map(const FusedMap& map, decltype(write_ot) write) {
 }
 
 Status<AppError> check_first(const FilePlace& file, std::uint32_t crc) {
+    if (!file.is_there())
+        return fail(ExitCode::no_input,
+                    file.shown().string() + ": is not there, and this recording began with it");
     if (crc32_of(file) == crc) return Done{};
     return fail(ExitCode::bad_data,
                 file.shown().string() + ": is not the one that this recording began with");

@@ -305,7 +305,7 @@ std::string why_nothing(const Playback& playback, std::string_view where_the_acc
 
 std::optional<AppError> failure_of(const Playback& playback, std::string_view where_the_account_is) {
     if (const auto& failed = playback.outcome.can_error) return AppError{ExitCode::bad_data, failed->what};
-    if (const auto& failed = playback.outcome.depth_error) return AppError{ExitCode::bad_data, failed->what};
+    if (const auto& failed = playback.outcome.depth_error) return unread_depth(*failed);
     const bool is_balanced =
         playback.pipeline.is_balanced() && std::all_of(playback.accounts.begin(), playback.accounts.end(),
                                                        [](const auto& table) { return table.is_balanced; });

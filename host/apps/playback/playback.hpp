@@ -23,6 +23,11 @@
 
 namespace octoskin {
 
+/// Of depth frames that cannot be read: `unavailable` without the program that reads them, else `bad_data`.
+[[nodiscard]] inline AppError unread_depth(const DepthSourceError& error) {
+    return {error.is_reader_missing ? ExitCode::unavailable : ExitCode::bad_data, error.what};
+}
+
 struct PlaybackRequest {
     RecordingPaths recording;
     MappingConfig mapping;

@@ -12,6 +12,7 @@ namespace octoskin {
 /// Why no further frame will come: what, where and what to do, for a person.
 struct DepthSourceError {
     std::string what;
+    bool is_reader_missing = false;  ///< the program that reads them: nothing is known of the frames
 };
 
 class DepthSource {

@@ -45,11 +45,14 @@ Result<OniReader, DepthSourceError> OniReader::start(const FilePlace& oni,
         return failure(is_clear ? opened.error().reason() : "no such file, or not an ordinary one");
     }
     const auto program = find_helper(kReadHelper, helper);
-    if (!program) return failure(program.error());
+    const auto without_reader = [&oni](const std::string& what) {
+        return unexpected(DepthSourceError{oni.shown().string() + ": " + what, true});
+    };
+    if (!program) return without_reader(program.error());
     auto process = HelperProcess::start(
         *program, {path_of_descriptor(HelperProcess::kInherited).string(), oni.shown().string()},
         HelperPipe::its_output, HelperComplaints::on_our_standard_error, opened->descriptor());
-    if (!process) return failure(process.error());
+    if (!process) return without_reader(process.error());
     std::error_code error;
     const auto size = std::filesystem::file_size(path_of_descriptor(opened->descriptor()), error);
     const auto patience = kReadPatience + time_to_check(error ? 0 : size);

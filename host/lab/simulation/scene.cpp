@@ -14,7 +14,11 @@ Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePla
     const FilePlace world_file =
         confined_to_recording(world_instead.empty() ? scenario->world : world_instead);
     auto world = sim::World::read(world_file);
-    if (!world) return unexpected(reading_error(ExitCode::bad_data, world.error()));
+    if (!world) {
+        const bool is_unread = world.error().is_reader_missing;
+        return unexpected(
+            reading_error(is_unread ? ExitCode::unavailable : ExitCode::bad_data, world.error()));
+    }
     if (const auto checked = sim::check_hidden_models(*scenario, *world); !checked) {
         return unexpected(AppError{ExitCode::bad_config,
                                    checked.error().message() + " (" + world_file.shown().string() + ")"});

@@ -171,44 +171,47 @@ std::optional<std::string> fault_of(int status, const ReadLimits& limits) {
 
 }  // namespace
 
-Result<std::string, std::string> read_in_process(const FilePlace& sdf, const ReadLimits& limits,
-                                                 const std::filesystem::path& program_given) {
+Result<std::string, ReadFault> read_in_process(const FilePlace& sdf, const ReadLimits& limits,
+                                               const std::filesystem::path& program_given) {
     const auto until = Clock::now() + limits.patience;
     const auto program = program_given.empty() ? find_reader() : program_given;
     if (program.empty()) {
-        return unexpected(std::string("what reads SDF files is not there: ") + kWorldReader +
-                          " is neither beside this program nor in libexec: build octoskin_programs, or "
-                          "install octoskin anew");
+        return unexpected(ReadFault{std::string("what reads SDF files is not there: ") + kWorldReader +
+                                        " is neither beside this program nor in libexec: build "
+                                        "octoskin_programs, or install octoskin anew",
+                                    true});
     }
     std::vector<std::string> command{program.string(), std::to_string(limits.memory_mib),
                                      std::to_string(limits.processor_s), sdf.name().string()};
     std::optional<OpenFolder> folder;
     if (const NamedFolder* const named = sdf.folder()) {
         auto opened = named->open();
-        if (!opened) return unexpected(opened.error().reason());
+        if (!opened) return unexpected(ReadFault{opened.error().reason()});
         folder = std::move(*opened);
         command.emplace_back(kBeneath);
     }
     Reader reader(std::move(command), folder ? folder->descriptor() : -1);
     if (reader.error() != 0) {
-        return unexpected("what reads SDF files cannot be started: " + program.string() + ": " +
-                          std::strerror(reader.error()));
+        return unexpected(ReadFault{"what reads SDF files cannot be started: " + program.string() + ": " +
+                                        std::strerror(reader.error()),
+                                    true});
     }
     std::string bytes;
     std::vector<char> part(kMiB);
     while (true) {
         const auto count = reader.read(part.data(), part.size(), until);
-        if (!count) return unexpected(refusal(std::to_string(limits.patience.count()) + " s"));
+        if (!count) return unexpected(ReadFault{refusal(std::to_string(limits.patience.count()) + " s")});
         if (*count == 0) break;
         if (bytes.size() + *count > limits.result_mib * kMiB)
-            return unexpected(refusal(std::to_string(limits.result_mib) + " MiB for its triangles"));
+            return unexpected(
+                ReadFault{refusal(std::to_string(limits.result_mib) + " MiB for its triangles")});
         bytes.append(part.data(), *count);
     }
     const auto status = reader.ended_by(std::max(until, Clock::now() + Reader::kPatienceForEnd));
-    if (!status) return unexpected(std::string("what reads it did not end"));
+    if (!status) return unexpected(ReadFault{"what reads it did not end"});
     if (auto fault = fault_of(*status, limits)) {
         const std::string words = reader.words();
-        return unexpected(std::move(*fault) + (words.empty() ? "" : "; it said: " + words));
+        return unexpected(ReadFault{std::move(*fault) + (words.empty() ? "" : "; it said: " + words)});
     }
     return bytes;
 }

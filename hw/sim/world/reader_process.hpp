@@ -27,10 +27,15 @@ inline constexpr const char* kBeneath = "--beneath";
 /// Exit code of a reader that ran out of memory.
 inline constexpr int kOutOfMemory = 70;
 
+struct ReadFault {
+    std::string what;
+    bool is_reader_missing = false;  ///< there is no program that reads, or it cannot be started
+};
+
 /// What octoskin-world-read writes about `sdf` (solids_bytes.hpp). If that is below a folder that was named,
 /// it opens nothing but files of that folder. The error says which limit was reached, how the process ended,
 /// or that there is no such program. `program`: in place of the installed one.
-[[nodiscard]] Result<std::string, std::string> read_in_process(const FilePlace& sdf, const ReadLimits& limits,
-                                                               const std::filesystem::path& program = {});
+[[nodiscard]] Result<std::string, ReadFault> read_in_process(const FilePlace& sdf, const ReadLimits& limits,
+                                                             const std::filesystem::path& program = {});
 
 }  // namespace octoskin::sim

@@ -3,21 +3,36 @@
 #include <string>
 #include <utility>
 
+#include "common/cut_text.hpp"
+
 namespace octoskin::sim {
+namespace {
+
+/// As long as a message about a foreign file may become, whatever names and values it has.
+std::string cut_message(const std::string& text) {
+    constexpr std::size_t kShown = 1000;
+    return cut_text(text, kShown);
+}
+
+}  // namespace
 
 SolidsOrError read_solids(const FilePlace& sdf, const ReadLimits& limits) {
     const auto failed = [&](const std::string& what) {
         return unexpected(WorldError{sdf.shown(), "", what});
     };
     const auto bytes = read_in_process(sdf, limits);
-    if (!bytes) return failed(bytes.error());
+    if (!bytes) {
+        return unexpected(WorldError{sdf.shown(), "", bytes.error().what, bytes.error().is_reader_missing});
+    }
     auto solids = from_bytes(*bytes);
     if (!solids) return failed("what reads it broke off");
     if (*solids) {
-        for (std::string& warning : (*solids)->warnings) warning = sdf.shown().string() + ": " + warning;
+        for (std::string& warning : (*solids)->warnings)
+            warning = sdf.shown().string() + ": " + cut_message(warning);
         return std::move(*solids);
     }
-    return unexpected(WorldError{sdf.shown(), solids->error().element, solids->error().what});
+    return unexpected(
+        WorldError{sdf.shown(), cut_message(solids->error().element), cut_message(solids->error().what)});
 }
 
 }  // namespace octoskin::sim

@@ -10,6 +10,7 @@ struct WorldError {
     std::filesystem::path file;
     std::string element;  ///< "model 'shelf', link 'body', visual 'top'"; empty if it concerns the whole file
     std::string what;
+    bool is_reader_missing = false;  ///< the program that reads worlds: nothing is known of the file
     /// "file: element: what".
     [[nodiscard]] std::string message() const;
 };

@@ -35,11 +35,25 @@ TEST_F(CopiedProgram, has_no_helpers_and_no_data) {
     const Said world =
         run(program + " simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
             " --scenario " + source("tests/data/short/scenario.yaml"));
-    EXPECT_NE(world.exit_code, 0);
+    EXPECT_EQ(world.exit_code, 69);
     EXPECT_NE(world.output.find("octoskin-world-read"), std::string::npos) << world.output;
+    const Said depth = run(path("away/bin/octoskin") + " replay " + source("tests/data/frozen/daemon") +
+                           " --out " + path("maps"));
+    EXPECT_EQ(depth.exit_code, 69) << depth.output;
+    EXPECT_NE(depth.output.find("octoskin-oni-read"), std::string::npos) << depth.output;
     const Said data = run(program + " simulate " + path("rec"));
     EXPECT_EQ(data.exit_code, 78) << data.output;
     EXPECT_NE(data.output.find(path("away/share/octoskin")), std::string::npos) << data.output;
+}
+
+TEST_F(CopiedProgram, says_that_what_a_recording_began_with_is_not_there) {
+    std::filesystem::copy(source("tests/data/frozen/daemon"), path("rec"),
+                          std::filesystem::copy_options::recursive);
+    std::filesystem::remove(path("rec/first.ot"));
+    const Said said =
+        run(std::string(OCTOSKIN_PROGRAM) + " replay " + path("rec") + " --out " + path("maps"));
+    EXPECT_EQ(said.exit_code, 66) << said.output;
+    EXPECT_NE(said.output.find("first.ot"), std::string::npos) << said.output;
 }
 
 TEST_F(CopiedProgram, has_its_data_where_a_link_leads_and_not_in_the_working_directory) {

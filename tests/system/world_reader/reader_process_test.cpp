@@ -33,7 +33,7 @@ class ReaderProcessTest : public testing::Test {
     }
     std::string error_of(const std::string& commands, const ReadLimits& limits = {}) const {
         const auto read = read_in_process("x.sdf", limits, program(commands));
-        return read ? "it was accepted" : read.error();
+        return read ? "it was accepted" : read.error().what;
     }
     static std::string error_of_world(const FilePlace& sdf, const ReadLimits& limits = {}) {
         const auto read = read_solids(sdf, limits);
@@ -82,10 +82,25 @@ TEST_F(ReaderProcessTest, that_reaches_a_limit_is_refused_by_its_name) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
+TEST_F(ReaderProcessTest, tells_no_more_of_a_file_than_a_message_may_have) {
+    const std::string one_line(3'000'000, ' ');
+    const std::string name(3'000'000, 'n');
+    for (const std::string& what :
+         {"<light name='l' type='none'/>" + one_line + "<foo/>", "<model name='" + name + "'/>",
+          "<model name='m'><poze>" + name + "</poze></model>"}) {
+        const auto file = scratch_.write(
+            "long.sdf", "<?xml version='1.0'?><sdf version='1.9'><world name='w'>" + what + "</world></sdf>");
+        const std::string error = error_of_world(file);
+        EXPECT_GT(error.size(), 20U);
+        EXPECT_LT(error.size(), 2500U) << error.substr(0, 300);
+    }
+}
+
 TEST_F(ReaderProcessTest, that_ends_otherwise_is_told_how) {
     EXPECT_THAT(error_of("kill -SEGV $$"), HasSubstr("ended by signal 11"));
     EXPECT_THAT(error_of("exit 3"), HasSubstr("exit code 3"));
-    EXPECT_THAT(read_in_process("x.sdf", {}, scratch_ / "none").error(), HasSubstr("cannot be started"));
+    EXPECT_TRUE(read_in_process("x.sdf", {}, scratch_ / "none").error().is_reader_missing);
+    EXPECT_THAT(read_in_process("x.sdf", {}, scratch_ / "none").error().what, HasSubstr("cannot be started"));
 }
 
 TEST_F(ReaderProcessTest, leaves_no_process_behind) {
