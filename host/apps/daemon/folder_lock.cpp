@@ -68,7 +68,6 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
     for (int tries = 0; tries < kTries; ++tries) {
         auto file = open_or_create(folder);
         if (!file) return unexpected(cannot_save(named, file.error()));
-        (void)::fchmod(file->descriptor(), kMode);  // of an earlier version's, or a copied one
         if (::flock(file->descriptor(), LOCK_EX | LOCK_NB) != 0) {
             return cannot_create(named, "another octoskin" + holder_of(file->descriptor()) +
                                             " keeps its map there; stop it, or name another folder");
@@ -77,6 +76,7 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
         if (::fstat(file->descriptor(), &status) != 0)
             return unexpected(cannot_save(named, folder_error_of(errno, named)));
         if (status.st_nlink == 1) {
+            (void)::fchmod(file->descriptor(), kMode);  // of an earlier version's, or a copied one
             write_process_id(*file);
             return FolderLock(folder, std::move(*file));
         }
