@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "hw/sim/world/polygon_clip.hpp"
@@ -36,8 +35,6 @@ TriangleLattice::TriangleLattice(const std::array<Eigen::Vector3d, 3>& corners, 
     a_ = corners[longest];
     b_ = corners[(longest + 1) % 3];
     c_ = corners[(longest + 2) % 3];
-    // Of a sliver ac may be as long as ab, and rows times columns then far more than its area has of points.
-    if ((c_ - a_).norm() > (c_ - b_).norm()) std::swap(a_, b_);
     rows_ = std::max<std::int64_t>(1, steps_of((b_ - a_).norm()));
 }
 

@@ -9,8 +9,7 @@
 namespace octoskin::sim {
 
 /// Rows parallel to the side ac, from ab to bc. With ab the longest side no two neighbours are further apart
-/// than the pitch, within a row, between rows, and along each side; with ac the shortest there are no more
-/// points than that takes, however thin the triangle is.
+/// than the pitch, within a row, between rows, and along each side.
 class TriangleLattice {
   public:
     /// Metres.

