@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "host/apps/daemon/clocks.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -31,12 +33,6 @@ std::optional<Nanoseconds> boot_offset() {
     return read_boot_offset(text);
 }
 
-Nanoseconds read_clock(clockid_t clock) {
-    timespec now{};
-    (void)::clock_gettime(clock, &now);  // both are there since Linux 2.6.39
-    return Nanoseconds{std::int64_t{now.tv_sec} * kSecond_ns + now.tv_nsec};
-}
-
 /// When the second of the bus's time began that the clock shows; empty: it shows none of it.
 std::optional<BootTime> begin_of_second(const VoxelAges::Clock& clock, const std::optional<BootTime>& now,
                                         HostTime bus) {
@@ -51,10 +47,12 @@ std::optional<BootTime> begin_of_second(const VoxelAges::Clock& clock, const std
 }  // namespace
 
 Nanoseconds clock_boottime() {
-    return read_clock(CLOCK_BOOTTIME);
+    timespec now{};
+    (void)::clock_gettime(CLOCK_BOOTTIME, &now);  // it is there since Linux 2.6.39
+    return Nanoseconds{std::int64_t{now.tv_sec} * kSecond_ns + now.tv_nsec};
 }
 Nanoseconds clock_monotonic() {
-    return read_clock(CLOCK_MONOTONIC);
+    return Nanoseconds{monotonic_now().ns};
 }
 
 SleepWatch::SleepWatch(Clock boottime, Clock monotonic)

@@ -67,7 +67,7 @@ struct Daemon::Parts {
     void go_where_home_is(std::optional<OpenFolder> next);
     [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
     void go_on_with(KeptMap kept);
-    /// Of the map, for the next start.
+    /// What a copy of the map is of, for the next start, once it has gone on to now.
     [[nodiscard]] SnapshotOrigin make_ready_to_save(FusedMap& copy);
     void save_map();
     std::string save_last_map(HostTime end);
@@ -187,7 +187,7 @@ void Daemon::Parts::go_on_with(KeptMap kept) {
     pipeline.begin_with(std::move(kept.map));
 }
 
-/// As of now: for long nothing may have been measured.
+/// Nothing may have been measured for long.
 SnapshotOrigin Daemon::Parts::make_ready_to_save(FusedMap& copy) {
     const HostTime bus = inputs.reckoned_bus_now(monotonic_now());
     map_time.note(copy, bus);

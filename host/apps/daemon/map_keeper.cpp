@@ -59,12 +59,15 @@ Result<Snapshot, std::string> snapshot_of_map(const FilePlace& file, const Mappi
     return std::move(*snapshot);
 }
 
+FilePlace snapshot_draft(const NamedFolder& folder) {
+    return {folder, draft_name_of(kSnapshotFile)};
+}
+
 /// The snapshot of a save that was killed when fused.ot was in its place, and it was not yet: it comes there.
 std::optional<Snapshot> finish_save(const NamedFolder& folder, const MappingConfig& mapping,
                                     std::uint32_t mapping_crc32,
                                     const std::optional<std::uint32_t>& map_crc32) {
-    const FilePlace draft(folder, draft_name_of(kSnapshotFile));
-    if (!draft.is_there()) return std::nullopt;
+    const FilePlace draft = snapshot_draft(folder);
     auto snapshot = snapshot_of_map(draft, mapping, mapping_crc32, map_crc32);
     if (!snapshot) return std::nullopt;
     // If it cannot be moved it is used all the same: the next save replaces it.
@@ -144,10 +147,12 @@ Result<KeptMap, AppError> MapKeeper::load_with(const MappingConfig& mapping,
                                                std::uint32_t mapping_crc32) const {
     const FilePlace file(work_->folder, kMapFile);
     const FilePlace snapshot_file(work_->folder, kSnapshotFile);
+    const bool has_file = snapshot_file.is_there();
+    const bool has_draft = snapshot_draft(work_->folder).is_there();
+    if (!has_file && !has_draft) return load_alone(mapping.map, file, {});
     const auto map_crc32 = crc32_of(file);
     auto snapshot = snapshot_of_map(snapshot_file, mapping, mapping_crc32, map_crc32);
-    const bool has_file = snapshot || snapshot_file.is_there();
-    if (!snapshot) {
+    if (!snapshot && has_draft) {
         if (auto finished = finish_save(work_->folder, mapping, mapping_crc32, map_crc32))
             snapshot = std::move(*finished);
     }

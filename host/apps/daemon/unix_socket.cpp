@@ -120,12 +120,12 @@ class StartLock {
         if (!folder_) return FileLock::of_nothing();
         const auto created = folder_->create_new(name_, kOwnersMode);
         if (!created && created.error().fault != FolderFault::is_there) return FileLock::of_nothing();
-        const auto file = folder_->open_file(name_);
+        auto file = folder_->open_file(name_);
         if (!file && file.error().fault == FolderFault::absent) return std::nullopt;  // removed just now
         struct stat status {};
         is_own_ = file && ::fstat(file->descriptor(), &status) == 0 && status.st_uid == ::geteuid() &&
                   (status.st_mode & 0077U) == 0;
-        return is_own_ ? FileLock::take_removed_later({*folder_, name_}) : FileLock::of_nothing();
+        return is_own_ ? FileLock::take(std::move(*file), {*folder_, name_}) : FileLock::of_nothing();
     }
 
     std::string name_;

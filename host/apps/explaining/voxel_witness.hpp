@@ -75,8 +75,7 @@ class VoxelWitness final : public CommitListener {
     [[nodiscard]] std::optional<float> begin() const noexcept { return begin_; }
     /// By the same arithmetic as the map's, but where that is asked; empty: unknown.
     [[nodiscard]] std::optional<float> log_odds() const noexcept { return now_; }
-    /// What was there at the begin and all that was done since, as told: the voxel's log-odds, or 0 for
-    /// unknown.
+    /// What was there at the begin and every change since, added up: the voxel's log-odds, or 0 for unknown.
     [[nodiscard]] double sum() const;
     [[nodiscard]] const std::deque<Contribution>& newest() const noexcept { return newest_; }
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }

@@ -37,15 +37,15 @@ Result<std::unique_ptr<Daemon>, AppError> begin(const DaemonRequest& request,
     return Daemon::build(request, log);
 }
 
-/// Members of the service's group may use its sockets (ControlSocket, JointSocket see to that), and read its
-/// files: whoever could write to a recording's folder could lay links there while the daemon writes.
-void keep_files_to_ourselves() {
+/// Members of the service's group may use its sockets (ControlSocket and JointSocket set their modes), and
+/// read its files. One that may write to a recording's folder could make links there while the daemon writes.
+void make_files_for_own_user() {
     constexpr mode_t kWrittenByOthers = 0022;
     ::umask(::umask(0) | kWrittenByOthers);
 }
 
 void run_daemon(DaemonRequest& request) {
-    keep_files_to_ourselves();
+    make_files_for_own_user();
     keep_processor_time_for_the_end();
     refuse_few_descriptors();
     request.can_descriptor = descriptor_of(request.interface);

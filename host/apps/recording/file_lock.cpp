@@ -35,22 +35,20 @@ std::optional<FileLock> FileLock::take(const FilePlace& file, Kind kind) {
         auto opened = file.open();
         if (!opened) return of_nothing();
         auto locked = lock(Descriptor(opened->release()), kind);
-        if (!locked || !locked->descriptor_) return locked;
-        // It may have been replaced before it was locked.
-        const auto again = file.open();
-        if (again && is_same_file(again->descriptor(), locked->descriptor_.get())) return locked;
+        if (!locked || locked->is_of(file)) return locked;
     }
     return std::nullopt;
 }
 
-std::optional<FileLock> FileLock::take_removed_later(const FilePlace& file) {
-    auto opened = file.open();
-    if (!opened) return std::nullopt;
-    auto locked = lock(Descriptor(opened->release()), Kind::exclusive);
-    if (!locked || !locked->descriptor_) return locked;
+std::optional<FileLock> FileLock::take(OpenFile opened, const FilePlace& file) {
+    auto locked = lock(Descriptor(opened.release()), Kind::exclusive);
+    return locked && locked->is_of(file) ? std::move(locked) : std::nullopt;
+}
+
+bool FileLock::is_of(const FilePlace& file) const {
+    if (!descriptor_) return true;
     const auto again = file.open();
-    const bool is_there = again && is_same_file(again->descriptor(), locked->descriptor_.get());
-    return is_there ? std::move(locked) : std::nullopt;
+    return again && is_same_file(again->descriptor(), descriptor_.get());
 }
 
 std::optional<FileLock> FileLock::take(const OpenFolder& folder, Kind kind) {

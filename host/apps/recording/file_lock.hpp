@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "host/io/folder/file_place.hpp"
+#include "host/io/folder/open_file.hpp"
 
 namespace octoskin {
 
@@ -18,14 +19,16 @@ class FileLock {
     /// opened, give a lock that locks nothing: whatever is done there next says what is wrong with it.
     [[nodiscard]] static std::optional<FileLock> take(const FilePlace& file, Kind kind);
     [[nodiscard]] static std::optional<FileLock> take(const OpenFolder& folder, Kind kind);
-    /// Of a file that is removed before it is given back: empty also where it was removed, or replaced,
-    /// before it was locked, or is not there.
-    [[nodiscard]] static std::optional<FileLock> take_removed_later(const FilePlace& file);
+    /// The same, exclusive, of `opened`, which was at `file` and is removed before it is given back: empty
+    /// also where another removed or replaced it before it was locked.
+    [[nodiscard]] static std::optional<FileLock> take(OpenFile opened, const FilePlace& file);
     [[nodiscard]] static FileLock of_nothing() { return FileLock(Descriptor()); }
 
   private:
     explicit FileLock(Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
     [[nodiscard]] static std::optional<FileLock> lock(Descriptor descriptor, Kind kind);
+    /// It may have been replaced, or removed, before it was locked.
+    [[nodiscard]] bool is_of(const FilePlace& file) const;
     Descriptor descriptor_;  ///< none: locks nothing
 };
 

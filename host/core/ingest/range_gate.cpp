@@ -63,7 +63,7 @@ RangeGate::RangeGate(const HostRig& rig, bool uses_no_return, Nanoseconds now_ea
     : limits_(rig.range_limits), uses_no_return_(uses_no_return), now_early_(now_early) {
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
-            sensors_.emplace(SensorKey{node.node_id, static_cast<std::uint8_t>(i)}, Sensor(node.sensors[i]));
+            sensors_.emplace(SensorId{node.node_id, static_cast<std::uint8_t>(i)}, Sensor(node.sensors[i]));
         }
     }
 }
@@ -264,7 +264,7 @@ std::optional<HostTime> RangeGate::held_until(const RangeMeasurement& measuremen
     if (contradicted == contradicted_.end() || std::chrono::abs(now - contradicted->second) >= kSuspicion) {
         return std::nullopt;
     }
-    const HostSensor& sensor = sensors_.at({measurement.source.node_id, measurement.source.sensor}).expected;
+    const HostSensor& sensor = sensors_.at(measurement.source.sensor_id()).expected;
     const Nanoseconds half_period = std::min(Nanoseconds{sensor.period}, kPeriodMax) / 2;
     const Nanoseconds wait =
         Nanoseconds{sensor.timing_budget} / 2 + std::max(kTransportMax, half_period + kOnItsWay);
@@ -290,58 +290,40 @@ void RangeGate::on_reflex(wire::NodeId node, const wire::Reflex& reflex) {
 }
 
 void RangeGate::on_damage(wire::NodeId node, HostTime now) {
-    for (auto& [key, sensor] : sensors_) {
-        if (key.first == node) {
-            sensor.senders.on_damage(now);
-        }
-    }
+    for_each_of(node, [&](Sensor& sensor) { sensor.senders.on_damage(now); });
 }
 
 void RangeGate::expect(wire::NodeId node, std::optional<HostTime> now) {
-    for (auto& [key, sensor] : sensors_) {
-        if (key.first == node) {
-            sensor.record.words = {};
-            sensor.record.note_word(now);
-        }
-    }
+    for_each_of(node, [&](Sensor& sensor) {
+        sensor.record.words = {};
+        sensor.record.note_word(now);
+    });
 }
 
 void RangeGate::forget(wire::NodeId node) {
     forget_order(node);
-    for (auto& [key, sensor] : sensors_) {
-        if (key.first == node) {
-            sensor.record.sent.restart();
-            sensor.record.health.reset();
-            sensor.record.capture_bound.reset();
-        }
-    }
+    for_each_of(node, [&](Sensor& sensor) {
+        sensor.record.sent.restart();
+        sensor.record.health.reset();
+        sensor.record.capture_bound.reset();
+    });
 }
 
 void RangeGate::forget_order(wire::NodeId node) {
-    for (auto& [key, sensor] : sensors_) {
-        if (key.first == node) {
-            sensor.record.sequence.restart();
-            sensor.said.restart();
-            sensor.cadence.restart();
-            sensor.senders.forget_refused();
-        }
-    }
+    for_each_of(node, [&](Sensor& sensor) {
+        sensor.record.sequence.restart();
+        sensor.said.restart();
+        sensor.cadence.restart();
+        sensor.senders.forget_refused();
+    });
 }
 
 void RangeGate::on_clock_confirmed(wire::NodeId node) {
-    for (auto& [key, sensor] : sensors_) {
-        if (key.first == node) {
-            sensor.cadence.confirm();
-        }
-    }
+    for_each_of(node, [&](Sensor& sensor) { sensor.cadence.confirm(); });
 }
 
 void RangeGate::on_clock_contradicted(wire::NodeId node) {
-    for (auto& [key, sensor] : sensors_) {
-        if (key.first == node) {
-            sensor.senders.forget_refused();
-        }
-    }
+    for_each_of(node, [&](Sensor& sensor) { sensor.senders.forget_refused(); });
 }
 
 }  // namespace octoskin

@@ -22,6 +22,7 @@
 #include "host/core/ingest/sequence_tracker.hpp"
 #include "host/core/ingest/stretch.hpp"
 #include "host/core/rig/host_rig.hpp"
+#include "host/core/rig/sensor_id.hpp"
 #include "host/core/time/clock_map.hpp"
 
 namespace octoskin {
@@ -59,8 +60,6 @@ struct SensorRecord {
 
 class RangeGate {
   public:
-    using SensorKey = std::pair<wire::NodeId, std::uint8_t>;
-
     /// `uses_no_return`: beams without return may clear space; if not, they are rejected here. `now_early`:
     /// "now" may be this much behind (ClockMapConfig::now_slack).
     explicit RangeGate(const HostRig& rig, bool uses_no_return,
@@ -144,6 +143,11 @@ class RangeGate {
         Cadence cadence;
         SenderWatch senders;
     };
+    template <class Do>
+    void for_each_of(wire::NodeId node, const Do& act) {
+        for (auto& [id, sensor] : sensors_)
+            if (id.node_id == node) act(sensor);
+    }
     /// One reading, with all that its place depends on.
     struct Arrival {
         wire::NodeId node = 0;
@@ -164,7 +168,7 @@ class RangeGate {
     HostRangeLimits limits_;
     bool uses_no_return_;
     Nanoseconds now_early_;
-    std::map<SensorKey, Sensor> sensors_;
+    SensorTable<Sensor> sensors_;
     std::map<wire::NodeId, HostTime> rate_overridden_since_;  ///< all heartbeats have said so
     std::map<wire::NodeId, HostTime> contradicted_;  ///< the newest contradiction of any of its sensors
 };

@@ -31,7 +31,7 @@ void SentCount::on_health(std::uint16_t sent, std::uint64_t received, std::optio
     missing_ += beyond(step, beyond(received, received_newest_));
     received_newest_ = received;
     if (missing_ > kOnTheWay && !missing_since_) missing_since_ = now;
-    told_ = now;
+    newest_at_ = now;
     if (now) set_mark({*now, sent_, received});
 }
 
@@ -51,7 +51,7 @@ void SentCount::set_mark(const Mark& mark) noexcept {
 
 std::optional<SentCount::Loss> SentCount::newest_loss(HostTime now, std::size_t steps) const noexcept {
     constexpr Nanoseconds kStale{3'000'000'000};
-    if (marks_count_ <= steps || !told_ || now - *told_ >= kStale) return std::nullopt;
+    if (marks_count_ <= steps || !newest_at_ || now - *newest_at_ >= kStale) return std::nullopt;
     const Mark& newest = marks_[marks_count_ - 1];
     const Mark& oldest = marks_[marks_count_ - 1 - steps];
     const std::uint64_t sent = newest.sent - oldest.sent;

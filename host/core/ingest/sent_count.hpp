@@ -63,7 +63,7 @@ class SentCount {
     std::optional<HostTime> missing_since_;
     std::array<Mark, kSteps + 1> marks_{};  ///< the newest last
     std::size_t marks_count_ = 0;
-    std::optional<HostTime> told_;  ///< the newest message
+    std::optional<HostTime> newest_at_;  ///< the newest message
 };
 
 }  // namespace octoskin

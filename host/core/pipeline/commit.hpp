@@ -33,7 +33,7 @@ struct WaitCommit {
 /// the map grew older without one.
 using Commit = std::variant<JointMeasurement, RangeMeasurement, DepthCommit, WaitCommit>;
 
-/// Is told of each, after it went in, but for `on_time`. What it is given is valid during the call only.
+/// Learns of each after it went in, but for `on_time`. What it is given is valid during the call only.
 class CommitListener {
   public:
     virtual ~CommitListener() = default;

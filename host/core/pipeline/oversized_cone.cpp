@@ -40,6 +40,20 @@ double resolution_min_m(const Beam& beam, MappingConfig mapping) {
     return resolution_m;
 }
 
+/// What is known of the largest so far, and of this reading.
+std::optional<OversizedCone> larger(std::optional<OversizedCone> largest, const Beam& beam,
+                                    const MappingConfig& mapping, std::size_t node, std::size_t sensor) {
+    const double voxels = cone_voxels_at_most(beam, mapping);
+    if (!is_cone_too_large(beam, mapping) || (largest && voxels <= largest->voxels)) return largest;
+    return OversizedCone{.node = node,
+                         .sensor = sensor,
+                         .optics = beam.optics,
+                         .has_range = beam.range_m.has_value(),
+                         .length_m = cone_length_m(beam, mapping),
+                         .voxels = voxels,
+                         .resolution_min_m = resolution_min_m(beam, mapping)};
+}
+
 }  // namespace
 
 std::optional<OversizedCone> find_oversized_cone(const HostRig& rig, const MappingConfig& mapping) {
@@ -49,17 +63,8 @@ std::optional<OversizedCone> find_oversized_cone(const HostRig& rig, const Mappi
         for (std::size_t s = 0; s < rig.nodes[n].sensors.size(); ++s) {
             for (const HostZone& zone : rig.nodes[n].sensors[s].zones) {
                 if (!zone.optics.is_cone()) continue;
-                for (const Beam& beam : largest_beams(rig, zone, mapping)) {
-                    const double voxels = cone_voxels_at_most(beam, mapping);
-                    if (!is_cone_too_large(beam, mapping) || (largest && voxels <= largest->voxels)) continue;
-                    largest = OversizedCone{.node = n,
-                                            .sensor = s,
-                                            .optics = zone.optics,
-                                            .has_range = beam.range_m.has_value(),
-                                            .length_m = cone_length_m(beam, mapping),
-                                            .voxels = voxels,
-                                            .resolution_min_m = resolution_min_m(beam, mapping)};
-                }
+                for (const Beam& beam : largest_beams(rig, zone, mapping))
+                    largest = larger(largest, beam, mapping, n, s);
             }
         }
     }
