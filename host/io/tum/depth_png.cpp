@@ -4,13 +4,19 @@
 
 #include <bit>
 #include <csetjmp>
+#include <cstddef>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 namespace octoskin::tum {
 namespace {
 
 constexpr png_uint_32 kSideMax = 4096;
+/// Bytes of packed pixels (chunk IDAT) for the last row, at most 8 KiB if they do not shrink, and behind it.
+/// A megabyte of them may unpack to a gigabyte, which takes 12 s.
+constexpr std::size_t kPackedLastMax = 64U << 10U;
+constexpr png_uint_32 kPackedPixels = 0x49'44'41'54U;  // "IDAT"
 
 /// What libpng works on. It reports errors by a jump out of itself, so nothing with a destructor may stand
 /// between setjmp() and its calls: all that has one lives here.
@@ -26,6 +32,8 @@ struct Decoding {
     std::string complaint;
     DepthPng image;
     std::vector<png_bytep> rows;
+    std::size_t packed_left =
+        std::numeric_limits<std::size_t>::max();  ///< packed pixels that may be read yet
 };
 
 [[noreturn]] void keep_error(png_structp png, png_const_charp message) {
@@ -35,12 +43,22 @@ struct Decoding {
 
 void ignore_warning(png_structp /*png*/, png_const_charp /*message*/) {}
 
+void read_bytes(png_structp png, png_bytep bytes, std::size_t count) {
+    Decoding& decoding = *static_cast<Decoding*>(png_get_io_ptr(png));
+    if (png_get_io_chunk_type(png) == kPackedPixels) {
+        if (count > decoding.packed_left)
+            png_error(png, "over 64 KiB of pixels lie in and behind its last row");
+        decoding.packed_left -= count;
+    }
+    if (std::fread(bytes, 1, count, decoding.file.get()) != count) png_error(png, "the file ends early");
+}
+
 bool read_header(Decoding& decoding) {
     if (setjmp(png_jmpbuf(decoding.png)) != 0) return false;
     png_set_user_limits(decoding.png, kSideMax, kSideMax);
     // Text, profiles and what else may stand beside the pixels: a kilobyte of it can take 60 ms to unpack.
     png_set_keep_unknown_chunks(decoding.png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
-    png_init_io(decoding.png, decoding.file.get());
+    png_set_read_fn(decoding.png, &decoding, read_bytes);
     png_read_info(decoding.png, decoding.info);
     return true;
 }
@@ -48,7 +66,14 @@ bool read_header(Decoding& decoding) {
 bool read_pixels(Decoding& decoding) {
     if (setjmp(png_jmpbuf(decoding.png)) != 0) return false;
     if constexpr (std::endian::native == std::endian::little) png_set_swap(decoding.png);
-    png_read_image(decoding.png, decoding.rows.data());
+    const int passes = png_set_interlace_handling(decoding.png);
+    for (int pass = 0; pass < passes; ++pass) {
+        for (png_bytep row : decoding.rows) {
+            // With the last row libpng unpacks all that is behind it.
+            if (pass == passes - 1 && row == decoding.rows.back()) decoding.packed_left = kPackedLastMax;
+            png_read_row(decoding.png, row, nullptr);
+        }
+    }
     png_read_end(decoding.png, nullptr);
     return true;
 }

@@ -4,11 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <zlib.h>
 
 #include <cmath>
-#include <ctime>
-#include <random>
 
 #include "host/io/tum/data_set_camera.hpp"
 #include "host/io/tum/depth_png.hpp"
@@ -25,14 +22,6 @@ using testing::StartsWith;
 using testing_support::Grey;
 using testing_support::ScratchFolder;
 using testing_support::WrittenDataSet;
-
-Grey noise(unsigned width, unsigned height, unsigned seed) {
-    std::mt19937 random(seed);
-    Grey image{width, height, {}};
-    for (unsigned i = 0; i < width * height; ++i)
-        image.values.push_back(static_cast<std::uint16_t>(random() & 0xFFFFU));
-    return image;
-}
 
 class DataSetReaderTest : public testing::Test {
   protected:
@@ -329,103 +318,6 @@ TEST_F(DataSetReaderTest, images_of_another_kind_are_refused) {
     std::ofstream(written_.image("100")) << "P5 2 2 65535";
     EXPECT_THAT(error_of_next(),
                 AllOf(HasSubstr("depth.txt:4: depth/100.png"), HasSubstr("cannot be read as PNG")));
-}
-
-class DepthPngTest : public testing::Test {
-  protected:
-    ScratchFolder scratch_;
-};
-
-TEST_F(DepthPngTest, every_value_comes_back_as_it_was_written) {
-    Grey image{256, 256, {}};
-    for (unsigned value = 0; value <= 0xFFFF; ++value)
-        image.values.push_back(static_cast<std::uint16_t>(value));
-    testing_support::write_grey_png(scratch_ / "all.png", image);
-    const auto read = read_depth_png(scratch_ / "all.png");
-    ASSERT_TRUE(read) << read.error();
-    EXPECT_EQ(read->width, 256U);
-    EXPECT_EQ(read->height, 256U);
-    EXPECT_EQ(read->values, image.values);
-}
-
-TEST_F(DepthPngTest, cut_off_anywhere_it_is_refused) {
-    testing_support::write_grey_png(scratch_ / "whole.png", noise(9, 7, 1));
-    const std::string whole = ScratchFolder::read(scratch_ / "whole.png");
-    ASSERT_TRUE(read_depth_png(scratch_ / "whole.png"));
-    for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
-        const auto read = read_depth_png(scratch_.write("cut.png", whole.substr(0, bytes)));
-        ASSERT_FALSE(read) << bytes << " of " << whole.size() << " bytes";
-        EXPECT_THAT(read.error(), StartsWith("cannot be read"));
-    }
-}
-
-TEST_F(DepthPngTest, with_any_byte_changed_it_is_refused_or_gives_the_same_image) {
-    const Grey image = noise(9, 7, 2);
-    testing_support::write_grey_png(scratch_ / "whole.png", image);
-    const std::string whole = ScratchFolder::read(scratch_ / "whole.png");
-    for (std::size_t at = 0; at < whole.size(); ++at) {
-        std::string bytes = whole;
-        bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-        const auto read = read_depth_png(scratch_.write("changed.png", bytes));
-        EXPECT_TRUE(!read || read->values == image.values) << at;
-    }
-}
-
-TEST_F(DepthPngTest, larger_than_4096_pixels_a_side_it_is_refused) {
-    testing_support::write_grey_png(scratch_ / "wide.png", noise(4096, 1, 3));
-    EXPECT_TRUE(read_depth_png(scratch_ / "wide.png"));
-    testing_support::write_grey_png(scratch_ / "wide.png", noise(4097, 1, 3));
-    EXPECT_FALSE(read_depth_png(scratch_ / "wide.png"));
-}
-
-std::string big_endian(std::uint32_t value) {
-    std::string bytes;
-    for (const unsigned shift : {24U, 16U, 8U, 0U}) bytes += static_cast<char>((value >> shift) & 0xFFU);
-    return bytes;
-}
-
-/// A chunk of text that is 7 MB of blanks, in 7 KB.
-std::string packed_text() {
-    const std::string blanks(7'000'000, ' ');
-    uLongf size = ::compressBound(blanks.size());
-    std::string packed(size, 0);
-    EXPECT_EQ(::compress(reinterpret_cast<Bytef*>(packed.data()), &size,
-                         reinterpret_cast<const Bytef*>(blanks.data()), blanks.size()),
-              Z_OK);
-    packed.resize(size);
-    const std::string chunk = std::string("zTXtComment\0\0", 13) + packed;
-    const auto crc =
-        ::crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size()));
-    return big_endian(static_cast<std::uint32_t>(chunk.size() - 4)) + chunk +
-           big_endian(static_cast<std::uint32_t>(crc));
-}
-
-double processor_s() {
-    timespec used{};
-    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
-}
-
-// A thousand of them, which libpng takes by default, took a minute.
-TEST_F(DepthPngTest, what_stands_beside_the_pixels_is_not_unpacked) {
-    const Grey image = noise(9, 7, 4);
-    testing_support::write_grey_png(scratch_ / "plain.png", image);
-    const std::string plain = ScratchFolder::read(scratch_ / "plain.png");
-    constexpr std::size_t kBehindHeader = 8 + 25;
-    const double begun_s = processor_s();
-    const std::string text = packed_text();
-    const double packing_s = processor_s() - begun_s;
-    std::string texts;
-    for (int i = 0; i < 300; ++i) texts += text;
-    for (const std::size_t at : {kBehindHeader, plain.size() - 12}) {  // before the pixels, and behind them
-        const auto file = scratch_.write("texts.png", plain.substr(0, at) + texts + plain.substr(at));
-        const double before_s = processor_s();
-        const auto read = read_depth_png(file);
-        const double took_s = processor_s() - before_s;
-        ASSERT_TRUE(read) << read.error();
-        EXPECT_EQ(read->values, image.values);
-        EXPECT_LE(took_s, 5.0 * packing_s) << "so much as five of the 300 took to be packed";
-    }
 }
 
 TEST(DataSetCamera, puts_the_benchmarks_pixel_centres_half_a_pixel_further) {
