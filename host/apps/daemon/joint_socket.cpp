@@ -14,6 +14,7 @@
 
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/querying/joint_lines.hpp"
+#include "host/apps/recording/shortage.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
@@ -95,7 +96,8 @@ Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& fil
     } catch (const std::system_error& error) {
         socketcan::close_socket(*descriptor);
         ::unlink(file.c_str());
-        return fail(ExitCode::unavailable, fmt::format("{}: {}", file.string(), error.what()));
+        const AppError why = shortage_in(error).value_or(AppError{ExitCode::unavailable, error.what()});
+        return fail(why.code, fmt::format("{}: {}", file.string(), why.message));
     }
 }
 

@@ -32,6 +32,15 @@ bool is_daemons_own(const std::string& name) {
            std::ranges::find(kNames, name) != kNames.end();
 }
 
+/// Why no other recording can begin.
+std::string describe_busy(const Recorder& recorder) {
+    const std::string folder = recorder.folder().string();
+    if (recorder.is_stopped())
+        return "still writing the end of the recording " + folder +
+               "; `octoskin status` says when it has ended";
+    return "already recording to " + folder + "; `octoskin record --stop` ends that";
+}
+
 }  // namespace
 
 std::string fault_of_folder(const std::filesystem::path& folder) {
@@ -100,8 +109,7 @@ Status<AppError> RecordRequests::start(const std::string& arguments, const Recor
     const auto asked = read_record_start(arguments);
     if (!asked) return unexpected(asked.error());
     if (recorder_ && !recorder_->has_ended()) {
-        return fail(ExitCode::cannot_create, "already recording to " + recorder_->folder().string() +
-                                                 "; `octoskin record --stop` ends that");
+        return fail(ExitCode::cannot_create, describe_busy(*recorder_));
     }
     if (recorder_) recorder_->stop(now);  // the one before lets go of the pipeline first
     try {

@@ -64,6 +64,8 @@ class Recorder final : public CommitListener {
     /// takes longer than `patience` to tell, `error` says it then.
     [[nodiscard]] std::string refusal(Nanoseconds patience) { return writer_.refusal(patience); }
 
+    /// It takes nothing more; its files may not be whole yet.
+    [[nodiscard]] bool is_stopped() const { return stopped_.has_value(); }
     [[nodiscard]] bool has_ended() const { return writer_.has_ended(); }
     /// For a person; empty: all is well so far.
     [[nodiscard]] std::string error() const { return writer_.error(); }

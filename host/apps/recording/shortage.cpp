@@ -34,11 +34,14 @@ std::string no_memory() {
     return with_limit("no memory", RLIMIT_AS, kMib, " MiB of addresses", "raise that limit (ulimit -v)");
 }
 
-/// A thread takes its stack out of the process's addresses, and counts as a process of its user.
+/// A thread takes its stack out of the process's addresses and data, and counts as a process of its user.
 std::string no_thread() {
     if (limit_of(RLIMIT_AS))
         return with_limit("no thread to be had", RLIMIT_AS, kMib, " MiB of addresses",
                           "raise that limit (ulimit -v), or those of threads (ulimit -u, TasksMax=)");
+    if (limit_of(RLIMIT_DATA))
+        return with_limit("no thread to be had", RLIMIT_DATA, kMib, " MiB of data",
+                          "raise that limit (ulimit -d), or those of threads (ulimit -u, TasksMax=)");
     return with_limit("no thread to be had", RLIMIT_NPROC, 1, " with all others of its user",
                       "raise that limit (ulimit -u), or the service's TasksMax=");
 }

@@ -47,5 +47,17 @@ TEST(Shortage, names_the_limit_that_was_reached_and_how_it_is_raised) {
     EXPECT_NE(shortage->message.find("ulimit -n"), std::string::npos) << shortage->message;
 }
 
+TEST(Shortage, of_a_thread_names_the_limit_of_data_that_its_stack_counts_for) {
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_DATA, &before), 0);
+    const rlimit much{rlim_t{54321} << 20U, before.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_DATA, &much), 0);
+    const auto shortage = shortage_in(failed(EAGAIN));
+    ASSERT_EQ(::setrlimit(RLIMIT_DATA, &before), 0);
+    ASSERT_TRUE(shortage);
+    EXPECT_NE(shortage->message.find("54321"), std::string::npos) << shortage->message;
+    EXPECT_NE(shortage->message.find("ulimit -d"), std::string::npos) << shortage->message;
+}
+
 }  // namespace
 }  // namespace octoskin

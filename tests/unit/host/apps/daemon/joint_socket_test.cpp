@@ -378,6 +378,20 @@ TEST_F(JointSocketTest, ends_at_once_in_the_middle_of_a_flood) {
     arm.join();  // nobody has its name any more
 }
 
+TEST_F(JointSocketTest, without_room_for_its_thread_is_short_of_a_resource_and_leaves_no_file) {
+    pthread_attr_t before;
+    ASSERT_EQ(::pthread_getattr_default_np(&before), 0);
+    pthread_attr_t huge;
+    ASSERT_EQ(::pthread_getattr_default_np(&huge), 0);
+    ASSERT_EQ(::pthread_attr_setstacksize(&huge, std::size_t{1} << 47U), 0);
+    ASSERT_EQ(::pthread_setattr_default_np(&huge), 0);
+    const auto opened = JointSocket::open(folder_ / "other", 3);
+    ASSERT_EQ(::pthread_setattr_default_np(&before), 0);
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().code, ExitCode::no_resources);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+}
+
 TEST_F(JointSocketTest, is_one_to_a_file_and_takes_its_file_away) {
     EXPECT_FALSE(JointSocket::open(file_, 3)) << "somebody listens";
     {
