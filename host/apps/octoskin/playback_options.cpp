@@ -1,6 +1,8 @@
 #include "host/apps/octoskin/playback_options.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <array>
@@ -20,13 +22,34 @@
 namespace octoskin::app {
 namespace {
 
+/// A recording's own mapping is part of a file that may come from others: what it asks for at once, 8 bytes
+/// for each voxel of an image's box and the map itself, must fit this machine with as much again to spare.
+Status<AppError> check_memory(const MappingConfig& mapping, const FilePlace& file) {
+    const std::uint64_t asked =
+        8 * std::uint64_t{mapping.depth_box_voxels_max} + (std::uint64_t{mapping.map.memory_max_mib} << 20U);
+    const std::uint64_t machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                                  static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    if (asked <= machine / 2) return Done{};
+    return fail(
+        ExitCode::bad_config,
+        fmt::format(
+            "{}: map.memory_max_mib {} and depth_box_voxels_max {} allow {} MiB, and this machine has "
+            "{} MiB: look at the file and, if it is yours, name it by --configuration",
+            file.shown().string(), mapping.map.memory_max_mib, mapping.depth_box_voxels_max, asked >> 20U,
+            machine >> 20U));
+}
+
 /// What --configuration says; else the recording's own mapping.yaml, as the daemon wrote it; else the
 /// default.
 Result<NamedMapping, AppError> configuration_of(const std::string& asked_for,
                                                 const RecordingPaths& recording) {
     if (!asked_for.empty()) return named_mapping(asked_for);
     const FilePlace own = recording.mapping();
-    return own.is_there() ? mapping_of_file(own) : named_mapping(kDefaultMapping);
+    if (!own.is_there()) return named_mapping(kDefaultMapping);
+    auto named = mapping_of_file(own);
+    if (!named) return named;
+    if (auto fits = check_memory(named->mapping, own); !fits) return unexpected(fits.error());
+    return named;
 }
 
 /// Roll, pitch and yaw about the map's fixed x, y and z, as in a rig's rpy_deg.

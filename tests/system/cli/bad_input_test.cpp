@@ -234,6 +234,18 @@ TEST_F(BadInput, a_map_that_runs_out_of_room_says_so_and_fails) {
     EXPECT_THAT(said.output, HasSubstr("no room"));
 }
 
+// A few lines of a foreign recording must not take all memory of the machine.
+TEST_F(BadInput, a_recordings_own_mapping_must_fit_the_machine_unless_it_is_named) {
+    record_short("rec");
+    write(path("rec/mapping.yaml"), "base: robust\nmap: {memory_max_mib: 1000000}\n");
+    const Said refused = octoskin("replay " + path("rec"));
+    EXPECT_EQ(refused.exit_code, 78) << refused.output;
+    EXPECT_THAT(refused.output, HasSubstr("rec/mapping.yaml"));
+    EXPECT_THAT(refused.output, HasSubstr("memory_max_mib"));
+    const Said named = octoskin("replay " + path("rec") + " --configuration " + path("rec/mapping.yaml"));
+    EXPECT_EQ(named.exit_code, 0) << named.output;
+}
+
 TEST_F(BadInput, a_recording_without_its_depth_maps_the_ranges_and_says_so) {
     record_short("rec");
     std::filesystem::remove(path("rec/depth.oni"));
