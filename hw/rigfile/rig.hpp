@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/config/node_config.hpp"
@@ -147,5 +148,8 @@ struct RigError {
 [[nodiscard]] std::string canonical_text(const Rig& rig, const std::string& urdf);
 /// CRC-32 of the canonical text; where the URDF lies does not count.
 [[nodiscard]] std::uint32_t rig_hash(const Rig& rig);
+/// CRC-32 of all that says where in the map a measurement lies: the robot's base, its joints, poses and
+/// optics of sensors and camera, and `robot`, the text of its URDF.
+[[nodiscard]] std::uint32_t placement_crc32(const Rig& rig, std::string_view robot);
 
 }  // namespace octoskin::rig

@@ -1,13 +1,49 @@
 #include <string>
+#include <string_view>
 
 #include "common/wire/crc.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin::rig {
+namespace {
+
+std::uint32_t crc32_of(std::string_view text) {
+    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+/// All of a rig but what places measurements is as in a rig that says nothing.
+Rig placing_part(const Rig& rig) {
+    Rig placing;
+    placing.base_link = rig.base_link;
+    placing.T_map_base = rig.T_map_base;
+    placing.joints.joints = rig.joints.joints;
+    for (const Node& node : rig.nodes) {
+        Node& only_sensors = placing.nodes.emplace_back();
+        only_sensors.config.node_id = node.config.node_id;
+        only_sensors.sensors = node.sensors;
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) {
+            const SensorConfig& config = node.config.sensors.at(i);
+            only_sensors.sensors[i].name.clear();
+            only_sensors.config.sensors.at(i) = {.offset_quarter_mm = config.offset_quarter_mm,
+                                                 .has_offset = config.has_offset,
+                                                 .applies_gain_factor = config.applies_gain_factor,
+                                                 .zone_count = config.zone_count,
+                                                 .zones = config.zones};
+        }
+    }
+    placing.camera = rig.camera;
+    if (placing.camera) placing.camera->rate_hz = 0.0;
+    return placing;
+}
+
+}  // namespace
 
 std::uint32_t rig_hash(const Rig& rig) {
-    const std::string text = canonical_text(rig, "robot.urdf");
-    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return crc32_of(canonical_text(rig, "robot.urdf"));
+}
+
+std::uint32_t placement_crc32(const Rig& rig, std::string_view robot) {
+    return crc32_of(canonical_text(placing_part(rig), "robot.urdf").append(robot));
 }
 
 }  // namespace octoskin::rig

@@ -74,7 +74,8 @@ struct Daemon::Parts {
     std::uint64_t settle_pipeline();
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
     void keep_within(const MapConfig& next);
-    [[nodiscard]] bool take_limits(const MapConfig& next);
+    [[nodiscard]] bool is_placed_as(std::uint32_t placement_crc32) const;
+    [[nodiscard]] bool take_limits(const Settings& next);
     [[nodiscard]] bool go_on_with(Next& next);
     void ask_reload();
     void begin_reload();
@@ -180,10 +181,10 @@ Status<AppError> Daemon::Parts::take_folder() {
 /// Its ages grow by what passed since it was saved, here and until its first measurement.
 void Daemon::Parts::go_on_with(KeptMap kept) {
     for (const std::string& warning : kept.warnings) spdlog::warn("{}", warning);
+    if (kept.is_whole && !is_placed_as(kept.placement_crc32)) kept.map_time.reset();
     const auto passed_s = map_time.begin_with(kept.map, kept.map_time);
-    spdlog::info(
-        "going on with the saved map: {} known voxels, {}", kept.map.known_voxels(),
-        passed_s ? fmt::format("{} s older", *passed_s) : "all of them stale: how old they are is not known");
+    spdlog::info("going on with the saved map: {} known voxels, {}", kept.map.known_voxels(),
+                 passed_s ? fmt::format("{} s older", *passed_s) : "all of them stale");
     pipeline.begin_with(std::move(kept.map));
 }
 
@@ -191,7 +192,9 @@ void Daemon::Parts::go_on_with(KeptMap kept) {
 SnapshotOrigin Daemon::Parts::make_ready_to_save(FusedMap& copy) {
     const HostTime bus = inputs.reckoned_bus_now(monotonic_now());
     map_time.note(copy, bus);
-    return {.mapping_crc32 = settings.recorded.mapping_crc32(), .map_time = map_time.go_on(copy, bus)};
+    return {.mapping_crc32 = settings.recorded.mapping_crc32(),
+            .placement_crc32 = settings.recorded.placement_crc32,
+            .map_time = map_time.go_on(copy, bus)};
 }
 
 void Daemon::Parts::watch() {
@@ -310,10 +313,24 @@ void Daemon::Parts::keep_within(const MapConfig& next) {
     pipeline.limit_map(both);
 }
 
+/// Whether measurements with that placement lie in the map where those of today do. If not, what the map has
+/// may lie elsewhere than the robot finds it: all of it is stale until it is seen again.
+bool Daemon::Parts::is_placed_as(std::uint32_t placement_crc32) const {
+    if (placement_crc32 == settings.recorded.placement_crc32) return true;
+    spdlog::warn(
+        "the rig or the robot's URDF places base, sensors or camera elsewhere than when the map was made: "
+        "all of the "
+        "map is stale until it is seen again; to begin with an empty map, end octoskin, move {} away and "
+        "start it",
+        kMapFilesText);
+    return false;
+}
+
 /// While the map is still the pipeline's: it must not be lost with what there is no memory for.
-bool Daemon::Parts::take_limits(const MapConfig& next) {
+bool Daemon::Parts::take_limits(const Settings& next) {
     try {
-        pipeline.limit_map(next);
+        pipeline.limit_map(next.mapping.map);
+        if (!is_placed_as(next.recorded.placement_crc32)) pipeline.forget_times();
         return true;
     } catch (const std::bad_alloc&) {
         pipeline.limit_map(settings.mapping.map);
@@ -328,7 +345,7 @@ bool Daemon::Parts::go_on_with(Next& next) {
     keep_within(next.settings.mapping.map);
     inputs.prepare_for(next.settings.host.rig);
     const std::uint64_t dropped = settle_pipeline();
-    if (!take_limits(next.settings.mapping.map)) {
+    if (!take_limits(next.settings)) {
         inputs.prepare_for(settings.host.rig);
         return false;
     }

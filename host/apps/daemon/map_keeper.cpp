@@ -59,23 +59,6 @@ Result<Snapshot, std::string> snapshot_of_map(const FilePlace& file, const Mappi
     return std::move(*snapshot);
 }
 
-FilePlace snapshot_draft(const NamedFolder& folder) {
-    return {folder, draft_name_of(kSnapshotFile)};
-}
-
-/// The snapshot of a save that was killed when fused.ot was in its place, and it was not yet: it comes there.
-std::optional<Snapshot> finish_save(const NamedFolder& folder, const MappingConfig& mapping,
-                                    std::uint32_t mapping_crc32,
-                                    const std::optional<std::uint32_t>& map_crc32) {
-    const FilePlace draft = snapshot_draft(folder);
-    auto snapshot = snapshot_of_map(draft, mapping, mapping_crc32, map_crc32);
-    if (!snapshot) return std::nullopt;
-    // If it cannot be moved it is used all the same: the next save replaces it.
-    if (const auto opened = draft.parent_to_write())
-        static_cast<void>(opened->move(draft.filename(), kSnapshotFile));
-    return std::move(*snapshot);
-}
-
 /// `why`: no snapshot is used; empty: there is none.
 Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& file, const std::string& why) {
     auto loaded = load_to_go_on(config, file);
@@ -87,6 +70,17 @@ Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& f
 }
 
 }  // namespace
+
+bool finish_save(const OpenFolder& folder) {
+    const FilePlace draft(folder, draft_name_of(kSnapshotFile));
+    const auto map_crc32 = crc32_of(FilePlace(folder, kMapFile));
+    const auto is_of_map = [&](const FilePlace& snapshot) {
+        const auto origin = origin_of_snapshot_file(snapshot);
+        return map_crc32 && origin && origin->map_crc32 == map_crc32;
+    };
+    if (!draft.is_there() || !is_of_map(draft) || is_of_map(FilePlace(folder, kSnapshotFile))) return false;
+    return static_cast<bool>(folder.move(draft.filename(), kSnapshotFile));
+}
 
 std::string why_no_room(const FusedMap& map, const MapConfig& next) {
     constexpr unsigned kMib = 20;
@@ -116,11 +110,13 @@ MapKeeper::~MapKeeper() {
 
 Result<std::optional<KeptMap>, AppError> MapKeeper::load(const MappingConfig& mapping,
                                                          std::uint32_t mapping_crc32) const {
-    auto kept = find(mapping, mapping_crc32);
     if (const auto opened = work_->folder.open()) {
-        if (const auto to_write = opened->to_write()) remove_leftovers(*to_write);
+        if (const auto to_write = opened->to_write()) {
+            (void)finish_save(*to_write);
+            remove_leftovers(*to_write);
+        }
     }
-    return kept;
+    return find(mapping, mapping_crc32);
 }
 
 Result<std::optional<KeptMap>, AppError> MapKeeper::find(const MappingConfig& mapping,
@@ -147,17 +143,11 @@ Result<KeptMap, AppError> MapKeeper::load_with(const MappingConfig& mapping,
                                                std::uint32_t mapping_crc32) const {
     const FilePlace file(work_->folder, kMapFile);
     const FilePlace snapshot_file(work_->folder, kSnapshotFile);
-    const bool has_file = snapshot_file.is_there();
-    const bool has_draft = snapshot_draft(work_->folder).is_there();
-    if (!has_file && !has_draft) return load_alone(mapping.map, file, {});
-    const auto map_crc32 = crc32_of(file);
-    auto snapshot = snapshot_of_map(snapshot_file, mapping, mapping_crc32, map_crc32);
-    if (!snapshot && has_draft) {
-        if (auto finished = finish_save(work_->folder, mapping, mapping_crc32, map_crc32))
-            snapshot = std::move(*finished);
-    }
-    if (!snapshot) return load_alone(mapping.map, file, has_file ? snapshot.error() : std::string());
-    return KeptMap{std::move(snapshot->state.map), {}, true, snapshot->origin.map_time};
+    if (!snapshot_file.is_there()) return load_alone(mapping.map, file, {});
+    auto snapshot = snapshot_of_map(snapshot_file, mapping, mapping_crc32, crc32_of(file));
+    if (!snapshot) return load_alone(mapping.map, file, snapshot.error());
+    const SnapshotOrigin& origin = snapshot->origin;
+    return KeptMap{std::move(snapshot->state.map), {}, true, origin.map_time, origin.placement_crc32};
 }
 
 void MapKeeper::move_to(NamedFolder folder) {

@@ -41,7 +41,13 @@ struct KeptMap {
     /// With counts and times, from a snapshot; else log-odds alone, and how old they are is not known.
     bool is_whole = false;
     std::optional<BootTime> map_time = {};  ///< of a whole one: when its time was what it is
+    std::uint32_t placement_crc32 = 0;      ///< of a whole one: as in its SnapshotOrigin
 };
+
+/// A save that was killed when fused.ot was in its place and fused.snapshot was not yet is finished. True if
+/// there was one: its draft of the snapshot, which names the fused.ot that is there, came to its place. Of a
+/// folder that no daemon keeps. O(bytes of fused.ot) where there is a draft.
+bool finish_save(const OpenFolder& folder);
 
 class MapKeeper {
   public:

@@ -26,6 +26,7 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
                       .mapping_crc32 = settings.mapping_crc32(),
                       .joints = settings.joints,
                       .first_map = std::nullopt},
+            .placement_crc32 = settings.placement_crc32,
             .first = {copier(pipeline.map()), pipeline.builder().histories()}};
 }
 

@@ -24,6 +24,7 @@ struct RecordedSettings {
     std::string robot;
     std::string mapping;
     std::uint32_t rig_hash = 0;
+    std::uint32_t placement_crc32 = 0;  ///< rig::placement_crc32
     std::size_t joints = 0;
     std::string interface;
     /// Of the mapping's text.

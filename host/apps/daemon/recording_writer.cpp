@@ -235,7 +235,9 @@ Status<std::string> RecordingWriter::Work::keep_first() {
     const auto map = keep_map(begin_.first.map, begin_.paths.first_map());
     if (!map) return unexpected(map.error());
     begin_.order.first_map = *map;
-    const SnapshotOrigin origin{.mapping_crc32 = begin_.order.mapping_crc32, .map_crc32 = *map};
+    const SnapshotOrigin origin{.mapping_crc32 = begin_.order.mapping_crc32,
+                                .placement_crc32 = begin_.placement_crc32,
+                                .map_crc32 = *map};
     const auto saved = save_snapshot(begin_.first, origin, begin_.paths.first_state());
     if (!saved) return unexpected(saved.error().message());
     begin_.order.first_state = *saved;

@@ -23,10 +23,11 @@ namespace octoskin {
 /// What a recording begins with.
 struct RecordingBegin {
     RecordingPaths paths;
-    std::string rig;         ///< the rig file's text; names robot.urdf
-    std::string robot;       ///< the URDF's text
-    std::string mapping;     ///< mapping.yaml's text
-    orderlog::Header order;  ///< but for the checksums of the first map and state
+    std::string rig;                    ///< the rig file's text; names robot.urdf
+    std::string robot;                  ///< the URDF's text
+    std::string mapping;                ///< mapping.yaml's text
+    orderlog::Header order;             ///< but for the checksums of the first map and state
+    std::uint32_t placement_crc32 = 0;  ///< as in a SnapshotOrigin
     MapState first;
 };
 

@@ -1,7 +1,7 @@
 #include "host/apps/daemon/settings.hpp"
 
-#include <fstream>
-#include <iterator>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "host/apps/choosing/named_mapping.hpp"
@@ -15,42 +15,63 @@ namespace octoskin {
 
 namespace {
 
-/// The same as text, for recordings.
-Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
-                                                     const std::string& interface) {
+constexpr int kReadingsMax = 5;
+
+Result<std::string, AppError> robot_text(const rig::Rig& rig) {
     constexpr std::size_t kRobotBytesMax = std::size_t{16} << 20U;  // the largest that is read
     const auto opened = rig.urdf.open();
     auto robot = opened ? opened->read(kRobotBytesMax) : unexpected(opened.error());
-    if (!robot)
-        return unexpected(
-            reading_error(rig.urdf, {ExitCode::bad_config, rig.urdf.shown().string() + ": cannot be read"}));
-    RecordedSettings recorded{.rig = rig::canonical_text(rig, "robot.urdf"),
-                              .robot = std::move(*robot),
-                              .mapping = mapping_text(mapping),
-                              .rig_hash = rig::rig_hash(rig),
-                              .joints = rig.joints.joints.size(),
-                              .interface = interface};
-    return recorded;
+    if (robot) return std::move(*robot);
+    return unexpected(
+        reading_error(rig.urdf, {ExitCode::bad_config, rig.urdf.shown().string() + ": cannot be read"}));
 }
 
-}  // namespace
+/// The same as text, for recordings.
+Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
+                                                     const std::string& interface) {
+    auto robot = robot_text(rig);
+    if (!robot) return unexpected(robot.error());
+    const std::uint32_t placement = rig::placement_crc32(rig, *robot);
+    return RecordedSettings{.rig = rig::canonical_text(rig, "robot.urdf"),
+                            .robot = std::move(*robot),
+                            .mapping = mapping_text(mapping),
+                            .rig_hash = rig::rig_hash(rig),
+                            .placement_crc32 = placement,
+                            .joints = rig.joints.joints.size(),
+                            .interface = interface};
+}
 
-Result<Settings, AppError> read_settings(const DaemonRequest& request) {
+Result<Settings, AppError> settings_of(const rig::Rig& rig, const DaemonRequest& request) {
     const auto configuration = named_mapping(request.configuration);
     if (!configuration) return unexpected(configuration.error());
-    const auto rig = read_given_rig(request.rig, request.robot);
-    if (!rig) return unexpected(rig.error());
-    auto host = make_host_setup(*rig);
+    auto host = make_host_setup(rig);
     if (!host) return unexpected(reading_error(ExitCode::bad_config, host.error()));
-    if (!request.camera_uri.empty() && !rig->camera) {
+    if (!request.camera_uri.empty() && !rig.camera) {
         return fail(ExitCode::usage,
                     "--camera " + request.camera_uri + ": " + request.rig.string() +
                         " has no camera, which says where it is and what it sees: give it one, "
                         "or leave --camera out");
     }
-    auto recorded = recorded_settings(*rig, configuration->mapping, request.interface);
+    auto recorded = recorded_settings(rig, configuration->mapping, request.interface);
     if (!recorded) return unexpected(recorded.error());
     return Settings{std::move(host).value(), configuration->mapping, std::move(recorded).value()};
+}
+
+}  // namespace
+
+/// The robot's file is read for its links, its body, its joints and as text. It may be saved anew meanwhile:
+/// what is read counts only if it was the same file before all of it and behind.
+Result<Settings, AppError> read_settings(const DaemonRequest& request) {
+    std::optional<std::string> robot_before;
+    for (int attempt = 0; attempt < kReadingsMax; ++attempt) {
+        const auto rig = read_given_rig(request.rig, request.robot);
+        if (!rig) return unexpected(rig.error());
+        auto settings = settings_of(*rig, request);
+        if (!settings || settings->recorded.robot == robot_before) return settings;
+        robot_before = std::move(settings->recorded.robot);
+    }
+    return fail(ExitCode::bad_config,
+                request.rig.string() + ": its robot's URDF was saved anew each time that it was read");
 }
 
 Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Settings& settings) {

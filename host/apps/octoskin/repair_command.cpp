@@ -8,6 +8,7 @@
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/daemon/folder_lock.hpp"
+#include "host/apps/daemon/map_keeper.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/recording/file_lock.hpp"
 #include "host/apps/recording/file_set.hpp"
@@ -34,10 +35,9 @@ bool is_finished(const OpenFolder& folder) {
     return true;
 }
 
-/// Drafts of killed processes, of which nothing had come to its place. Of a process that lives they are its
-/// own: it holds the lock,
-/// a daemon that of the folder of maps. `stayed`: counts those that cannot be removed, each of which is
-/// named.
+/// A save of the daemon's is finished, and drafts of killed processes are removed, of which nothing had come
+/// to its place. Of a process that lives they are its own: it holds the lock, a daemon that of the folder of
+/// maps. `stayed`: counts those that cannot be removed, each of which is named.
 bool is_cleared(const OpenFolder& folder, std::size_t& stayed) {
     const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     const auto lock_of_maps = FileLock::take(FilePlace(folder, FolderLock::kFile), FileLock::Kind::exclusive);
@@ -46,6 +46,9 @@ bool is_cleared(const OpenFolder& folder, std::size_t& stayed) {
         spdlog::error("{}", error.message());
         ++stayed;
     };
+    const bool is_save_finished = finish_save(folder);
+    if (is_save_finished)
+        print("{}: fused.snapshot, which goes with fused.ot, is in its place\n", folder.shown().string());
     std::size_t drafts = remove_leftovers(folder, complain);
     if (folder.kind_of(FileSet::kDraftFolder) == EntryKind::folder) {
         const auto gone = folder.remove_all(FileSet::kDraftFolder);
@@ -53,7 +56,7 @@ bool is_cleared(const OpenFolder& folder, std::size_t& stayed) {
         if (!gone) complain(gone.error());
     }
     if (drafts > 0) print("{}: drafts of killed runs are removed: {}\n", folder.shown().string(), drafts);
-    return drafts > 0;
+    return drafts > 0 || is_save_finished;
 }
 
 bool is_repaired(const OpenFolder& folder, std::size_t& stayed) {

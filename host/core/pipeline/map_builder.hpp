@@ -54,6 +54,8 @@ class MapBuilder {
     /// The map of all sensors waits for its next measurement: FusedMap::begin_to_wait. No replay does that:
     /// to be called behind `forget_motion`.
     void begin_to_wait() noexcept { own_map().begin_to_wait(); }
+    /// FusedMap::forget_times, of the map of all sensors.
+    void forget_times() { own_map().forget_times(); }
     /// Of a map that waits for the time to go on: FusedMap::wait.
     void wait(std::int64_t seconds);
     /// Other limits for it, at the same resolution (asserted).

@@ -70,6 +70,8 @@ class Pipeline {
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
     /// The same with what the range sensors read before: MapBuilder::begin_with.
     [[nodiscard]] std::size_t begin_with(MapState state) { return builder_.begin_with(std::move(state)); }
+    /// All of the fused map is stale until it is seen again: FusedMap::forget_times. Throws std::bad_alloc.
+    void forget_times() { builder_.forget_times(); }
     /// Of a map that was saved, until its first measurement: FusedMap::wait.
     void wait(std::int64_t seconds) { builder_.wait(seconds); }
     /// The machine slept, and the clocks of what comes stood still, or are those of others: as where the time

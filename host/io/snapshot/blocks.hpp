@@ -14,7 +14,7 @@
 namespace octoskin::snapshot {
 
 /// What the file begins with: 16 bytes, the last of which is the version.
-inline constexpr std::string_view kMagic = "octoskin-state/1";
+inline constexpr std::string_view kMagic = "octoskin-state/2";
 /// Of a block's bytes. A record of a brick has 2.1 kB at most, one of a zone's readings far less than this.
 inline constexpr std::size_t kPayloadMax = std::size_t{16} << 20U;
 

@@ -27,6 +27,7 @@ struct BootTime {
 /// What a snapshot belongs to.
 struct SnapshotOrigin {
     std::uint32_t mapping_crc32 = 0;              ///< of mapping_text()
+    std::uint32_t placement_crc32 = 0;            ///< rig::placement_crc32: where in the map measurements lay
     std::optional<std::uint32_t> map_crc32 = {};  ///< of the .ot saved with it; empty: there is none
     std::optional<BootTime> map_time = {};        ///< when the map's time was what it says; empty: not known
     friend bool operator==(const SnapshotOrigin&, const SnapshotOrigin&) = default;
@@ -60,5 +61,9 @@ void write_snapshot(const MapState& state, const SnapshotOrigin& origin, const B
 [[nodiscard]] Result<Snapshot, SnapshotError> decode_snapshot(std::string_view bytes,
                                                               const MappingConfig& mapping,
                                                               std::uint32_t mapping_crc32);
+
+/// What it belongs to, by its first bytes (kSnapshotHeadMax are enough); empty if they are not of a snapshot.
+[[nodiscard]] std::optional<SnapshotOrigin> origin_of_snapshot(std::string_view bytes);
+inline constexpr std::size_t kSnapshotHeadMax = 256;
 
 }  // namespace octoskin

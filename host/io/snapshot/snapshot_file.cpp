@@ -1,7 +1,9 @@
 #include "host/io/snapshot/snapshot_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <array>
 #include <new>
 #include <string>
 #include <utility>
@@ -45,6 +47,15 @@ Result<Snapshot, SnapshotError> load_snapshot(const FilePlace& file, const Mappi
 } catch (const std::bad_alloc&) {
     return unexpected(
         SnapshotError{SnapshotFault::no_room, file.shown().string() + ": there is no memory to read it"});
+}
+
+std::optional<SnapshotOrigin> origin_of_snapshot_file(const FilePlace& file) {
+    const auto opened = file.open();
+    if (!opened) return std::nullopt;
+    std::array<char, kSnapshotHeadMax> bytes{};
+    const ssize_t count = ::pread(opened->descriptor(), bytes.data(), bytes.size(), 0);
+    if (count <= 0) return std::nullopt;
+    return origin_of_snapshot({bytes.data(), static_cast<std::size_t>(count)});
 }
 
 }  // namespace octoskin

@@ -25,4 +25,7 @@ namespace octoskin {
                                                             const MappingConfig& mapping,
                                                             std::uint32_t mapping_crc32);
 
+/// As origin_of_snapshot, whatever lies behind the head; empty, too, if the file cannot be read.
+[[nodiscard]] std::optional<SnapshotOrigin> origin_of_snapshot_file(const FilePlace& file);
+
 }  // namespace octoskin

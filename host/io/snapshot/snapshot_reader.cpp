@@ -43,6 +43,40 @@ bool are_of_one_layer(const CountLayer& counts) {
     return are;
 }
 
+struct Head {
+    SnapshotOrigin origin;
+    double resolution_m = 0.0;
+    bool has_undated = false;
+    VoxelAges::Clock clock;
+};
+
+/// Empty if it cannot be one.
+std::optional<Head> read_head(const Block& block) {
+    ByteReader reader(block.payload);
+    Head head;
+    head.origin.mapping_crc32 = reader.get<std::uint32_t>();
+    head.origin.placement_crc32 = reader.get<std::uint32_t>();
+    head.resolution_m = reader.get<double>();
+    const bool has_map = reader.get_flag();
+    const auto map_crc32 = reader.get<std::uint32_t>();
+    if (has_map) head.origin.map_crc32 = map_crc32;
+    const bool has_time = reader.get_flag();
+    BootTime time;
+    for (std::uint8_t& byte : time.boot) byte = reader.get<std::uint8_t>();
+    time.since_boot = Nanoseconds{reader.get<std::int64_t>()};
+    if (has_time) head.origin.map_time = time;
+    head.has_undated = reader.get_flag();
+    head.clock.has_begun = reader.get_flag();
+    head.clock.waits = reader.get_flag();
+    head.clock.runs_for_s = reader.get<std::int64_t>();
+    head.clock.waited_s = reader.get<std::int64_t>();
+    head.clock.zero_s = reader.get<std::int64_t>();
+    head.clock.now = reader.get<std::uint32_t>();
+    const bool is_possible = reader.is_sound() && reader.is_over() && VoxelAges::is_possible(head.clock) &&
+                             time.since_boot >= Nanoseconds{0};
+    return is_possible ? std::optional(head) : std::nullopt;
+}
+
 class Decoder {
   public:
     Decoder(std::string_view bytes, const MappingConfig& mapping, std::uint32_t mapping_crc32)
@@ -112,31 +146,15 @@ class Decoder {
     }
 
     Taken take_head(const Block& block) {
-        ByteReader reader(block.payload);
-        origin_.mapping_crc32 = reader.get<std::uint32_t>();
-        const auto resolution_m = reader.get<double>();
-        const bool has_map = reader.get_flag();
-        const auto map_crc32 = reader.get<std::uint32_t>();
-        if (has_map) origin_.map_crc32 = map_crc32;
-        const bool has_time = reader.get_flag();
-        BootTime time;
-        for (std::uint8_t& byte : time.boot) byte = reader.get<std::uint8_t>();
-        time.since_boot = Nanoseconds{reader.get<std::int64_t>()};
-        if (has_time) origin_.map_time = time;
-        has_undated_ = reader.get_flag();
-        clock_.has_begun = reader.get_flag();
-        clock_.waits = reader.get_flag();
-        clock_.runs_for_s = reader.get<std::int64_t>();
-        clock_.waited_s = reader.get<std::int64_t>();
-        clock_.zero_s = reader.get<std::int64_t>();
-        clock_.now = reader.get<std::uint32_t>();
+        const auto head = read_head(block);
+        if (!head) return records(block, false);
+        origin_ = head->origin;
+        has_undated_ = head->has_undated;
+        clock_ = head->clock;
         has_head_ = true;
-        const bool is_possible = reader.is_sound() && reader.is_over() && VoxelAges::is_possible(clock_) &&
-                                 time.since_boot >= Nanoseconds{0};
-        if (!is_possible) return records(block, false);
-        if (resolution_m != mapping_.map.resolution_m)
+        if (head->resolution_m != mapping_.map.resolution_m)
             return fail(SnapshotFault::other_mapping, block.at,
-                        fmt::format("its voxels are {} m, the mapping's are {} m", resolution_m,
+                        fmt::format("its voxels are {} m, the mapping's are {} m", head->resolution_m,
                                     mapping_.map.resolution_m));
         if (origin_.mapping_crc32 != mapping_crc32_)
             return fail(SnapshotFault::other_mapping, block.at,
@@ -193,6 +211,15 @@ class Decoder {
 Result<Snapshot, SnapshotError> decode_snapshot(std::string_view bytes, const MappingConfig& mapping,
                                                 std::uint32_t mapping_crc32) {
     return Decoder(bytes, mapping, mapping_crc32).decode();
+}
+
+std::optional<SnapshotOrigin> origin_of_snapshot(std::string_view bytes) {
+    BlockReader blocks(bytes);
+    if (!blocks.has_magic()) return std::nullopt;
+    const auto block = blocks.next();
+    if (!block || block->kind != BlockKind::head) return std::nullopt;
+    const auto head = read_head(*block);
+    return head ? std::optional(head->origin) : std::nullopt;
 }
 
 }  // namespace octoskin

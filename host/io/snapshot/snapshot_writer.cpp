@@ -10,6 +10,7 @@ using namespace snapshot;
 
 void put_head(ByteWriter& writer, const FusedMap& map, const SnapshotOrigin& origin) {
     writer.put(origin.mapping_crc32);
+    writer.put(origin.placement_crc32);
     writer.put(map.resolution_m());
     writer.put_flag(origin.map_crc32.has_value());
     writer.put(origin.map_crc32.value_or(0));

@@ -13,6 +13,7 @@
 #include <sstream>
 #include <vector>
 
+#include "host/apps/daemon/map_keeper.hpp"
 #include "tests/system/cli/folder_states.hpp"
 #include "tests/system/cli/folder_traps.hpp"
 #include "tests/system/cli/program.hpp"
@@ -183,6 +184,26 @@ TEST_F(FolderWalk, drafts_of_a_daemon_that_keeps_its_map_there_stay) {
     ::close(lock);
     EXPECT_EQ(octoskin("repair " + maps.string()).exit_code, 0);
     EXPECT_FALSE(fs::exists(maps / ".fused.ot.octoskin-part"));
+}
+
+// Killed behind the rename of fused.ot: without fused.snapshot all of the map would be stale.
+TEST_F(FolderWalk, a_killed_save_of_the_map_is_finished_by_a_repair) {
+    const fs::path maps = directory_ / "maps";
+    const fs::path draft = maps / ".fused.snapshot.octoskin-part";
+    fs::create_directories(maps);
+    FusedMap map(MapConfig{});
+    ASSERT_TRUE(map.set_cube({.lowest = {64, 0, 0}, .height = 5}, 1.0F));
+    ASSERT_EQ(MapKeeper::write_map(map, {}, NamedFolder(maps)), "");
+    const std::string snapshot = content(maps / "fused.snapshot");
+    fs::rename(maps / "fused.snapshot", draft);
+    EXPECT_EQ(octoskin("repair " + maps.string()).exit_code, 0);
+    EXPECT_FALSE(fs::exists(draft));
+    EXPECT_EQ(content(maps / "fused.snapshot"), snapshot);
+
+    fs::rename(maps / "fused.snapshot", draft);
+    write(maps / "fused.ot", "another map");
+    EXPECT_EQ(octoskin("repair " + maps.string()).exit_code, 0);
+    EXPECT_FALSE(fs::exists(draft) || fs::exists(maps / "fused.snapshot"));
 }
 
 TEST_F(FolderWalk, drafts_of_killed_runs_go_with_a_repair) {

@@ -1,4 +1,5 @@
 // What a daemon's map is worth after a restart: as old as it is, or stale where that is not known.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -12,6 +13,7 @@
 #include "host/apps/daemon/map_keeper.hpp"
 #include "host/apps/querying/query_request.hpp"
 #include "host/io/mapping/mapping_file.hpp"
+#include "hw/rigfile/rig.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 
 namespace octoskin::test {
@@ -41,12 +43,18 @@ class Restarting : public testing::Test {
         layers.ages = VoxelAges(clock, std::move(stamps));
         return {fast_mapping().map, std::move(layers), false};
     }
+    static std::uint32_t placement_of(const std::filesystem::path& rig_file) {
+        const auto rig = rig::read_rig(rig_file);
+        EXPECT_TRUE(rig) << rig.error().message();
+        return rig ? rig::placement_crc32(*rig, testing_support::ScratchFolder::read(rig->urdf.shown())) : 0;
+    }
     /// As a daemon of then would have left it.
-    void save(const std::optional<BootTime>& map_time) const {
+    void save(const std::optional<BootTime>& map_time, const std::filesystem::path& rig = kExperiment) const {
         std::filesystem::create_directories(folder_ / "maps");
         const std::string text = mapping_text(fast_mapping());
         const SnapshotOrigin origin{
             .mapping_crc32 = crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}),
+            .placement_crc32 = placement_of(rig),
             .map_time = map_time};
         EXPECT_EQ(MapKeeper::write_map(free_map(), origin, NamedFolder(folder_ / "maps")), "");
     }
@@ -61,15 +69,27 @@ class Restarting : public testing::Test {
         RunningDaemon daemon(folder_, bus.end_of_daemon(), {"--no-camera"});
         EXPECT_TRUE(daemon.wait_until([](const Json& status) { return !status.is_null(); }, 15s));
         std::this_thread::sleep_for(runs_for);
+        Answer answer = ask(daemon);
+        daemon.signal(SIGTERM);
+        EXPECT_EQ(daemon.wait(10s), 0) << daemon.log();
+        answer.log = daemon.log();
+        return answer;
+    }
+    Answer ask(const RunningDaemon& daemon) const {
         QueryRequest request;
         request.path = {{0.0, 0.0, 0.0, -0.1, 0.0, 1.6, 0.0}};
         const auto line = ask_daemon(folder_ / "control", to_line(request), 30s);
         EXPECT_TRUE(line) << daemon.log();
         const Json answer = line ? Json::parse(*line) : Json::object();
-        daemon.signal(SIGTERM);
-        EXPECT_EQ(daemon.wait(10s), 0) << daemon.log();
         return {answer.value("state", ""), answer.value(Json::json_pointer("/legs/0/evidence/age_s"), Json()),
                 daemon.log()};
+    }
+    /// The experiment's rig, called so and with its base so many metres further along x.
+    std::filesystem::path rig_moved_by(double x_m, const std::string& name) const {
+        return folder_.write("rig.yaml",
+                             fmt::format("extends: {}\nname: {}\nT_map_base: {{xyz_m: [{}, 0, 0], "
+                                         "rpy_deg: [0, 0, 0]}}\n",
+                                         kExperiment, name, x_m));
     }
     static BootTime ago(Nanoseconds time) {
         BootTime then = boot_now().value();
@@ -107,6 +127,35 @@ TEST_F(Restarting, of_the_machine_leaves_everything_stale) {
         EXPECT_EQ(answer.state, "stale") << answer.log;
         EXPECT_TRUE(answer.age_s.is_null()) << answer.log;
     }
+}
+
+// What the map has may then lie elsewhere than the robot finds it.
+TEST_F(Restarting, with_a_rig_that_places_the_base_elsewhere_leaves_everything_stale) {
+    save(ago(1s), rig_moved_by(0.2, "moved"));
+    EXPECT_EQ(ask().state, "stale");
+}
+
+TEST_F(Restarting, is_not_needed_for_a_rig_that_is_read_anew_and_places_the_base_elsewhere) {
+    save(ago(1s));
+    const auto rig = rig_moved_by(0.0, "first");
+    const SilentBus bus;
+    RunningDaemon daemon(folder_, bus.end_of_daemon(), {"--no-camera"}, rig);
+    const auto becomes = [&](const std::string& name) {
+        return daemon.wait_until(
+            [&](const Json& status) { return !status.is_null() && status["rig"] == name; }, 15s);
+    };
+    ASSERT_TRUE(becomes("first")) << daemon.log();
+    EXPECT_EQ(ask(daemon).state, "free") << "the rig that it was saved with, but for its name";
+    (void)rig_moved_by(0.0, "second");
+    daemon.signal(SIGHUP);
+    ASSERT_TRUE(becomes("second")) << daemon.log();
+    EXPECT_EQ(ask(daemon).state, "free");
+    (void)rig_moved_by(0.2, "third");
+    daemon.signal(SIGHUP);
+    ASSERT_TRUE(becomes("third")) << daemon.log();
+    EXPECT_EQ(ask(daemon).state, "stale");
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(10s), 0) << daemon.log();
 }
 
 TEST_F(Restarting, with_a_damaged_snapshot_goes_on_from_the_ot_and_says_so) {

@@ -376,6 +376,31 @@ TEST_F(RigText, node_hash_changes_with_what_firmware_uses_and_with_nothing_else_
     }
 }
 
+// A saved map is stale where this changes.
+TEST_F(RigText, placement_changes_with_what_says_where_a_measurement_lies_and_with_nothing_else) {
+    const std::set<std::string> placing{
+        "xyz_m: [0.002990",    "xyz_m: [2.7, 0, 1.8]",  "xyz_m: [0.05, 0.01, 0.02]",
+        "rpy_deg: [0, 89, 1]", "offset_m: 0.003",       "fx_px: 60.25",
+        "k1: 0.125",           "half_angle_deg: 13.25", "centre_spad: 151"};
+    const std::set<std::string> other{"name: full",           "name: front",
+                                      "rate_hz: 100.5",       "phase_us: 700",
+                                      "timing_budget_ms: 33", "sigma_limit_mm: 45.25",
+                                      "arm: 0.015625",        "max_m: 3.9",
+                                      "node_id: 9",           "pinned_build_id: 0x1a2b3c4d"};
+    const Rig before = read_good(kFullRig);
+    std::size_t seen = 0;
+    for (const Change& change : kChanges) {
+        if (!placing.contains(change.from) && !other.contains(change.from)) continue;
+        ++seen;
+        const Rig after = read_good(replaced(kFullRig, change.from, change.to));
+        EXPECT_EQ(placement_crc32(after, "robot") != placement_crc32(before, "robot"),
+                  placing.contains(change.from))
+            << change.from;
+    }
+    EXPECT_GE(seen, placing.size() + other.size());
+    EXPECT_NE(placement_crc32(before, "another robot"), placement_crc32(before, "robot"));
+}
+
 // ST ULD 3.5.2's budgets, less the 500 ms that the wire cannot carry; in medium mode, which it lacks, those
 // that the datasheet allows there.
 TEST_F(RigText, each_mode_takes_its_own_budgets_and_no_other) {

@@ -119,7 +119,7 @@ FusedMap dated_map() {
 constexpr std::uint32_t kMapping = 5;
 
 SnapshotOrigin origin_now() {
-    return {.mapping_crc32 = kMapping, .map_time = BootTime{{1, 2, 3}, Nanoseconds{4}}};
+    return {.mapping_crc32 = kMapping, .placement_crc32 = 7, .map_time = BootTime{{1, 2, 3}, Nanoseconds{4}}};
 }
 
 TEST(MapKeeper, loads_counts_and_times_that_it_saved_and_when_that_was) {
@@ -135,6 +135,7 @@ TEST(MapKeeper, loads_counts_and_times_that_it_saved_and_when_that_was) {
     EXPECT_TRUE((*kept)->is_whole);
     EXPECT_TRUE((*kept)->warnings.empty());
     EXPECT_EQ((*kept)->map_time, origin_now().map_time);
+    EXPECT_EQ((*kept)->placement_crc32, origin_now().placement_crc32);
     const auto bytes = [](const FusedMap& of) { return encode_snapshot({of.copy(), {}}, {}); };
     EXPECT_TRUE(bytes((*kept)->map) == bytes(map));
 }

@@ -24,7 +24,8 @@ using testing_support::ScratchFolder;
 constexpr std::uint32_t kMapping = 0x12345678;
 
 SnapshotOrigin origin() {
-    SnapshotOrigin origin{.mapping_crc32 = kMapping, .map_crc32 = 0xCAFE, .map_time = BootTime{}};
+    SnapshotOrigin origin{
+        .mapping_crc32 = kMapping, .placement_crc32 = 0xBEEF, .map_crc32 = 0xCAFE, .map_time = BootTime{}};
     origin.map_time->boot.fill(7);
     origin.map_time->since_boot = Nanoseconds{123'456'789};
     return origin;
@@ -250,7 +251,7 @@ TEST(Snapshot, of_something_else_is_refused_by_what_it_is) {
     EXPECT_EQ(fault_of_bytes(""), SnapshotFault::no_snapshot);
     EXPECT_EQ(fault_of_bytes("# Octomap OcTree file\n"), SnapshotFault::no_snapshot);
     std::string later = bytes;
-    later[snapshot::kMagic.size() - 1] = '2';
+    later[snapshot::kMagic.size() - 1] = '9';
     EXPECT_EQ(fault_of_bytes(later), SnapshotFault::other_version);
     const auto of_other = decode_snapshot(bytes, quickly_aging(), kMapping + 1);
     ASSERT_FALSE(of_other);
