@@ -10,6 +10,7 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
+#include "host/core/depth/repeated_images.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helper_process.hpp"
 
@@ -129,6 +130,7 @@ void CameraFeed::watch_camera() {
     if (!header) return note_closed(with_complaint(not_opened(uri_), *process));
     note_opened(header->rate_mhz * 1e-3);
     openni2::FramePipe frames(process->descriptor(), silence_max_, end_);
+    RepeatedImages images;
     while (!is_ending_) {
         auto frame = frames.read_frame(header->size);
         if (!frame || !frame->has_value()) {
@@ -140,7 +142,14 @@ void CameraFeed::watch_camera() {
             continue;
         }
         const HostTime captured{static_cast<std::int64_t>((*frame)->timestamp_us) * 1000};
-        put(DepthFrame{captured, header->size.width, header->size.height, std::move((*frame)->depth_mm)});
+        DepthFrame taken{captured, header->size.width, header->size.height, std::move((*frame)->depth_mm)};
+        if (is_oni_name(uri_) || !images.take(taken)) {
+            put(std::move(taken));
+            continue;
+        }
+        note_repeated();
+        if (images.has_value() && images.lasted() > silence_max_)
+            return note_closed(with_complaint("it shows one image again and again", *process));
     }
 }
 
@@ -157,6 +166,13 @@ void CameraFeed::note_untimed() {
     ++record_.frames;
     ++record_.untimed;
     record_.newest_untimed = monotonic_now();
+}
+
+void CameraFeed::note_repeated() {
+    const std::lock_guard lock(mutex_);
+    ++record_.frames;
+    ++record_.repeated;
+    record_.newest_repeated = monotonic_now();
 }
 
 void CameraFeed::put(DepthFrame frame) {

@@ -22,12 +22,14 @@ struct CameraRecord {
     std::uint64_t frames = 0;        ///< that came
     std::uint64_t displaced = 0;     ///< newer ones came before these were taken
     std::uint64_t untimed = 0;       ///< whose time of capture could not be told: late, or the first ones
+    std::uint64_t repeated = 0;      ///< equal to the last ones bit by bit (RepeatedImages): not used
     std::uint64_t opened = 0;        ///< times
     double rate_hz = 0.0;            ///< of the mode that it was put into; 0: not told, as of a file
     HostTime begun;                  ///< looked for since then
     std::optional<HostTime> newest;  ///< that has a time
-    std::optional<HostTime> newest_untimed;  ///< came
-    std::string why;                         ///< not open, for a person
+    std::optional<HostTime> newest_untimed;   ///< came
+    std::optional<HostTime> newest_repeated;  ///< came
+    std::string why;                          ///< not open, for a person
 };
 
 class CameraFeed {
@@ -39,9 +41,10 @@ class CameraFeed {
 
     /// `uri`: an OpenNI2 device, or the path of an .oni file that is played at its own speed, again and
     /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
-    /// opened anew, and so is one whose frames all come late (openni2::CaptureClock::is_lost).
-    /// `helper`: the program that reads the camera, in place of octoskin-camera. `mode`: what a device is put
-    /// into, if it has such a mode. Throws std::system_error if there is no thread or descriptor to be had.
+    /// opened anew, and so is one whose frames all come late (openni2::CaptureClock::is_lost), and a device
+    /// that shows one image with values for so long: a film may. `helper`: the program that reads the camera,
+    /// in place of octoskin-camera. `mode`: what a device is put into, if it has such a mode. Throws
+    /// std::system_error if there is no thread or descriptor to be had.
     CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
                std::optional<std::filesystem::path> helper = {},
                std::optional<openni2::CameraMode> mode = {});
@@ -68,6 +71,7 @@ class CameraFeed {
     void put(DepthFrame frame);
     void note_opened(double rate_hz);
     void note_untimed();
+    void note_repeated();
     void note_closed(const std::string& why);
     void wait_before_retry();
 

@@ -190,6 +190,7 @@ Json camera_json(const DaemonView& view) {
             {"frames", view.camera->frames},
             {"displaced", view.camera->displaced},
             {"untimed", view.camera->untimed},
+            {"repeated", view.camera->repeated},
             {"opened", view.camera->opened},
             {"is_off", witness != nullptr ? Json(error != nullptr) : Json(nullptr)},
             {"turned_deg", error != nullptr ? axes(error->turn_deg) : Json(nullptr)},

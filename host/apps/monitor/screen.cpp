@@ -191,7 +191,7 @@ class Screen {
                                   age(at(camera, "age_s")))
                     : "camera closed: " + text(at(camera, "why")),
             is_open ? Emphasis::title : Emphasis::bad);
-        add_nonzero("camera", {"displaced", "untimed", "opened"});
+        add_nonzero("camera", {"displaced", "untimed", "repeated", "opened"});
     }
     void add_recording() {
         const Json& recording = at(now_, "recording");

@@ -274,8 +274,14 @@ constexpr std::array kStatusMeanings = {
     Meaning{"camera", "untimed",
             "frames whose time of capture could not be told: over 0.5 s late, or the first ones, until five "
             "agree on its clock, for 5 s at most"},
-    Meaning{"camera", "opened",
-            "how often it was opened; over once: it was gone, fell silent, or all its frames came late"},
+    Meaning{
+        "camera", "repeated",
+        "frames that were not used, as they equal more than five before them to the last bit, over 0.5 s: "
+        "the camera hangs, or its lens is covered"},
+    Meaning{
+        "camera", "opened",
+        "how often it was opened; over once: it was gone, fell silent, showed one image again and again, or "
+        "all its frames came late"},
     Meaning{"camera", "is_off",
             "one error of its pose or depth explains what several sensors contradict, and no sensor is named "
             "meanwhile; null: its images are not compared with ranges"},

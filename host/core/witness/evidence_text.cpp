@@ -93,7 +93,9 @@ std::string describe(const CameraError& error, std::size_t sensors) {
                   error.turn_deg.norm(), 100.0 * error.shift_m.norm(), 100.0 * (error.depth_scale - 1.0));
     return "not where the rig has it, or its scale is off: that explains what " + std::to_string(sensors) +
            " sensors contradict (by an estimate " + by.data() +
-           "): measure its pose anew (docs/method.md, \"A sensor that contradicts the camera\")";
+           "). Compare the arm's posture with its joint states first, as a joint whose zero is off looks the "
+           "same; else "
+           "measure the camera's pose anew (docs/method.md, \"A sensor that contradicts the camera\")";
 }
 
 }  // namespace octoskin

@@ -131,6 +131,9 @@ class WallStream final : public oni::driver::StreamBase {
             std::fill_n(first, half, is_mirrored_ ? seen.right_mm : seen.left_mm);
             std::fill_n(first + half, half, is_mirrored_ ? seen.left_mm : seen.right_mm);
         }
+        // Noise: a camera whose images are equal to the last bit hangs.
+        OniDepthPixel& last = pixels[mode_.resolutionX * mode_.resolutionY - 1];
+        if (last > 0) last = static_cast<OniDepthPixel>(last + index % 2);
         raiseNewFrame(frame);
         getServices().releaseFrame(frame);
     }

@@ -45,6 +45,11 @@ std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz
                 "camera: frames come, none for three periods with a time that could be told: they come "
                 "late; is this machine too busy?"};
         }
+        if (camera.newest_repeated && now - *camera.newest_repeated <= 3 * period) {
+            return Problem{"camera repeats",
+                           "camera: its images are equal to the last bit (repeated) and not used: it hangs, "
+                           "or its lens is covered"};
+        }
         return Problem{"camera silent", "camera: no frame for three periods"};
     }
     return std::nullopt;

@@ -1,9 +1,12 @@
 // Cameras that behave and that do not: shell scripts in the helper's place.
 #include "host/apps/daemon/camera_feed.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/support/scratch_folder.hpp"
 
@@ -122,6 +125,46 @@ TEST_F(CameraFeedTest, keeps_the_newest_of_what_nobody_takes_and_counts_the_othe
         EXPECT_EQ(frame->captured, HostTime{us * 1'000});
     }
     EXPECT_FALSE(feed.take());
+}
+
+std::string frame_at(int hundredths_s, char pixel) {
+    std::string script = "printf '";
+    for (std::int64_t us = std::int64_t{10'000} * hundredths_s, byte = 0; byte < 8; ++byte, us /= 256)
+        script += fmt::format("\\{:03o}", us % 256);
+    return script + fmt::format("\\000\\000\\{:03o}\\000'\n", static_cast<int>(pixel));
+}
+
+TEST_F(CameraFeedTest, hands_over_no_image_that_repeats_the_ones_before_for_long) {
+    std::string script = kHeader;
+    for (int i = 0; i < 10; ++i) script += frame_at(10 * i, 'a');  // from the 7th on
+    script += frame_at(100, 'b');
+    CameraFeed feed("", 100s, camera(script + "exec sleep 100"));
+    std::vector<HostTime> taken;
+    ASSERT_TRUE(wait_until([&] {
+        while (const auto frame = feed.take()) taken.push_back(frame->captured);
+        return feed.record().frames == 11 && !taken.empty() && taken.back() == HostTime{1'000'000'000};
+    }));
+    EXPECT_EQ(feed.record().repeated, 4U);
+    EXPECT_TRUE(feed.record().newest_repeated);
+    EXPECT_EQ(feed.record().opened, 1U);
+}
+
+TEST_F(CameraFeedTest, opens_a_camera_anew_that_repeats_an_image_unless_it_is_empty_or_a_film) {
+    const auto repeating = [](char pixel) {
+        std::string script = kHeader;
+        for (int i = 0; i < 30; ++i) script += frame_at(10 * i, pixel);
+        return script + "exec sleep 100";
+    };
+    CameraFeed hung("", 2s, camera(repeating('a')));
+    EXPECT_TRUE(wait_until([&] { return hung.record().repeated > 0 && hung.record().opened > 1; }))
+        << hung.record().opened;
+    const CameraFeed covered("", 100s, camera(repeating('\0')));
+    EXPECT_TRUE(wait_until([&] { return covered.record().frames == 30; }));
+    EXPECT_EQ(covered.record().repeated, 24U);
+    EXPECT_EQ(covered.record().opened, 1U);
+    const CameraFeed film(scratch_.write("still.oni", "").string(), 100s, camera(repeating('a')));
+    EXPECT_TRUE(wait_until([&] { return film.record().frames == 30; }));
+    EXPECT_EQ(film.record().repeated, 0U);
 }
 
 TEST_F(CameraFeedTest, tells_the_helper_which_camera_and_which_mode) {

@@ -62,6 +62,18 @@ TEST(CameraProblem, is_that_frames_have_no_time_any_more_while_they_come) {
     EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");
 }
 
+TEST(CameraProblem, is_that_it_shows_one_image_again_and_again) {
+    CameraRecord camera = looked_for();
+    camera.is_open = true;
+    camera.newest = kBegun + 6 * kSecond;
+    camera.newest_repeated = kBegun + 9 * kSecond;
+    const auto problem = camera_problem(camera, kRateHz, kBegun + 9 * kSecond + 3 * kPeriod);
+    ASSERT_TRUE(problem);
+    EXPECT_EQ(problem->about, "camera repeats");
+    camera.newest = kBegun + 9 * kSecond;
+    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");
+}
+
 TEST(CameraProblem, is_that_it_fell_silent_and_nothing_while_it_is_well) {
     CameraRecord camera = looked_for();
     camera.is_open = true;

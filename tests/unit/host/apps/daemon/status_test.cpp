@@ -278,6 +278,7 @@ TEST_F(StatusTest, has_the_cameras_record_or_null) {
     view_.camera->frames = 60;
     view_.camera->displaced = 3;
     view_.camera->untimed = 2;
+    view_.camera->repeated = 7;
     view_.camera->opened = 4;
     view_.camera->why = "was gone";
     Json camera = status()["camera"];
@@ -285,7 +286,7 @@ TEST_F(StatusTest, has_the_cameras_record_or_null) {
     camera.erase("age_s");
     EXPECT_EQ(camera,
               Json::parse(R"({"open": true, "why": "was gone", "frames": 60, "displaced": 3, "untimed": 2,
-        "opened": 4, "is_off": false, "turned_deg": null, "shifted_m": null, "depth_scale": null,
+        "repeated": 7, "opened": 4, "is_off": false, "turned_deg": null, "shifted_m": null, "depth_scale": null,
         "explains_sensors": 0})"));
     view_.camera->newest.reset();
     EXPECT_EQ(status()["camera"]["age_s"], nullptr);
