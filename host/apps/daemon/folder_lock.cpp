@@ -27,10 +27,18 @@ std::string holder_of(int descriptor) {
                      : std::string();
 }
 
+/// Made by root in another user's folder, a lock that is root's would keep that user's octoskin out for ever.
+void give_to_owner(const OpenFile& file, const OpenFolder& folder) {
+    struct stat status {};
+    if (::geteuid() != 0 || ::fstat(folder.descriptor(), &status) != 0) return;
+    (void)!::fchown(file.descriptor(), status.st_uid, status.st_gid);
+}
+
 Result<OpenFile, FolderError> open_or_create(const OpenFolder& folder) {
     auto opened = folder.open_file(FolderLock::kFile);
     if (opened || opened.error().fault != FolderFault::absent) return opened;
     auto created = folder.create_new(FolderLock::kFile, kMode);
+    if (created) give_to_owner(*created, folder);
     if (created || created.error().fault != FolderFault::is_there) return created;
     return folder.open_file(FolderLock::kFile);  // another process was quicker
 }
@@ -67,7 +75,7 @@ Result<FolderLock, AppError> FolderLock::take(const std::filesystem::path& named
 Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const std::filesystem::path& named) {
     for (int tries = 0; tries < kTries; ++tries) {
         auto file = open_or_create(folder);
-        if (!file) return unexpected(cannot_save(named, file.error()));
+        if (!file) return unexpected(cannot_save(named / kFile, file.error()));
         if (::flock(file->descriptor(), LOCK_EX | LOCK_NB) != 0) {
             return cannot_create(named, "another octoskin" + holder_of(file->descriptor()) +
                                             " keeps its map there; stop it, or name another folder");

@@ -19,6 +19,7 @@
 #include "host/apps/daemon/latency.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/settings.hpp"
+#include "host/core/ingest/joint_burst.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/core/time/bus_time.hpp"
 #include "host/core/time/foreign_clock.hpp"
@@ -103,6 +104,8 @@ class Inputs {
     void collect_joints(int& datagrams_left);
     [[nodiscard]] bool has_lost_its_place(const JointSample& sample) const;
     void note_displaced(HostTime now);
+    [[nodiscard]] JointBurst::Turn turn_of_oldest(WallTime now);
+    [[nodiscard]] WallTime place_of(const JointSample& sample) const;
     void feed_joints(std::optional<WallTime> until);
     void drain_camera();
 
@@ -115,6 +118,7 @@ class Inputs {
     SyncMaster sync_;
     wire::NodeId joint_node_;
     LocalJoints local_joints_;
+    JointBurst joint_burst_;
     std::optional<JointSocket> joints_;
     EventSource joints_ready_;
     std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that came before them

@@ -64,6 +64,7 @@ Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::siz
         const double time_s = sample.position.front();
         if (std::abs(time_s - seconds_at(now)) > kTimeOffMaxS) return unexpected(JointTextFault::time_off);
         sample.sampled.ns = std::llround(time_s * kNsPerS);
+        sample.has_own_time = true;
         sample.position.erase(sample.position.begin());
     }
     if (sample.position.size() != joint_count) return unexpected(JointTextFault::wrong_count);

@@ -27,6 +27,7 @@ struct JointSample {
     HostTime sampled;
     std::vector<double> position;
     WallTime came;               ///< through a socket
+    bool has_own_time = false;   ///< else `sampled` is when it came
     bool is_of_several = false;  ///< another sender is heard beside its own
 };
 

@@ -33,6 +33,9 @@ class LocalJoints {
     /// period after the one before are left out, since nobody on the bus can tell so many apart.
     LocalJoints(wire::NodeId node_id, std::size_t joint_count, double rate_hz);
 
+    /// The least time between two samples.
+    [[nodiscard]] Nanoseconds distance_min() const noexcept { return distance_min_; }
+
     static constexpr double kLargest = 8.388607;  ///< what a frame's 24 bits with sign hold
     /// The frames of one sample, taken at `sampled` on the host's clock. Radians (metres for a prismatic
     /// joint), in the rig's order.

@@ -91,9 +91,11 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
     problems.push_back(
         {"joint senders",
          socket != nullptr
-             ? fmt::format("joint states of two arms come through the socket by turns, and neither is used "
-                           "until that was over for a second (second_sender, {})",
-                           withheld)
+             ? fmt::format(
+                   "joint states come through the socket that jump to and fro, as those of two arms do or "
+                   "of late samples without TIME, and none is used until that was over for a second "
+                   "(second_sender, {})",
+                   withheld)
              : fmt::format("two senders tell joint states under node {}, and neither is used until they have "
                            "not contradicted each other for a second (second_sender, {}): the joint node and "
                            "another board of that id, or `octoskin joints --can` beside it",

@@ -42,6 +42,18 @@ TEST(FolderLock, is_of_a_file_that_no_other_user_can_open) {
     EXPECT_EQ(mode(), perms{0600});
 }
 
+TEST(FolderLock, that_root_makes_is_of_the_folders_owner) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root makes files of others";
+    constexpr uid_t kOwner = 54321;
+    const testing_support::ScratchFolder scratch;
+    ASSERT_EQ(::chown(scratch.path().c_str(), kOwner, kOwner), 0);
+    EXPECT_TRUE(FolderLock::take(scratch.path()));
+    struct stat status {};
+    ASSERT_EQ(::stat((scratch / FolderLock::kFile).c_str(), &status), 0);
+    EXPECT_EQ(status.st_uid, kOwner);
+    EXPECT_EQ(status.st_gid, kOwner);
+}
+
 TEST(FolderLock, says_why_nothing_can_be_written_there) {
     const testing_support::ScratchFolder scratch;
     scratch.write("file", "in the way");
