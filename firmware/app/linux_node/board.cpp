@@ -65,7 +65,8 @@ Result<std::unique_ptr<Board>, StartFailure> Board::open(const Arguments& argume
 
 Board::Board(const Arguments& arguments, const NodeConfig& config, const node::Identity& identity,
              node::KeptMemory& kept, Devices devices)
-    : devices_(std::move(devices)),
+    : arguments_(arguments),
+      devices_(std::move(devices)),
       transfers_ended_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
       threads_(start_threads(devices_.i2c, transfers_ended_)),
       can_(arguments.can, config.node_id, config.uses_can_fd, node_now()),
@@ -75,6 +76,14 @@ Board::Board(const Arguments& arguments, const NodeConfig& config, const node::I
 Board::~Board() {
     threads_.clear();  // they tell of their ends by the descriptor
     ::close(transfers_ended_);
+}
+
+Board::Left Board::end() {
+    constexpr Microseconds kPatience{1'000'000};
+    Left left{.xshut_refused = devices_.xshut.set_all_low(), .stuck = {}};
+    for (std::size_t bus = 0; bus < threads_.size(); ++bus)
+        if (!threads_[bus]->end(kPatience)) left.stuck.push_back(arguments_.i2c[bus]);
+    return left;
 }
 
 node::Ports Board::ports(node::KeptMemory& kept) {
@@ -92,7 +101,7 @@ Board::Ending Board::run(int stop, Journal& journal, linux_port::ServiceManager&
     while (true) {
         turn();
         manager.turned(node_now());
-        journal.update(node_, can_, devices_.xshut);
+        journal.update(node_, can_, devices_.xshut, devices_.data_ready);
         if (node_.is_reset_requested()) return Ending::reset;
         if (!wait(stop, sleep_max)) return Ending::stopped;
     }

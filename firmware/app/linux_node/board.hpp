@@ -39,6 +39,14 @@ class Board {
     /// Until `stop`, a descriptor, is readable. `manager` is told of each turn that has ended.
     [[nodiscard]] Ending run(int stop, Journal& journal, linux_port::ServiceManager& manager);
 
+    struct Left {
+        std::size_t xshut_refused = 0;   ///< lines that the kernel refused to set low
+        std::vector<std::string> stuck;  ///< buses with a transfer that does not come back within a second
+    };
+    /// After `run`: all sensors go into reset, and transfers that are in the kernel come back. With a stuck
+    /// bus the board cannot be destroyed: the destructor would wait for it.
+    [[nodiscard]] Left end();
+
   private:
     struct Devices {
         std::vector<linux_port::I2cDevice> i2c;
@@ -53,6 +61,7 @@ class Board {
     void turn();
     [[nodiscard]] NodeTime wake_time(NodeTime now) const;
 
+    const Arguments& arguments_;
     Devices devices_;
     int transfers_ended_;  ///< eventfd
     std::vector<std::unique_ptr<linux_port::I2cThreadBus>> threads_;

@@ -52,7 +52,7 @@ void Journal::started(const NodeConfig& config, const std::string& can, std::uin
 }
 
 void Journal::update(const node::Node& node, const linux_port::CanInterface& can,
-                     const linux_port::XshutOutputs& xshut) {
+                     const linux_port::XshutOutputs& xshut, const linux_port::DataReadyInputs& data_ready) {
     if (const wire::NodeState state = node.state(); state_ != state) {
         say(std::string("state ") + wire::name(state));
         state_ = state;
@@ -74,6 +74,12 @@ void Journal::update(const node::Node& node, const linux_port::CanInterface& can
     if (can.unconfirmed() != unconfirmed_) {
         unconfirmed_ = can.unconfirmed();
         say("CAN: " + std::to_string(unconfirmed_) + " frames never confirmed since start");
+    }
+    if (const auto gone = data_ready.gone(); gone.size() != data_ready_gone_) {
+        data_ready_gone_ = gone.size();
+        for (const std::string& name : gone)
+            say("data-ready line " + name +
+                ": gone with its GPIO chip; the sensors of its bus are asked over I2C");
     }
     if (xshut.failures() != xshut_failures_) {
         xshut_failures_ = xshut.failures();

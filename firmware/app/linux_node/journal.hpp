@@ -22,7 +22,7 @@ class Journal {
     void started(const NodeConfig& config, const std::string& can, std::uint32_t build_id);
     /// Call at every turn: says what has changed since the last one.
     void update(const node::Node& node, const linux_port::CanInterface& can,
-                const linux_port::XshutOutputs& xshut);
+                const linux_port::XshutOutputs& xshut, const linux_port::DataReadyInputs& data_ready);
 
   private:
     void say_troubles(const node::Node& node);
@@ -35,6 +35,7 @@ class Journal {
     std::uint8_t ignored_data_ready_ = 0;
     std::uint64_t unconfirmed_ = 0;
     std::uint64_t xshut_failures_ = 0;
+    std::size_t data_ready_gone_ = 0;
 };
 
 }  // namespace octoskin::linux_node

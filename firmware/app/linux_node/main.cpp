@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -42,6 +43,19 @@ Result<node::Identity, StartFailure> identity_of(const Arguments& arguments) {
     return node::Identity{.uid = *uid, .build_id = OCTOSKIN_BUILD_ID, .board_type = kBoardType};
 }
 
+/// A thread that the kernel holds cannot be ended; what is left of it is the kernel's.
+[[noreturn]] void leave_behind(const Board::Left& left, ExitCode code) {
+    for (const std::string& bus : left.stuck)
+        say(bus + ": a transfer does not come back from the kernel, and is left behind");
+    std::exit(static_cast<int>(code));  // what was said is still written; the board is not destroyed
+}
+
+void say_stopped(const Board::Left& left) {
+    if (left.xshut_refused == 0) return say("stopped: all sensors are in reset");
+    say("stopped: the kernel refused to set " + std::to_string(left.xshut_refused) +
+        " XSHUT lines low, and their sensors may go on ranging");
+}
+
 /// Node after node: an ordered reset ends one and begins another, as on a microcontroller.
 Result<Done, StartFailure> run(const Arguments& arguments) {
     const auto config = load_configuration(arguments);
@@ -59,13 +73,19 @@ Result<Done, StartFailure> run(const Arguments& arguments) {
         auto board = Board::open(arguments, *config, *identity, kept);
         if (!board) return unexpected(board.error());
         journal.started(*config, arguments.can, OCTOSKIN_BUILD_ID);
-        if ((*board)->run(stop, journal, manager) == Board::Ending::stopped) break;
+        const Board::Ending ending = (*board)->run(stop, journal, manager);
+        const Board::Left left = (*board)->end();
+        if (ending == Board::Ending::stopped) {
+            manager.stopping();
+            say_stopped(left);
+            if (!left.stuck.empty()) leave_behind(left, ExitCode::ok);
+            return Done{};
+        }
         say("reset, as the host has ordered");
+        // Its service begins it anew.
+        if (!left.stuck.empty()) leave_behind(left, ExitCode::unavailable);
         identity->reset_cause = wire::ResetCause::software;
     }
-    manager.stopping();
-    say("stopped: all sensors are in reset");
-    return Done{};
 }
 
 }  // namespace

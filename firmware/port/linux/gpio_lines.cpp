@@ -108,7 +108,13 @@ Result<XshutOutputs, StartFailure> XshutOutputs::request(std::span<const LineNam
 }
 
 XshutOutputs::~XshutOutputs() {
-    for (GpioLine& line : lines_) (void)line.set(false);
+    (void)set_all_low();
+}
+
+std::size_t XshutOutputs::set_all_low() {
+    std::size_t refused = 0;
+    for (GpioLine& line : lines_) refused += line.set(false) ? 0U : 1U;
+    return refused;
 }
 
 void XshutOutputs::set(std::uint8_t line, bool is_high) {
@@ -120,7 +126,8 @@ Result<DataReadyInputs, StartFailure> DataReadyInputs::request(std::span<const L
     auto lines = request_all(names, GpioLine::Use::falling_edges);
     if (!lines) return unexpected(lines.error());
     DataReadyInputs inputs;
-    for (GpioLine& line : *lines) inputs.inputs_.push_back({.line = std::move(line)});
+    for (std::size_t i = 0; i < names.size(); ++i)
+        inputs.inputs_.push_back({.line = std::move((*lines)[i]), .name = text(names[i])});
     return inputs;
 }
 
@@ -131,12 +138,21 @@ bool DataReadyInputs::take_fall(std::uint8_t bus) {
 }
 
 int DataReadyInputs::descriptor(std::size_t bus) const {
-    if (bus >= inputs_.size() || inputs_[bus].has_fallen) return -1;
+    if (bus >= inputs_.size() || inputs_[bus].has_fallen || inputs_[bus].is_gone) return -1;
     return inputs_[bus].line.descriptor();
 }
 
 void DataReadyInputs::on_readable(std::size_t bus) {
-    inputs_[bus].has_fallen |= inputs_[bus].line.take_falls();
+    Input& input = inputs_[bus];
+    input.has_fallen = input.line.take_falls();  // only a line that has not fallen is listened to
+    input.is_gone = !input.has_fallen;
+}
+
+std::vector<std::string> DataReadyInputs::gone() const {
+    std::vector<std::string> names;
+    for (const Input& input : inputs_)
+        if (input.is_gone) names.push_back(input.name);
+    return names;
 }
 
 }  // namespace octoskin::linux_port

@@ -66,6 +66,8 @@ class XshutOutputs final : public node::XshutLines {
     XshutOutputs& operator=(XshutOutputs&&) = delete;
 
     void set(std::uint8_t line, bool is_high) override;
+    /// How many the kernel refused to set.
+    [[nodiscard]] std::size_t set_all_low();
     /// Times that the kernel refused to set one.
     [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
 
@@ -84,15 +86,20 @@ class DataReadyInputs final : public node::DataReadyLines {
 
     [[nodiscard]] bool take_fall(std::uint8_t bus) override;
 
-    /// To wait for, of bus `bus`; -1 while it is not listened to, or has no line.
+    /// To wait for, of bus `bus`; -1 while it is not listened to, or has no line, or is gone.
     [[nodiscard]] int descriptor(std::size_t bus) const;
-    /// Its descriptor is readable.
+    /// Its descriptor is readable. Where there is no fall to be read all the same the line is gone with its
+    /// chip: the descriptor would be readable for good.
     void on_readable(std::size_t bus);
+    /// Those that are gone, by bus; as "gpiochip0:17".
+    [[nodiscard]] std::vector<std::string> gone() const;
 
   private:
     struct Input {
         GpioLine line;
+        std::string name;
         bool has_fallen = false;
+        bool is_gone = false;
     };
     std::vector<Input> inputs_;
 };

@@ -14,12 +14,15 @@ I2cThreadBus::I2cThreadBus(I2cAdapter& adapter, int event, Clock clock)
 }
 
 I2cThreadBus::~I2cThreadBus() {
-    {
-        const std::lock_guard lock(mutex_);
-        is_ending_ = true;
-    }
-    is_ordered_.notify_one();
+    (void)end(Microseconds{0});
     thread_.join();
+}
+
+bool I2cThreadBus::end(Microseconds patience) {
+    std::unique_lock lock(mutex_);
+    is_ending_ = true;
+    is_ordered_.notify_one();
+    return has_left_kernel_.wait_for(lock, patience, [this] { return !is_in_kernel_; });
 }
 
 void I2cThreadBus::submit(const i2c::Transfer& transfer, NodeTime, NodeTime deadline) {
@@ -91,6 +94,7 @@ void I2cThreadBus::work() {
         lock.lock();
         is_in_kernel_ = false;
         outcome_ = outcome;
+        has_left_kernel_.notify_one();
         (void)::eventfd_write(event_, 1);
     }
 }

@@ -23,8 +23,11 @@ class I2cThreadBus final : public i2c::Bus {
     /// `adapter` must outlive the bus; `event` is an eventfd(2) that counts ended transfers up; `clock` is
     /// what the times given to `poll` are read from, asked by the thread.
     I2cThreadBus(I2cAdapter& adapter, int event, Clock clock);
-    /// Waits for a transfer that is in the kernel.
+    /// Waits for a transfer that is in the kernel, however long: see `end`.
     ~I2cThreadBus();
+    /// No further transfer begins. False if one is in the kernel that does not come back within `patience`:
+    /// the process can then only leave without the destructor.
+    [[nodiscard]] bool end(Microseconds patience);
 
     [[nodiscard]] bool is_busy() const override { return in_flight_.has_value(); }
     /// At most 256 bytes each way.
@@ -77,6 +80,7 @@ class I2cThreadBus final : public i2c::Bus {
     // --- shared
     std::mutex mutex_;
     std::condition_variable is_ordered_;
+    std::condition_variable has_left_kernel_;
     std::optional<Order> order_;  ///< not yet begun
     bool is_in_kernel_ = false;
     bool is_ending_ = false;

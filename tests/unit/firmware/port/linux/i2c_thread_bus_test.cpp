@@ -221,6 +221,19 @@ TEST_F(I2cThreadBusTest, tells_the_kernels_errors_as_the_drivers) {
     }
 }
 
+TEST_F(I2cThreadBusTest, says_in_time_that_a_transfer_does_not_come_back_at_the_end) {
+    adapter_.set_open(false);
+    submit(0x10);
+    adapter_.await_begun(1);
+    EXPECT_FALSE(bus_->end(Microseconds{1'000}));
+    adapter_.set_open(true);
+    EXPECT_TRUE(bus_->end(Microseconds{10'000'000}));
+}
+
+TEST_F(I2cThreadBusTest, ends_at_once_where_nothing_is_in_the_kernel) {
+    EXPECT_TRUE(bus_->end(Microseconds{0}));
+}
+
 TEST_F(I2cThreadBusTest, ends_with_a_transfer_in_flight) {
     adapter_.set_open(false);
     submit(0x10);
