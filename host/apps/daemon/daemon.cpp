@@ -172,6 +172,7 @@ Status<AppError> Daemon::Parts::take_folder() {
     if (!taken) return unexpected(taken.error());
     keeper.emplace(NamedFolder(taken->folder()));
     home.emplace(std::move(taken).value());
+    tell_load(load_patience(keeper->saved_bytes()));
     auto saved = keeper->load(settings.mapping, settings.recorded.mapping_crc32());
     if (!saved) return unexpected(saved.error());
     if (saved->has_value()) go_on_with(std::move(**saved));

@@ -24,6 +24,17 @@ void tell_end(Nanoseconds patience) {
                      static_cast<long long>(all.count()), static_cast<long long>(all.count()));
 }
 
+Nanoseconds load_patience(std::uint64_t bytes) noexcept {
+    constexpr Nanoseconds kUsual{90'000'000'000};
+    constexpr std::int64_t kNsPerByte = 40;
+    return kUsual + Nanoseconds{kNsPerByte * static_cast<std::int64_t>(bytes)};
+}
+
+void tell_load(Nanoseconds patience) {
+    const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience);
+    (void)sd_notifyf(0, "EXTEND_TIMEOUT_USEC=%lld", static_cast<long long>(all.count()));
+}
+
 int tell_why_it_ends(const std::exception& thrown) {
     const auto shortage = shortage_in(thrown);
     if (!shortage) {

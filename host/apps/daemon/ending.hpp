@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 
 #include "common/time.hpp"
@@ -22,6 +23,12 @@ inline constexpr Nanoseconds kEndMargin{6'500'000'000};
 
 /// The service manager waits as long, and its watchdog too: the loop that feeds it has ended.
 void tell_end(Nanoseconds patience);
+
+/// How long the start may take to read `bytes` of saved maps: as long as a disk with 25 MB/s takes, and the
+/// unit's 90 s besides.
+[[nodiscard]] Nanoseconds load_patience(std::uint64_t bytes) noexcept;
+/// The service manager waits as long for the daemon to have begun.
+void tell_load(Nanoseconds patience);
 
 /// Logs it; the exit code for it.
 [[nodiscard]] int tell_why_it_ends(const std::exception& thrown);

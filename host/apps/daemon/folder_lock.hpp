@@ -6,6 +6,7 @@
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/apps/recording/file_set.hpp"
 #include "host/io/folder/open_folder.hpp"
 
 namespace octoskin {
@@ -14,7 +15,7 @@ namespace octoskin {
 class FolderLock {
   public:
     /// The file in the folder that is locked.
-    static constexpr const char* kFile = "lock";
+    static constexpr const char* kFile = kDaemonsLock;
 
     /// Makes the folder if it is not there. Refuses, naming its process, if somebody else holds it, if
     /// nothing can be written there, if the folder is somebody else's, and if its file "lock" is a link or no

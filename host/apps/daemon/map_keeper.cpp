@@ -1,6 +1,7 @@
 #include "host/apps/daemon/map_keeper.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cassert>
 #include <exception>
@@ -148,6 +149,17 @@ Result<KeptMap, AppError> MapKeeper::load_with(const MappingConfig& mapping,
     if (!snapshot) return load_alone(mapping.map, file, snapshot.error());
     const SnapshotOrigin& origin = snapshot->origin;
     return KeptMap{std::move(snapshot->state.map), {}, true, origin.map_time, origin.placement_crc32};
+}
+
+std::uint64_t MapKeeper::saved_bytes() const {
+    std::uint64_t bytes = 0;
+    for (const char* name : kMapFiles) {
+        const auto opened = FilePlace(work_->folder, name).open();
+        struct stat status {};
+        if (opened && ::fstat(opened->descriptor(), &status) == 0)
+            bytes += static_cast<std::uint64_t>(status.st_size);
+    }
+    return bytes;
 }
 
 void MapKeeper::move_to(NamedFolder folder) {

@@ -75,6 +75,9 @@ class MapKeeper {
     [[nodiscard]] Result<std::optional<KeptMap>, AppError> load(const MappingConfig& mapping,
                                                                 std::uint32_t mapping_crc32 = 0) const;
 
+    /// Of the files that `load` may read.
+    [[nodiscard]] std::uint64_t saved_bytes() const;
+
     /// From the next save on maps go into this folder; it must be this process's own. One that is being
     /// written goes where it was to go.
     void move_to(NamedFolder folder);

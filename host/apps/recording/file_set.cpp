@@ -37,6 +37,11 @@ Unexpected<AppError> busy(const OpenFolder& folder) {
         "another octoskin is writing here; wait until it has ended, or give another directory");
 }
 
+Unexpected<AppError> of_a_daemon(const OpenFolder& folder) {
+    return cannot_create(folder.shown(kDaemonsSnapshot),
+                         "is of a daemon's map, which is kept in this folder; give another directory");
+}
+
 Unexpected<AppError> cannot_write(const FolderError& error) {
     if (error.fault == FolderFault::foreign_owner || error.fault == FolderFault::link)
         return cannot_create(error.path, error.reason());
@@ -268,12 +273,12 @@ Result<bool, AppError> finish_interrupted(const OpenFolder& folder) {
 
 }  // namespace
 
-FileSet::FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, FileLock lock)
+FileSet::FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, Locks locks)
     : folder_(std::move(folder)),
       draft_(std::move(draft)),
       is_new_(is_new),
       unfinished_(std::move(unfinished)),
-      lock_(std::move(lock)) {}
+      locks_(std::move(locks)) {}
 
 FileSet::FileSet(FileSet&& other) noexcept
     : folder_(other.folder_),
@@ -281,7 +286,7 @@ FileSet::FileSet(FileSet&& other) noexcept
       is_new_(other.is_new_),
       is_open_(std::exchange(other.is_open_, false)),
       unfinished_(std::move(other.unfinished_)),
-      lock_(std::move(other.lock_)) {}
+      locks_(std::move(other.locks_)) {}
 
 FileSet::~FileSet() {
     if (!is_open_) return;
@@ -298,7 +303,9 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
         return error;
     };
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
-    if (!lock) return busy(folder);
+    auto daemons = FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive);
+    if (!lock || !daemons) return busy(folder);
+    if (is_there(folder, kDaemonsSnapshot)) return of_a_daemon(folder);
     if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
     Unfinished unfinished(folder, kDraftFolder, made->is_new);
     // What is there is of a process that was killed.
@@ -308,7 +315,8 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
         return give_up(cannot_write(created.error()));
     auto draft = folder.open_folder(kDraftFolder);
     if (!draft) return give_up(cannot_write(draft.error()));
-    return FileSet(folder, std::move(*draft), made->is_new, std::move(unfinished), std::move(*lock));
+    return FileSet(folder, std::move(*draft), made->is_new, std::move(unfinished),
+                   {std::move(*lock), std::move(*daemons)});
 }
 
 Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::vector<fs::path>& retired) {

@@ -12,6 +12,11 @@
 
 namespace octoskin {
 
+/// A daemon holds this file of the folder of its maps.
+inline constexpr const char* kDaemonsLock = "lock";
+/// Its map in full, which only a daemon writes.
+inline constexpr const char* kDaemonsSnapshot = "fused.snapshot";
+
 /// They are written into a hidden folder beside their places. `commit` flushes them to the disk, renames that
 /// folder, which is the one step that decides, and then moves file after file. An error on the way undoes
 /// what was moved. If the process dies on the way, the next one that writes to the folder goes on to the end;
@@ -21,7 +26,8 @@ class FileSet {
   public:
     /// Makes `folder` if it is not there, locks it against other octoskins, ends or clears away what a killed
     /// one left, and makes the hidden folder. Errors (cannot_create): another octoskin at work there; a
-    /// folder of somebody else or, below a named one, a link (FilePlace); the file system's.
+    /// daemon's maps, which nothing but a daemon replaces; a folder of somebody else or, below a named one, a
+    /// link (FilePlace); the file system's.
     [[nodiscard]] static Result<FileSet, AppError> begin(const FilePlace& folder);
     FileSet(FileSet&& other) noexcept;
     FileSet& operator=(FileSet&&) = delete;
@@ -52,14 +58,18 @@ class FileSet {
     static constexpr const char* kReadyFolder = ".octoskin-ready";
 
   private:
-    FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, FileLock lock);
+    struct Locks {
+        FileLock folder;
+        FileLock daemons;
+    };
+    FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, Locks locks);
 
     OpenFolder folder_;
     OpenFolder draft_;
     bool is_new_;
     bool is_open_ = true;
     Unfinished unfinished_;
-    FileLock lock_;
+    Locks locks_;
 };
 
 /// Whether a recording names a mesh of its world so: mesh_01.stl.

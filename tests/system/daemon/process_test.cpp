@@ -283,6 +283,8 @@ class ServiceManager {
 TEST_F(DaemonTest, tells_its_service_manager_of_readiness_life_reloads_and_its_end) {
     const ServiceManager manager(folder_ / "notify");
     start();
+    EXPECT_TRUE(manager.is_told("EXTEND_TIMEOUT_USEC=90000000", 10s))
+        << "more with a large map" << daemon_->log();
     EXPECT_TRUE(manager.is_told("READY=1", 10s)) << daemon_->log();
     for (int i = 0; i < 5; ++i) EXPECT_TRUE(manager.is_told("WATCHDOG=1", 400ms)) << "it would be killed";
     daemon_->signal(SIGHUP);

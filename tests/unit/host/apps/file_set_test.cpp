@@ -1,7 +1,9 @@
 #include "host/apps/recording/file_set.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -94,6 +96,27 @@ TEST(FileSetTest, of_two_at_once_the_second_is_refused_with_the_directory_and_a_
                 testing::AllOf(HasSubstr(folder.path().string() + ": another octoskin"), HasSubstr("wait"),
                                HasSubstr("another directory")));
     EXPECT_EQ(ScratchFolder::read(first->draft().shown() / "can.log"), "new");
+}
+
+TEST(FileSetTest, of_a_folder_that_a_daemon_keeps_its_map_in_nothing_is_replaced) {
+    const ScratchFolder scratch;
+    write(scratch / "fused.ot", "the daemon's");
+    write(scratch / kDaemonsLock, "");
+    {
+        const int lock = ::open((scratch / kDaemonsLock).c_str(), O_RDONLY | O_CLOEXEC);
+        ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
+        const auto refused = FileSet::begin(scratch.path());
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+        ::close(lock);
+    }
+    EXPECT_TRUE(FileSet::begin(scratch.path())) << "the daemon has ended, and left no snapshot";
+    write(scratch / kDaemonsSnapshot, "");
+    const auto refused = FileSet::begin(scratch.path());
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+    EXPECT_THAT(refused.error().message, HasSubstr(kDaemonsSnapshot));
+    EXPECT_EQ(told(scratch.path()), "fused.ot=the daemon's fused.snapshot= lock=");
 }
 
 TEST(FileSetTest, the_lock_goes_with_its_process) {
