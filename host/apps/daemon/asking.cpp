@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "common/time.hpp"
@@ -18,6 +19,23 @@ namespace octoskin {
 namespace {
 
 constexpr const char* kSignOfLife = R"({"ok":true})";
+
+/// Of JSON, whose reader and writer call themselves for each level. A daemon's answers have fewer than ten.
+bool is_nested_too_deep(std::string_view json) {
+    constexpr int kLevelsMax = 64;
+    int level = 0;
+    bool is_text = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (is_text && c == '\\') ++i;  // what is escaped ends no text
+        if (c == '"') is_text = !is_text;
+        if (is_text) continue;
+        if (c == '[' || c == '{') ++level;
+        if (c == ']' || c == '}') --level;
+        if (level > kLevelsMax) return true;
+    }
+    return false;
+}
 
 /// Whether there is something to read before `end`.
 bool is_readable(int descriptor, HostTime end) {
@@ -72,6 +90,7 @@ Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, co
         answer = exchange_lines(*descriptor, request + '\n', begun + patience);
     ::close(*descriptor);
     if (!answer) return fail(ExitCode::io_failed, socket.string() + ": " + answer.error());
+    if (is_nested_too_deep(*answer)) return unexpected(foreign_answer(socket));
     return std::move(answer).value();
 }
 

@@ -96,6 +96,29 @@ TEST(AskDaemon, asks_for_a_sign_of_life_before_what_may_take_long) {
     EXPECT_EQ(heard, "hello\nquery {}\n");
 }
 
+/// What reads and writes JSON calls itself for each level.
+TEST(AskDaemon, takes_no_answer_that_is_nested_deeper_than_any_of_a_daemon) {
+    const testing_support::ScratchFolder folder;
+    const StoppedListener foreign(folder / "control");
+    const auto ask_for = [&](const std::string& says) {
+        std::thread answering([&] {
+            const int client = foreign.accept();
+            std::array<char, 64> request{};
+            (void)!::recv(client, request.data(), request.size(), 0);
+            (void)!::send(client, says.data(), says.size(), MSG_NOSIGNAL);
+            ::close(client);
+        });
+        auto answer = ask_daemon(folder / "control", "status");
+        answering.join();
+        return answer;
+    };
+    const auto deep = ask_for(std::string(65, '[') + std::string(65, ']') + "\n");
+    ASSERT_FALSE(deep);
+    EXPECT_EQ(deep.error().code, ExitCode::bad_data);
+    EXPECT_TRUE(ask_for(std::string(64, '[') + std::string(64, ']') + "\n"));
+    EXPECT_TRUE(ask_for("\"\\\"" + std::string(99, '{') + "\"\n")) << "of a text";
+}
+
 TEST(AskDaemon, says_when_the_daemon_closed_the_connection_and_does_not_wait_then) {
     const testing_support::ScratchFolder folder;
     const StoppedListener ending(folder / "control");
