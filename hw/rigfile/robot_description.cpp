@@ -20,11 +20,24 @@ constexpr double kSameM =
 constexpr double kRadiusMaxM = 5.0;
 constexpr std::size_t kCollisionsMax = 1000;  ///< of one link: each sphere is looked for at each cylinder
 
+/// Ends at the centres of the flat faces.
+struct Cylinder {
+    Capsule capsule;
+    bool is_round_a = false;  ///< a sphere of the link is its end
+    bool is_round_b = false;
+};
+
+/// A capsule about an element, and one within it.
+struct Fitted {
+    Capsule around;
+    Capsule within;
+};
+
 /// One link's collision elements, cylinders apart from spheres.
 struct Bodies {
-    std::vector<Capsule> cylinders;  ///< ends at the centres of the flat faces
+    std::vector<Cylinder> cylinders;
     std::vector<Capsule> spheres;
-    std::vector<Capsule> fitted;  ///< about boxes: ends of nothing else
+    std::vector<Fitted> boxes;  ///< ends of nothing else
 };
 
 const char* shape_name(const urdf::Geometry& geometry) {
@@ -46,14 +59,37 @@ std::string name_of(const urdf::Collision& collision) {
                                   : fmt::format("<collision name=\"{}\">", collision.name);
 }
 
-/// The capsule about the box's longest side, through its middle, that its corners lie on.
-Capsule around_box(const urdf::Vector3& size_m, const std::string& link,
-                   const Eigen::Isometry3d& T_link_body) {
+/// Capsules about the box's longest side, through its middle: the one that its corners lie on, and the
+/// largest within it.
+Fitted fit_box(const urdf::Vector3& size_m, const std::string& link, const Eigen::Isometry3d& T_link_body) {
     const Eigen::Vector3d half = 0.5 * Eigen::Vector3d(size_m.x, size_m.y, size_m.z);
     Eigen::Index longest = 0;
     half.maxCoeff(&longest);
-    const Eigen::Vector3d to_end = half[longest] * Eigen::Vector3d::Unit(longest);
-    return {link, T_link_body * Eigen::Vector3d(-to_end), T_link_body * to_end, (half - to_end).norm()};
+    const auto along = [&](double reach_m, double radius_m) {
+        const Eigen::Vector3d to_end = reach_m * Eigen::Vector3d::Unit(longest);
+        return Capsule{link, T_link_body * Eigen::Vector3d(-to_end), T_link_body * to_end, radius_m};
+    };
+    const Eigen::Vector3d across = half - half[longest] * Eigen::Vector3d::Unit(longest);
+    return {along(half[longest], across.norm()), along(half[longest] - half.minCoeff(), half.minCoeff())};
+}
+
+/// The largest capsule about its axis that reaches no flat end from within.
+Capsule within_cylinder(const Cylinder& cylinder) {
+    Capsule within = cylinder.capsule;
+    const Eigen::Vector3d axis = within.p_link_b - within.p_link_a;
+    const double length_m = axis.norm();
+    const double flat_ends = (cylinder.is_round_a ? 0.0 : 1.0) + (cylinder.is_round_b ? 0.0 : 1.0);
+    // Of a flat disc: a ball that touches both ends, round or flat.
+    within.radius_m =
+        std::min(within.radius_m, 0.5 * (length_m + (2.0 - flat_ends) * cylinder.capsule.radius_m));
+    if (length_m == 0.0) return within;
+    const auto moved_in = [&](bool is_round) -> Eigen::Vector3d {
+        const double in_m = within.radius_m - (is_round ? cylinder.capsule.radius_m : 0.0);
+        return in_m / length_m * axis;
+    };
+    within.p_link_a += moved_in(cylinder.is_round_a);
+    within.p_link_b -= moved_in(cylinder.is_round_b);
+    return within;
 }
 
 /// Adds one collision element to `bodies`; returns what is wrong with it, or nothing.
@@ -68,15 +104,15 @@ std::string add_body(const urdf::Collision& collision, const std::string& link, 
         body.radius_m = cylinder->radius;
         body.p_link_a = T_link_body * Eigen::Vector3d(0.0, 0.0, -length_m / 2.0);
         body.p_link_b = T_link_body * Eigen::Vector3d(0.0, 0.0, length_m / 2.0);
-        bodies.cylinders.push_back(body);
+        bodies.cylinders.push_back({.capsule = body});
     } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(collision.geometry.get())) {
         body.radius_m = sphere->radius;
         bodies.spheres.push_back(body);
     } else if (const auto* box = dynamic_cast<const urdf::Box*>(collision.geometry.get());
                box != nullptr && boxes == BoxRule::fitted) {
         length_m = std::min({box->dim.x, box->dim.y, box->dim.z});
-        body = around_box(box->dim, link, T_link_body);
-        bodies.fitted.push_back(body);
+        bodies.boxes.push_back(fit_box(box->dim, link, T_link_body));
+        body = bodies.boxes.back().around;
     } else {
         return fmt::format(
             "{} is a {}: expected a cylinder or a sphere (two spheres and a cylinder are a capsule); put one "
@@ -93,58 +129,42 @@ std::string add_body(const urdf::Collision& collision, const std::string& link, 
 }
 
 /// A cylinder takes its end from the sphere at that end: the sphere's centre is written without a rotation.
-bool absorb(const Capsule& sphere, Capsule& cylinder) {
-    if (std::abs(sphere.radius_m - cylinder.radius_m) > kSameM) return false;
-    for (Eigen::Vector3d* end : {&cylinder.p_link_a, &cylinder.p_link_b}) {
-        if ((*end - sphere.p_link_a).norm() > kSameM) continue;
-        *end = sphere.p_link_a;
+bool absorb(const Capsule& sphere, Cylinder& cylinder) {
+    if (std::abs(sphere.radius_m - cylinder.capsule.radius_m) > kSameM) return false;
+    const auto is_end = [&](Eigen::Vector3d& end, bool& is_round) {
+        if ((end - sphere.p_link_a).norm() > kSameM) return false;
+        end = sphere.p_link_a;
+        is_round = true;
         return true;
-    }
-    return false;
+    };
+    return is_end(cylinder.capsule.p_link_a, cylinder.is_round_a) ||
+           is_end(cylinder.capsule.p_link_b, cylinder.is_round_b);
 }
 
-std::vector<Capsule> to_capsules(Bodies bodies) {
-    std::vector<Capsule> capsules = std::move(bodies.cylinders);
-    const std::size_t cylinders = capsules.size();
+std::vector<Fitted> to_capsules(Bodies bodies) {
+    std::vector<Fitted> lone_spheres;
     for (const Capsule& sphere : bodies.spheres) {
         bool is_end = false;
         // A sphere may end two cylinders that meet in it.
-        for (std::size_t i = 0; i < cylinders; ++i) is_end = absorb(sphere, capsules[i]) || is_end;
-        if (!is_end) capsules.push_back(sphere);
+        for (Cylinder& cylinder : bodies.cylinders) is_end = absorb(sphere, cylinder) || is_end;
+        if (!is_end) lone_spheres.push_back({sphere, sphere});
     }
-    std::move(bodies.fitted.begin(), bodies.fitted.end(), std::back_inserter(capsules));
-    return capsules;
+    std::vector<Fitted> all;
+    for (const Cylinder& cylinder : bodies.cylinders)
+        all.push_back({cylinder.capsule, within_cylinder(cylinder)});
+    std::move(lone_spheres.begin(), lone_spheres.end(), std::back_inserter(all));
+    std::move(bodies.boxes.begin(), bodies.boxes.end(), std::back_inserter(all));
+    return all;
 }
 
 BoxRule box_rule(const Rig& rig) {
     return rig.fits_capsules ? BoxRule::fitted : BoxRule::refused;
 }
 
-}  // namespace
-
-Result<std::vector<Capsule>, RigError> real_body(const Rig& rig) {
-    auto body = read_capsules(rig.urdf, {}, box_rule(rig));
-    if (!body) return body;
-    for (const AttachedCapsule& capsule : rig.attached_capsules)
-        body->push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
-    return body;
-}
-
-Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig) {
-    auto body = read_capsules(rig.urdf, rig.link_padding_m, box_rule(rig));
-    if (!body) return body;
-    for (const AttachedCapsule& capsule : rig.attached_capsules) {
-        const auto of_link = rig.link_padding_m.find(capsule.link);
-        const double link_padding_m = of_link == rig.link_padding_m.end() ? 0.0 : of_link->second;
-        body->push_back({capsule.link, capsule.p_link_a, capsule.p_link_b,
-                         capsule.radius_m + capsule.padding_m + link_padding_m});
-    }
-    return body;
-}
-
-Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
-                                                     const std::map<std::string, double>& link_padding_m,
-                                                     BoxRule boxes) {
+/// Of every link.
+Result<std::vector<Fitted>, RigError> read_fitted(const FilePlace& urdf,
+                                                  const std::map<std::string, double>& link_padding_m,
+                                                  BoxRule boxes) {
     auto document = UrdfDocument::read(urdf);
     if (!document) return unexpected(document.error());
     const auto& links = document->model().links_;
@@ -154,7 +174,7 @@ Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
                 document->error("link", link, "padded in the rig, but the robot has no such link"));
         }
     }
-    std::vector<Capsule> all;
+    std::vector<Fitted> all;
     std::vector<ElementFault> faults;
     for (const auto& [name, link] : links) {
         Bodies bodies;
@@ -172,13 +192,62 @@ Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
             break;
         }
         const auto padding = link_padding_m.find(name);
-        for (Capsule& capsule : to_capsules(std::move(bodies))) {
-            if (padding != link_padding_m.end()) capsule.radius_m += padding->second;
-            all.push_back(std::move(capsule));
+        for (Fitted& element : to_capsules(std::move(bodies))) {
+            if (padding != link_padding_m.end()) element.around.radius_m += padding->second;
+            all.push_back(std::move(element));
         }
     }
     if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));
     return all;
+}
+
+Result<std::vector<Capsule>, RigError> all_of(const Result<std::vector<Fitted>, RigError>& elements,
+                                              Capsule Fitted::*which) {
+    if (!elements) return unexpected(elements.error());
+    std::vector<Capsule> capsules;
+    for (const Fitted& element : *elements) capsules.push_back(element.*which);
+    return capsules;
+}
+
+/// With what the rig attaches, as it is.
+Result<std::vector<Capsule>, RigError> with_attached(Result<std::vector<Capsule>, RigError> body,
+                                                     const Rig& rig) {
+    if (!body) return body;
+    for (const AttachedCapsule& capsule : rig.attached_capsules)
+        body->push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
+    return body;
+}
+
+}  // namespace
+
+Result<std::vector<Capsule>, RigError> real_body(const Rig& rig) {
+    return with_attached(read_capsules(rig.urdf, {}, box_rule(rig)), rig);
+}
+
+Result<std::vector<Capsule>, RigError> certain_body(const Rig& rig) {
+    return with_attached(read_inner_capsules(rig.urdf, box_rule(rig)), rig);
+}
+
+Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig) {
+    auto body = read_capsules(rig.urdf, rig.link_padding_m, box_rule(rig));
+    if (!body) return body;
+    for (const AttachedCapsule& capsule : rig.attached_capsules) {
+        const auto of_link = rig.link_padding_m.find(capsule.link);
+        const double link_padding_m = of_link == rig.link_padding_m.end() ? 0.0 : of_link->second;
+        body->push_back({capsule.link, capsule.p_link_a, capsule.p_link_b,
+                         capsule.radius_m + capsule.padding_m + link_padding_m});
+    }
+    return body;
+}
+
+Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
+                                                     const std::map<std::string, double>& link_padding_m,
+                                                     BoxRule boxes) {
+    return all_of(read_fitted(urdf, link_padding_m, boxes), &Fitted::around);
+}
+
+Result<std::vector<Capsule>, RigError> read_inner_capsules(const FilePlace& urdf, BoxRule boxes) {
+    return all_of(read_fitted(urdf, {}, boxes), &Fitted::within);
 }
 
 }  // namespace octoskin::rig

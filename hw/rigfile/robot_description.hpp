@@ -35,9 +35,17 @@ enum class BoxRule : std::uint8_t {
     const FilePlace& urdf, const std::map<std::string, double>& link_padding_m,
     BoxRule boxes = BoxRule::refused);
 
+/// What lies wholly within each collision element: of a box and of a lone cylinder a capsule that reaches its
+/// faces, of a capsule and a sphere all of it. Errors as read_capsules.
+[[nodiscard]] Result<std::vector<Capsule>, RigError> read_inner_capsules(const FilePlace& urdf,
+                                                                         BoxRule boxes = BoxRule::refused);
+
 /// The robot as it is, by its URDF and what the rig attaches to it: without padding. For a simulation.
 [[nodiscard]] Result<std::vector<Capsule>, RigError> real_body(const Rig& rig);
 /// The same with the rig's padding: what the self-filter takes for the robot.
 [[nodiscard]] Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig);
+
+/// Where nothing can be but the robot: no padding, and nothing of what a capsule has more than its element.
+[[nodiscard]] Result<std::vector<Capsule>, RigError> certain_body(const Rig& rig);
 
 }  // namespace octoskin::rig

@@ -165,16 +165,23 @@ class Asking {
         return ground_.field->of(ground_.map, asked);
     }
 
+    /// None where there is no such body or posture: the question itself is refused for that.
+    [[nodiscard]] std::vector<PosedCapsule> own_capsules(std::span<const double> stands,
+                                                         bool is_certain) const {
+        const auto body = RobotQuery::build(*ground_.rig, *ground_.robot,
+                                            {.ignores_unmoved = false, .is_of_certain_body = is_certain});
+        const auto capsules = body ? body->pose(stands) : unexpected(PostureFault{});
+        return capsules ? *capsules : std::vector<PosedCapsule>{};
+    }
+
     /// Where the arm stands: as it is known, or where the path begins.
     Status<AppError> free_own_space() {
         if (!request_.own_space_m) return Done{};
         const auto& stands = ground_.present.empty() ? request_.path.front() : ground_.present;
-        // The arm itself, all of it and without padding.
-        const auto body = RobotQuery::build(*ground_.rig, *ground_.robot, {.ignores_unmoved = false});
-        if (!body) return Done{};
-        const auto capsules = body->pose(stands);
-        if (!capsules) return Done{};
-        if (octoskin::free_own_space(ground_.map, *capsules, *request_.own_space_m, is_ending_))
+        // The arm itself, all of it and without the question's padding.
+        const auto around = own_capsules(stands, false);
+        const auto certain = own_capsules(stands, true);
+        if (octoskin::free_own_space(ground_.map, {around, certain}, *request_.own_space_m, is_ending_))
             return Done{};
         if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the arm's own space was known");
         return fail(

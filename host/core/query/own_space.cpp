@@ -29,9 +29,25 @@ std::uint64_t voxels_of(const VoxelBox& box) {
            (box.highest.z - box.lowest.z + 1ULL);
 }
 
+/// Capsules, how far beyond them, and of which voxels.
+struct Region {
+    std::span<const PosedCapsule> capsules;
+    double margin_m = 0.0;
+    bool (*is_freed)(const FusedMap& map, const VoxelKey& key);
+};
+
+bool is_unknown_or_stale(const FusedMap& map, const VoxelKey& key) {
+    const Occupancy state = map.occupancy(key);
+    return state == Occupancy::unknown || (state == Occupancy::free && map.is_stale(key));
+}
+
+bool is_occupied(const FusedMap& map, const VoxelKey& key) {
+    return map.occupancy(key) == Occupancy::occupied;
+}
+
 /// Of the layers from `z_begin` to `z_last`: terms that clamp whatever they are added to at the least there
 /// is.
-void list_own(const FusedMap& map, const PosedCapsule& capsule, double margin_m, const VoxelBox& box,
+void list_own(const FusedMap& map, const Region& region, const PosedCapsule& capsule, const VoxelBox& box,
               unsigned z_begin, unsigned z_last, std::vector<VoxelUpdate>& updates) {
     const float all_the_way = map.config().log_odds_min - map.config().log_odds_max;
     for (unsigned z = z_begin; z <= z_last; ++z) {
@@ -39,32 +55,20 @@ void list_own(const FusedMap& map, const PosedCapsule& capsule, double margin_m,
             for (unsigned x = box.lowest.x; x <= box.highest.x; ++x) {
                 const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                                    static_cast<std::uint16_t>(z)};
-                const double outside_m = distance_to_surface(capsule, map.centre_of(key));
-                if (!(outside_m <= margin_m)) continue;
-                const Occupancy state = map.occupancy(key);
-                const bool is_old = state == Occupancy::free && map.is_stale(key);
-                if (is_old || state == Occupancy::unknown ||
-                    (state == Occupancy::occupied && outside_m <= 0.0))
-                    updates.push_back({key, all_the_way});
+                const bool is_near = distance_to_surface(capsule, map.centre_of(key)) <= region.margin_m;
+                if (is_near && region.is_freed(map, key)) updates.push_back({key, all_the_way});
             }
         }
     }
 }
 
-}  // namespace
-
-std::optional<std::size_t> free_own_space(FusedMap& map, std::span<const PosedCapsule> capsules,
-                                          double margin_m, const std::function<bool()>& is_ending) {
-    std::uint64_t voxels = 0;
-    for (const PosedCapsule& capsule : capsules) {
-        if (const auto box = box_about(map, capsule, margin_m)) voxels += voxels_of(*box);
-    }
-    if (voxels > kOwnSpaceVoxelsMax) return std::nullopt;
-
+/// How many voxels; empty: `is_ending` has said so.
+std::optional<std::size_t> free_region(FusedMap& map, const Region& region,
+                                       const std::function<bool()>& is_ending) {
     std::size_t freed = 0;
     std::vector<VoxelUpdate> updates;
-    for (const PosedCapsule& capsule : capsules) {
-        const auto box = box_about(map, capsule, margin_m);
+    for (const PosedCapsule& capsule : region.capsules) {
+        const auto box = box_about(map, capsule, region.margin_m);
         if (!box) continue;
         // A layer of bricks at a time: so long it takes to end, and so much memory the list takes.
         unsigned z_last = 0;
@@ -72,7 +76,7 @@ std::optional<std::size_t> free_own_space(FusedMap& map, std::span<const PosedCa
             if (is_ending()) return std::nullopt;
             z_last = std::min<unsigned>(z | (unsigned{kBrickEdge} - 1U), box->highest.z);
             updates.clear();
-            list_own(map, capsule, margin_m, *box, z, z_last, updates);
+            list_own(map, region, capsule, *box, z, z_last, updates);
             const Evidence is_free = evidence_of(updates, SensorKind::none);
             map.forget_counts_of(is_free);  // or what ranges counted there would mark it all the same
             map.apply(is_free);
@@ -80,6 +84,27 @@ std::optional<std::size_t> free_own_space(FusedMap& map, std::span<const PosedCa
         }
     }
     return freed;
+}
+
+std::uint64_t voxels_of(const FusedMap& map, const Region& region) {
+    std::uint64_t voxels = 0;
+    for (const PosedCapsule& capsule : region.capsules) {
+        if (const auto box = box_about(map, capsule, region.margin_m)) voxels += voxels_of(*box);
+    }
+    return voxels;
+}
+
+}  // namespace
+
+std::optional<std::size_t> free_own_space(FusedMap& map, const OwnBody& body, double margin_m,
+                                          const std::function<bool()>& is_ending) {
+    const Region about{body.around, margin_m, is_unknown_or_stale};
+    const Region within{body.certain, 0.0, is_occupied};
+    if (voxels_of(map, about) + voxels_of(map, within) > kOwnSpaceVoxelsMax) return std::nullopt;
+    const auto unknown = free_region(map, about, is_ending);
+    const auto occupied = unknown ? free_region(map, within, is_ending) : std::nullopt;
+    if (!occupied) return std::nullopt;
+    return *unknown + *occupied;
 }
 
 }  // namespace octoskin

@@ -16,17 +16,22 @@ namespace octoskin {
 /// margin of 0.3 m have 5 million at 1 cm.
 inline constexpr std::uint64_t kOwnSpaceVoxelsMax = std::uint64_t{1} << 27U;
 
-/// Frees each voxel whose centre lies in one of the capsules, and each unknown one whose centre is within
-/// `margin_m` of a capsule's surface; returns how many were not free. Free voxels there
-/// that are stale are confirmed, and counted, too. `map` is a copy to ask, not the map
-/// that goes on. What is occupied outside the capsules stays so, and what there is no room for stays unknown.
-/// `capsules`: of the robot as it stands, without padding, in the map frame, finite (else nothing is freed).
-/// Whoever gives a margin says that nothing is hidden in it; a capsule that is wider than its link hides what
-/// is between the two, too. Empty: there are more voxels than kOwnSpaceVoxelsMax, and nothing was done; or
-/// `is_ending`, which is asked at each layer of bricks, has said so. O(voxels of the capsules' boxes), 10 ns
-/// each. Throws std::bad_alloc.
+/// What the robot itself takes, in the map frame, finite (else nothing is freed).
+struct OwnBody {
+    std::span<const PosedCapsule> around;  ///< as it is asked about: with padding, and wider than its links
+    std::span<const PosedCapsule>
+        certain;  ///< RobotQueryConfig::is_of_certain_body: nothing else can be there
+};
+
+/// Frees each unknown voxel whose centre is within `margin_m` of the surface of `body.around`, and confirms
+/// each stale free one; frees each occupied voxel whose centre lies within `body.certain`, and no other: an
+/// obstacle may be where a capsule is wider than the link. Returns how many there were. `map` is a copy to
+/// ask, not the map that goes on. What there is no room for stays unknown. Whoever gives a margin says that
+/// nothing is hidden in it; a capsule that is wider than its link hides what is between the two, too. Empty:
+/// there are more voxels than kOwnSpaceVoxelsMax, and nothing was done; or `is_ending`, which is asked at
+/// each layer of bricks, has said so. O(voxels of the capsules' boxes), 10 ns each. Throws std::bad_alloc.
 std::optional<std::size_t> free_own_space(
-    FusedMap& map, std::span<const PosedCapsule> capsules, double margin_m,
+    FusedMap& map, const OwnBody& body, double margin_m,
     const std::function<bool()>& is_ending = [] { return false; });
 
 }  // namespace octoskin

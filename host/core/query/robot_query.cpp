@@ -87,12 +87,13 @@ Result<RobotQuery, RobotQueryFault> RobotQuery::build(const HostRig& rig, const 
     for (const std::string& link : config.links_ignored) {
         if (!robot.find_link(link)) return unexpected(RobotQueryFault{RobotQueryError::unknown_link, link});
     }
-    const auto whole = RobotBody::build(rig.body, robot);
+    const std::vector<LinkCapsule>& of_rig = config.is_of_certain_body ? rig.certain_body : rig.body;
+    const auto whole = RobotBody::build(of_rig, robot);
     if (!whole) return unexpected(RobotQueryFault{RobotQueryError::unknown_link, whole.error().element});
     const std::vector<bool> moved = moved_by_joints(robot, *whole);
     std::vector<LinkCapsule> asked;
-    for (std::size_t i = 0; i < rig.body.size(); ++i) {
-        const LinkCapsule& capsule = rig.body[i];
+    for (std::size_t i = 0; i < of_rig.size(); ++i) {
+        const LinkCapsule& capsule = of_rig[i];
         if (config.ignores_unmoved && !moved[i]) continue;
         if (std::ranges::find(config.links_ignored, capsule.link) == config.links_ignored.end())
             asked.push_back(capsule);

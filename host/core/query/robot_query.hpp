@@ -54,6 +54,8 @@ struct RobotQueryConfig {
     /// Capsules that no joint moves, such as the base's, are where they are in every posture, and what they
     /// stand on they touch.
     bool ignores_unmoved = true;
+    /// HostRig::certain_body in place of the body: to know what is the robot for sure, not to ask about it.
+    bool is_of_certain_body = false;
 };
 
 enum class RobotQueryError : std::uint8_t {

@@ -101,6 +101,8 @@ struct HostRig {
     HostJointSource joints;
     std::optional<HostCamera> camera;
     std::vector<LinkCapsule> body;
+    /// Where nothing can be but the robot: without padding, and within each element of its description.
+    std::vector<LinkCapsule> certain_body;
     std::vector<LinkWithoutBody> links_without_body;             ///< by name
     std::vector<LinkWithBorrowedBody> links_with_borrowed_body;  ///< by name
     /// Links left out when a sensor predicts where its own beam meets the robot: its mount.

@@ -118,6 +118,10 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
         }
         host.body.push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
     }
+    const auto certain = rig::certain_body(rig);
+    if (!certain) return unexpected(certain.error());
+    for (const rig::Capsule& capsule : *certain)
+        host.certain_body.push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
     const auto bodyless = rig::bodyless_links(rig, *capsules);
     if (!bodyless) return unexpected(bodyless.error());
     for (const std::string& link : bodyless->without_body) {

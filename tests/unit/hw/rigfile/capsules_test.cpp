@@ -1,4 +1,5 @@
 // Collision geometry of a URDF as capsules.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,9 +23,12 @@ class Capsules : public testing::Test {
     void TearDown() override { std::filesystem::remove(file_); }
     /// The capsules of a robot with one link, "hull", and this in it.
     Result<std::vector<Capsule>, RigError> read(const std::string& collisions, const Padding& padding = {}) {
+        write_robot(collisions);
+        return read_capsules(file_, padding);
+    }
+    void write_robot(const std::string& collisions) const {
         std::ofstream(file_) << "<robot name=\"r\">\n  <link name=\"hull\">\n"
                              << collisions << "  </link>\n</robot>\n";
-        return read_capsules(file_, padding);
     }
     std::filesystem::path file_ =
         std::filesystem::path(testing::TempDir()) /
@@ -168,6 +172,58 @@ TEST_F(Capsules, what_the_rig_attaches_is_real_and_padded_like_its_link) {
     EXPECT_EQ((*real)[0].p_link_b, Eigen::Vector3d(0, 0, 0.3));
     EXPECT_EQ((*real)[0].radius_m, 0.02);
     EXPECT_NEAR(padded_body(rig)->at(0).radius_m, 0.08, 1e-12);
+}
+
+/// Of the capsule's surface: how far the point furthest along `direction` reaches.
+double reach_along(const Capsule& capsule, const Eigen::Vector3d& direction) {
+    return std::max(capsule.p_link_a.dot(direction), capsule.p_link_b.dot(direction)) + capsule.radius_m;
+}
+
+TEST_F(Capsules, inner_ones_reach_the_flat_faces_and_no_further) {
+    const auto inner = [this](const std::string& collisions) {
+        write_robot(collisions);
+        return read_inner_capsules(file_, BoxRule::fitted).value();
+    };
+    const Eigen::Vector3d up(0, 0, 1);
+    const Eigen::Vector3d right(1, 0, 0);
+    for (const double length : {0.4, 0.2, 0.05, 0.0}) {  // of a radius of 0.1: long, a ball's, a flat disc's
+        const auto lone = inner(cylinder("xyz=\"0 0 0\"", "0.1", fmt::format("{}", length)));
+        ASSERT_EQ(lone.size(), 1U);
+        EXPECT_NEAR(reach_along(lone[0], up), length / 2, 1e-12) << length;
+        EXPECT_NEAR(reach_along(lone[0], -up), length / 2, 1e-12) << length;
+        EXPECT_NEAR(reach_along(lone[0], right), std::min(0.1, length / 2), 1e-12) << length;
+        if (length == 0.0) continue;
+        const auto one_round = inner(cylinder("xyz=\"0 0 0\"", "0.1", fmt::format("{}", length)) +
+                                     sphere(fmt::format("0 0 {}", length / 2), "0.1"));
+        ASSERT_EQ(one_round.size(), 1U);
+        EXPECT_NEAR(reach_along(one_round[0], up), length / 2 + 0.1, 1e-12) << length;
+        EXPECT_LE(reach_along(one_round[0], -up), length / 2 + 1e-12) << length;
+        EXPECT_LE(one_round[0].radius_m, 0.1 + 1e-12);
+    }
+    const auto whole = inner(sphere("0 0 0", "0.1") + cylinder("xyz=\"0 0 0.2\"", "0.1", "0.4") +
+                             sphere("0 0 0.4", "0.1") + sphere("1 1 1", "0.3"));
+    ASSERT_EQ(whole.size(), 2U);
+    EXPECT_NEAR(reach_along(whole[0], up), 0.5, 1e-12);
+    EXPECT_NEAR(reach_along(whole[0], -up), 0.1, 1e-12);
+    EXPECT_EQ(whole[1].radius_m, 0.3);
+    const auto box = inner("<collision><geometry><box size=\"0.08 0.4 0.06\"/></geometry></collision>\n");
+    ASSERT_EQ(box.size(), 1U);
+    EXPECT_NEAR(reach_along(box[0], {0, 1, 0}), 0.2, 1e-12);
+    EXPECT_NEAR(reach_along(box[0], up), 0.03, 1e-12);
+    EXPECT_NEAR(reach_along(box[0], right), 0.03, 1e-12);
+}
+
+TEST_F(Capsules, what_is_certainly_the_robot_has_no_padding) {
+    write_robot(sphere("0 0 0", "0.05"));
+    Rig rig;
+    rig.urdf = file_;
+    rig.link_padding_m["hull"] = 0.1;
+    rig.attached_capsules.push_back({.name = "hose", .link = "hull", .radius_m = 0.02, .padding_m = 0.2});
+    const auto certain = certain_body(rig);
+    ASSERT_TRUE(certain);
+    ASSERT_EQ(certain->size(), 2U);
+    EXPECT_EQ((*certain)[0].radius_m, 0.05);
+    EXPECT_EQ((*certain)[1].radius_m, 0.02);
 }
 
 TEST_F(Capsules, absurd_size_is_refused) {

@@ -69,6 +69,7 @@ HostRig one_joint_rig() {
     rig.joints = {.node_id = kJoints, .joints = {"shoulder"}, .rate_hz = 100.0};
     rig.camera = camera();
     rig.body = {{"base", {0, 0, -0.5}, {0, 0, 0.5}, 0.05}, {"arm", {0.08, 0, 0}, {0.14, 0, 0}, 0.03}};
+    rig.certain_body = rig.body;
     rig.links_ignored_by_sensors = {"arm"};
     return rig;
 }

@@ -308,7 +308,7 @@ TEST(OwnSpace, is_free_where_the_arm_is_and_where_it_was_unknown_about_it) {
     const auto capsules = query.pose(std::array{0.0, 0.0});
     EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied);
     FusedMap copy = map.copy();
-    EXPECT_GT(free_own_space(copy, *capsules, 0.04).value(), 0U);
+    EXPECT_GT(free_own_space(copy, {*capsules, *capsules}, 0.04).value(), 0U);
     EXPECT_EQ(worst_of(query, copy, *capsules)->state, PostureState::free);
     EXPECT_EQ(copy.occupancy(*copy.key_of({0.2, 0.16, 0.3})), Occupancy::unknown) << "beyond the margin";
     EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied) << "the map itself was changed";
@@ -320,12 +320,26 @@ TEST(OwnSpace, of_more_voxels_than_there_may_be_is_not_freed_and_can_be_ended) {
     MapConfig fine;
     fine.resolution_m = 0.004;
     FusedMap map{fine};
-    EXPECT_FALSE(free_own_space(map, *capsules, 1.0)) << "two capsules of 2.5 x 2 x 2 m each";
+    EXPECT_FALSE(free_own_space(map, {*capsules, *capsules}, 1.0)) << "two capsules of 2.5 x 2 x 2 m each";
     EXPECT_EQ(map.known_voxels(), 0U);
     int asked = 0;
-    EXPECT_FALSE(free_own_space(map, *capsules, 0.1, [&] { return ++asked > 3; }));
+    EXPECT_FALSE(free_own_space(map, {*capsules, *capsules}, 0.1, [&] { return ++asked > 3; }));
     EXPECT_EQ(asked, 4);
-    EXPECT_TRUE(free_own_space(map, *capsules, 0.1));
+    EXPECT_TRUE(free_own_space(map, {*capsules, *capsules}, 0.1));
+}
+
+// A capsule with padding, or about a box, is wider than the link, and an obstacle may be in between.
+TEST(OwnSpace, leaves_occupied_what_is_not_certainly_the_arm) {
+    FusedMap map = free_about_origin();
+    mark(map, {0.2, 0.02, 0.3});
+    const RobotQuery query = query_of(TwoJointArm());
+    const auto around = query.pose(std::array{0.0, 0.0});
+    std::vector<PosedCapsule> certain = *around;
+    for (PosedCapsule& capsule : certain) capsule.radius_m = 0.01;
+    EXPECT_EQ(free_own_space(map, {*around, certain}, 0.1), 0U);
+    EXPECT_EQ(worst_of(query, map, *around)->state, PostureState::occupied);
+    EXPECT_EQ(free_own_space(map, {*around, {}}, 0.1), 0U);
+    EXPECT_EQ(free_own_space(map, {*around, *around}, 0.1), 1U);
 }
 
 TEST(OwnSpace, leaves_occupied_what_is_outside_the_arm) {
@@ -333,7 +347,7 @@ TEST(OwnSpace, leaves_occupied_what_is_outside_the_arm) {
     mark(map, {0.2, 0.06, 0.3});  // its centre is 0.06 m from the axis, the arm 0.04 m thick
     const RobotQuery query = query_of(TwoJointArm());
     const auto capsules = query.pose(std::array{0.0, 0.0});
-    EXPECT_EQ(free_own_space(map, *capsules, 0.1), 0U);
+    EXPECT_EQ(free_own_space(map, {*capsules, *capsules}, 0.1), 0U);
     EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied);
 }
 

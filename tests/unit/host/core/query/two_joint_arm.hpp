@@ -25,6 +25,7 @@ struct TwoJointArm {
         rig.body = {{"post", {0, 0, 0}, {0, 0, 0.2}, 0.05},
                     {"upper", {0, 0, 0}, {0.3, 0, 0}, 0.04},
                     {"hand", {0, 0, 0}, {0, 0, 0}, 0.04}};
+        rig.certain_body = rig.body;
         HostSensor sensor;
         sensor.name = "palm";
         sensor.link = "hand";  // looks ahead, along the arm
