@@ -17,15 +17,6 @@ namespace {
 
 constexpr int kReadingsMax = 5;
 
-Result<std::string, AppError> robot_text(const rig::Rig& rig) {
-    constexpr std::size_t kRobotBytesMax = std::size_t{16} << 20U;  // the largest that is read
-    const auto opened = rig.urdf.open();
-    auto robot = opened ? opened->read(kRobotBytesMax) : unexpected(opened.error());
-    if (robot) return std::move(*robot);
-    return unexpected(
-        reading_error(rig.urdf, {ExitCode::bad_config, rig.urdf.shown().string() + ": cannot be read"}));
-}
-
 /// The same as text, for recordings.
 Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
                                                      const std::string& interface) {

@@ -7,6 +7,7 @@
 
 #include "common/wire/crc.hpp"
 #include "host/apps/playback/pace.hpp"
+#include "host/apps/recording/given_rig.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -60,10 +61,29 @@ Result<MapState, AppError> read_first_state(const PlaybackRequest& request, std:
     return std::move(snapshot->state);
 }
 
+std::optional<std::uint32_t> placement_of(const rig::Rig& rig) {
+    const auto robot = robot_text(rig);
+    return robot ? std::optional(rig::placement_crc32(rig, *robot)) : std::nullopt;
+}
+
+/// Whether another rig or robot was given, by which measurements lie elsewhere in the map than by the
+/// recording's own: what the daemon had mapped before would be of another world.
+bool is_placed_otherwise(const PlaybackRequest& request, const rig::Rig& rig) {
+    if (request.rig.empty() && request.robot.empty()) return false;
+    const auto own = read_given_rig(request.recording.rig());
+    return !own || placement_of(*own) != placement_of(rig);
+}
+
 /// Puts what the recording began with into `pipeline`. The answer: what a person should know of it.
 Result<std::vector<std::string>, AppError> begin_with_first(const PlaybackRequest& request,
+                                                            const rig::Rig& rig,
                                                             const orderlog::Header& header,
                                                             bool has_daemons_mapping, Pipeline& pipeline) {
+    if ((header.first_state || header.first_map) && is_placed_otherwise(request, rig)) {
+        return std::vector<std::string>{
+            "the map that the recording began with is left out: the rig or robot that was given places base, "
+            "sensors or camera elsewhere, and this map begins empty"};
+    }
     if (header.first_state && has_daemons_mapping) {
         auto state = read_first_state(request, *header.first_state, header.mapping_crc32);
         if (!state) return unexpected(state.error());
@@ -146,7 +166,7 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
     }
     const bool has_daemons_mapping =
         order->header().mapping_crc32 == crc32_of_text(mapping_text(request.mapping));
-    auto warnings = begin_with_first(request, order->header(), has_daemons_mapping, pipeline);
+    auto warnings = begin_with_first(request, rig, order->header(), has_daemons_mapping, pipeline);
     if (!warnings) return unexpected(warnings.error());
     if (request.listener != nullptr && pipeline.map().known_voxels() > 0)
         request.listener->on_begin(pipeline.map());

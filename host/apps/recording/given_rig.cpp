@@ -13,4 +13,13 @@ Result<rig::Rig, AppError> read_given_rig(const FilePlace& file, const std::file
     return std::move(rig).value();
 }
 
+Result<std::string, AppError> robot_text(const rig::Rig& rig) {
+    constexpr std::size_t kRobotBytesMax = std::size_t{16} << 20U;  // the largest that is read
+    const auto opened = rig.urdf.open();
+    auto robot = opened ? opened->read(kRobotBytesMax) : unexpected(opened.error());
+    if (robot) return std::move(*robot);
+    return unexpected(
+        reading_error(rig.urdf, {ExitCode::bad_config, rig.urdf.shown().string() + ": cannot be read"}));
+}
+
 }  // namespace octoskin

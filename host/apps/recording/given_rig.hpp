@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
@@ -13,5 +14,8 @@ namespace octoskin {
 [[nodiscard]] Result<rig::Rig, AppError> read_given_rig(const FilePlace& file,
                                                         const std::filesystem::path& robot = {},
                                                         ExitCode otherwise = ExitCode::bad_config);
+
+/// The text of its robot's URDF. Error (bad_config; no_permission): it cannot be read.
+[[nodiscard]] Result<std::string, AppError> robot_text(const rig::Rig& rig);
 
 }  // namespace octoskin

@@ -122,6 +122,20 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     EXPECT_EQ(octoskin(plain).exit_code, 0);
     EXPECT_TRUE(ScratchFolder::read(out() + "/maps/fused.ot") == first);
     EXPECT_FALSE(first == in_order);
+
+    // With a rig that places the base elsewhere what the daemon had mapped before would be of another world.
+    const auto known_with = [this](const std::string& rig_keys) {
+        const auto rig = folder_.write("given.yaml", "extends: " + out() + "/rig.yaml\n" + rig_keys);
+        const std::string maps = (folder_ / "maps-given").string();
+        const Said said =
+            octoskin("replay " + out() + " --fused-only --rig " + rig.string() + " --out " + maps);
+        EXPECT_EQ(said.exit_code, 0) << said.output;
+        const auto map = load_map(maps + "/fused.ot");
+        return map ? map->map.known_voxels() : 0;
+    };
+    const std::size_t named_otherwise = known_with("name: other\n");
+    EXPECT_GE(named_otherwise, load_map(out() + "/first.ot")->map.known_voxels());
+    EXPECT_LT(known_with("T_map_base: {xyz_m: [0.001, 0, 0], rpy_deg: [0, 0, 0]}\n"), named_otherwise);
 }
 
 /// Some 490 bricks of 2064 bytes and their nodes are the one MiB: 448 that nothing touches, the rest is soon
