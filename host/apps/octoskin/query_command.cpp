@@ -328,10 +328,10 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
     command.add_flag("--all-links", options.request.asks_unmoved_links,
                      "Ask about bodies that no joint moves, too: the arm's base");
     command
-        .add_option(
-            "--own-space", options.own_space_m,
-            "What lies within the arm as it stands, and what is unknown or stale within so many metres of "
-            "it, counts as free. Give it where nothing can hide there")
+        .add_option("--own-space", options.own_space_m,
+                    "As the arm stands, what is occupied where only the arm can be counts as free, and what "
+                    "is unknown "
+                    "or stale within it and so many metres of it. Give it where nothing can hide there")
         ->check(from_to(0.0, 1.0));
     command
         .add_option("--stands", options.stands,

@@ -1,0 +1,100 @@
+// What lives while the daemon does, for the three files that have what it does: daemon.cpp (its life and its
+// answers), daemon_map.cpp (the map's way from and to the disk), daemon_reload.cpp (SIGHUP).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/apps/daemon/boot_clock.hpp"
+#include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/daemon.hpp"
+#include "host/apps/daemon/depth_thread.hpp"
+#include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/home_watch.hpp"
+#include "host/apps/daemon/inputs.hpp"
+#include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/next_settings.hpp"
+#include "host/apps/daemon/problem_log.hpp"
+#include "host/apps/daemon/query_desk.hpp"
+#include "host/apps/daemon/record_requests.hpp"
+#include "host/apps/daemon/register_log.hpp"
+#include "host/apps/daemon/reload_pace.hpp"
+#include "host/apps/daemon/side_task.hpp"
+#include "host/apps/daemon/status.hpp"
+
+namespace octoskin {
+
+/// The loop comes first: whatever watches through it goes before it.
+struct Daemon::Parts {
+    Parts(DaemonRequest request_in, Settings settings_in, Pipeline pipeline_in,
+          std::shared_ptr<const LogQueue> log_in)
+        : log(std::move(log_in)),
+          request(std::move(request_in)),
+          settings(std::move(settings_in)),
+          pipeline(std::move(pipeline_in)),
+          inputs(request, settings.host.rig, loop, pipeline, recordings),
+          queries(settings.host),
+          started(monotonic_now()) {}
+
+    Status<AppError> take_sockets();
+    Status<AppError> take_folder();
+    void watch();
+    void attend();
+    void tell_problems();
+    void go_where_home_is(std::optional<OpenFolder> next);
+    [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
+    void go_on_with(KeptMap kept);
+    /// What a copy of the map is of, for the next start, once it has gone on to now.
+    [[nodiscard]] SnapshotOrigin make_ready_to_save(FusedMap& copy);
+    void save_map();
+    std::string save_last_map(HostTime end);
+    std::uint64_t settle_pipeline();
+    [[nodiscard]] std::string why_map_ends(const Settings& next) const;
+    void keep_within(const MapConfig& next);
+    [[nodiscard]] bool is_placed_as(std::uint32_t placement_crc32) const;
+    [[nodiscard]] bool take_limits(const Settings& next);
+    [[nodiscard]] bool go_on_with(Next& next);
+    void ask_reload();
+    void begin_reload();
+    void end_reload();
+    void obey_reload(NextResult next);
+    /// Whether anything changed.
+    [[nodiscard]] bool take_next(NextResult next);
+    [[nodiscard]] DaemonView view() const;
+    std::string answer(const std::string& line);
+
+    std::shared_ptr<const LogQueue> log;
+    DaemonRequest request;
+    Settings settings;
+    EventLoop loop;
+    Pipeline pipeline;
+    DepthThread depth_thread;   ///< goes before the pipeline that it works for
+    RecordRequests recordings;  ///< lets go of the pipeline before that goes
+    Inputs inputs;
+    std::optional<HomeWatch> home;
+    std::optional<MapKeeper> keeper;
+    std::unique_ptr<ControlSocket> control;
+    QueryDesk queries;
+    HostTime started;
+    std::string reload_error;
+    ReloadCounts reloads;
+    std::optional<HostTime> reloaded;
+    ReloadPace reload_pace;
+    SideTask<NextResult> reading;  ///< of the files, for SIGHUP
+    ProblemLog problem_log;
+    RegisterLog register_log;
+    LastUsed last_used;
+    MapTime map_time;
+
+    std::vector<EventSource> sources;
+};
+
+/// What a person should know of the rig and the robot.
+void tell_warnings(const Settings& settings);
+
+}  // namespace octoskin

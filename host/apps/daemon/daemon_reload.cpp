@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <systemd/sd-daemon.h>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "host/apps/daemon/daemon_parts.hpp"
+#include "host/apps/daemon/map_files.hpp"
+#include "host/io/mapfile/map_file.hpp"
+
+namespace octoskin {
+
+void Daemon::Parts::ask_reload() {
+    const HostTime now = monotonic_now();
+    const bool is_first = reload_pace.ask();
+    if (reload_pace.is_due(now)) return begin_reload();
+    if (is_first && !reading.begun())
+        spdlog::info("SIGHUP: the files are read in {:.1f} s, as they were a moment ago",
+                     seconds_of(reload_pace.wait(now)));
+}
+
+void Daemon::Parts::begin_reload() {
+    (void)sd_notify(0, "RELOADING=1");
+    reload_pace.begin_reading();
+    try {
+        reading.begin([request = request, held = settings.recorded] { return read_next(request, held); });
+    } catch (const std::bad_alloc&) {
+        obey_reload(fail(ExitCode::bad_config, "no memory for what the files say"));
+    }
+}
+
+void Daemon::Parts::end_reload() {
+    if (auto next = reading.take()) obey_reload(std::move(*next));
+}
+
+void Daemon::Parts::obey_reload(NextResult next) {
+    const bool has_changed = take_next(std::move(next));
+    reload_pace.obeyed(monotonic_now(), has_changed);
+    tell_problems();  // why it was refused, if it was
+    (void)sd_notify(0, "READY=1");
+}
+
+bool Daemon::Parts::take_next(NextResult next) {
+    if (next && next->has_value()) {
+        if (std::string why = why_map_ends((*next)->settings); !why.empty())
+            next = fail(ExitCode::bad_config, std::move(why));
+    }
+    if (!next) reload_error = next.error().message;
+    if (next && !next->has_value()) {
+        ++reloads.unchanged;
+        reload_error.clear();
+        spdlog::info("SIGHUP: rig, robot and mapping say what holds already; nothing changes");
+        return false;
+    }
+    if (next && go_on_with(**next)) return true;
+    spdlog::error("not reloaded");  // why, the problems tell
+    return next.has_value();
+}
+
+/// False, and as before: there is no memory for that.
+bool Daemon::Parts::go_on_with(Next& next) {
+    recordings.stop(monotonic_now(), "the daemon read its files anew (SIGHUP)");  // whole with the old ones
+    keep_within(next.settings.mapping.map);
+    inputs.prepare_for(next.settings.host.rig);
+    const std::uint64_t dropped = settle_pipeline();
+    if (!take_limits(next.settings)) {
+        inputs.prepare_for(settings.host.rig);
+        return false;
+    }
+    next.pipeline.go_on_from(pipeline);
+    settings = std::move(next.settings);
+    pipeline = std::move(next.pipeline);
+    pipeline.work_beside(&depth_thread);
+    inputs.change_rig(settings.host.rig);
+    queries.change_robot(settings.host);
+    reload_error.clear();
+    reloaded = monotonic_now();
+    spdlog::info("reloaded: rig '{}'; the map goes on; {} of what waited was not used",
+                 settings.host.rig.name, dropped);
+    tell_warnings(settings);
+    return true;
+}
+
+/// Why the map cannot go on with these settings; empty if it can. Another resolution is refused as at the
+/// start: the next save would replace the map.
+std::string Daemon::Parts::why_map_ends(const Settings& next) const {
+    const double now = settings.mapping.map.resolution_m;
+    const double wanted = next.mapping.map.resolution_m;
+    if (wanted == now) return why_no_room(pipeline.map(), next.mapping.map);
+    return fmt::format("{}; end octoskin, move {} away and start octoskin to begin with an empty map",
+                       describe_other_voxels(request.map_folder / kMapFile, now, wanted), kMapFilesText);
+}
+
+/// What still waits must not make the map larger than it may be from then on: the next start would refuse it.
+void Daemon::Parts::keep_within(const MapConfig& next) {
+    MapConfig both = settings.mapping.map;
+    both.memory_max_mib = std::min(both.memory_max_mib, next.memory_max_mib);
+    pipeline.limit_map(both);
+}
+
+/// While the map is still the pipeline's: it must not be lost with what there is no memory for.
+bool Daemon::Parts::take_limits(const Settings& next) {
+    try {
+        pipeline.limit_map(next.mapping.map);
+        if (!is_placed_as(next.recorded.placement_crc32)) pipeline.forget_times();
+        return true;
+    } catch (const std::bad_alloc&) {
+        pipeline.limit_map(settings.mapping.map);
+        reload_error = "there is no memory for the map within its new limits beside the old one";
+        return false;
+    }
+}
+
+/// What waits in the pipeline that is about to go is used or counted; how much was not used.
+std::uint64_t Daemon::Parts::settle_pipeline() {
+    const auto rejected = [this] {
+        const PipelineAccounts& accounts = pipeline.accounts();
+        return accounts.readings.rejected() + accounts.joint_samples.rejected() +
+               accounts.depth_frames.rejected();
+    };
+    const std::uint64_t before = rejected();
+    pipeline.finish();
+    ++reloads.count;
+    reloads.dropped += rejected() - before;
+    return rejected() - before;
+}
+
+}  // namespace octoskin
