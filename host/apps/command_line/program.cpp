@@ -57,12 +57,13 @@ int run(const octoskin::app::Program& program, int argc, char** argv) {
     }
 }
 
-/// Work that was done and whose output could not be written is a failure, too.
+/// Work that was done and whose output could not be written is a failure, too; so is an answer (1, 2).
 int checked(int exit_code) {
     const auto failure = octoskin::app::flush_standard_output();
     if (!failure) return exit_code;
     spdlog::error("{}", failure->message);
-    return exit_code == 0 ? static_cast<int>(failure->code) : exit_code;
+    const bool is_done = exit_code <= static_cast<int>(octoskin::ExitCode::uncertain);
+    return is_done ? static_cast<int>(failure->code) : exit_code;
 }
 
 /// With less a command fails somewhere in its midst: of the stack with a fault that nothing can catch, of

@@ -51,6 +51,14 @@ TEST_F(QueryCommandTest, of_a_free_posture_ends_with_0) {
     EXPECT_EQ(said.output, "free\n");
 }
 
+TEST_F(QueryCommandTest, whose_answer_cannot_be_written_ends_with_74_whatever_it_is) {
+    for (const std::string& map : {free_map(), blocked_map()}) {
+        const Said said = run(typed("query " + map + " --joints " + kReady + " --rig " +
+                                    source("hw/rigs/experiment.yaml") + " > /dev/full"));
+        EXPECT_EQ(said.exit_code, 74) << said.output;
+    }
+}
+
 TEST_F(QueryCommandTest, of_a_blocked_posture_ends_with_1_and_tells_where) {
     const Said said = query(blocked_map() + " --joints " + kReady + " --json");
     ASSERT_EQ(said.exit_code, 1) << said.output;
