@@ -1,5 +1,8 @@
 #include "host/apps/daemon/settings.hpp"
 
+#include <sys/stat.h>
+
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +19,25 @@ namespace octoskin {
 namespace {
 
 constexpr int kReadingsMax = 5;
+
+/// A file as it is at an instant: which one it is, and when it was written last.
+struct FileStamp {
+    dev_t device = 0;
+    ino_t number = 0;
+    std::int64_t written_ns = 0;
+    std::int64_t changed_ns = 0;
+    friend bool operator==(const FileStamp&, const FileStamp&) = default;
+};
+
+std::optional<FileStamp> stamp_of(const FilePlace& file) {
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    const auto opened = file.open();
+    struct stat status {};
+    if (!opened || ::fstat(opened->descriptor(), &status) != 0) return std::nullopt;
+    return FileStamp{status.st_dev, status.st_ino,
+                     status.st_mtim.tv_sec * kSecond_ns + status.st_mtim.tv_nsec,
+                     status.st_ctim.tv_sec * kSecond_ns + status.st_ctim.tv_nsec};
+}
 
 /// The same as text, for recordings.
 Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
@@ -53,13 +75,17 @@ Result<Settings, AppError> settings_of(const rig::Rig& rig, const DaemonRequest&
 /// The robot's file is read for its links, its body, its joints and as text. It may be saved anew meanwhile:
 /// what is read counts only if it was the same file before all of it and behind.
 Result<Settings, AppError> read_settings(const DaemonRequest& request) {
-    std::optional<std::string> robot_before;
+    std::optional<std::string> text_before;
+    std::optional<FileStamp> stamp_before;
     for (int attempt = 0; attempt < kReadingsMax; ++attempt) {
         const auto rig = read_given_rig(request.rig, request.robot);
         if (!rig) return unexpected(rig.error());
         auto settings = settings_of(*rig, request);
-        if (!settings || settings->recorded.robot == robot_before) return settings;
-        robot_before = std::move(settings->recorded.robot);
+        if (!settings) return settings;
+        const auto stamp = stamp_of(rig->urdf);
+        if (stamp && stamp == stamp_before && settings->recorded.robot == text_before) return settings;
+        text_before = std::move(settings->recorded.robot);
+        stamp_before = stamp;
     }
     return fail(ExitCode::bad_config,
                 request.rig.string() + ": its robot's URDF was saved anew each time that it was read");

@@ -23,10 +23,12 @@ constexpr const char* kBench = OCTOSKIN_SOURCE_DIR "/hw/rigs/bench_one_board.yam
 /// An editor that saves now this robot, now that.
 class Saving {
   public:
-    Saving(const ScratchFolder& folder, const std::string& one, const std::string& other) {
-        thread_ = std::thread([this, &folder, one, other] {
+    /// Waits for up to `pause_max` before it saves again.
+    Saving(const ScratchFolder& folder, const std::string& one, const std::string& other,
+           std::chrono::microseconds pause_max) {
+        thread_ = std::thread([this, &folder, one, other, pause_max] {
             std::mt19937 random(7);
-            std::uniform_int_distribution<int> pause_us(0, 30'000);
+            std::uniform_int_distribution<std::int64_t> pause_us(0, pause_max.count());
             for (bool is_one = true; !is_ending_; is_one = !is_one) {
                 std::filesystem::rename(folder.write("next.urdf", is_one ? one : other),
                                         folder / "robot.urdf");
@@ -59,9 +61,12 @@ TEST(Settings, are_of_one_robot_however_often_its_file_is_saved_anew_meanwhile) 
                  fmt::format("extends: {}\nrobot: {{urdf: {}}}\n", kBench, (folder / "robot.urdf").string()));
     DaemonRequest request;
     request.rig = folder / "rig.yaml";
-    const Saving saving(folder, panda, other);
+    const auto begun = std::chrono::steady_clock::now();
+    ASSERT_TRUE(read_settings(request));
+    const auto takes = std::chrono::steady_clock::now() - begun;
+    const Saving saving(folder, panda, other, std::chrono::ceil<std::chrono::microseconds>(4 * takes));
     int read = 0;
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 60; ++i) {
         const auto settings = read_settings(request);
         if (!settings) continue;
         ++read;
