@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -22,14 +23,19 @@
 namespace octoskin::app {
 namespace {
 
-/// A recording's own mapping is part of a file that may come from others: what it asks for at once, 8 bytes
-/// for each voxel of an image's box and the map itself, must fit this machine with as much again to spare.
+/// What a mapping may come to take at once, bytes: 8 for each voxel of an image's box, and the map itself.
+std::uint64_t memory_of(const MappingConfig& mapping) {
+    return 8 * std::uint64_t{mapping.depth_box_voxels_max} +
+           (std::uint64_t{mapping.map.memory_max_mib} << 20U);
+}
+
+/// A recording's own mapping is part of a file that may come from others. Where it may take more than the
+/// default mapping, it must leave half of this machine's memory.
 Status<AppError> check_memory(const MappingConfig& mapping, const FilePlace& file) {
-    const std::uint64_t asked =
-        8 * std::uint64_t{mapping.depth_box_voxels_max} + (std::uint64_t{mapping.map.memory_max_mib} << 20U);
+    const std::uint64_t asked = memory_of(mapping);
     const std::uint64_t machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                                   static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-    if (asked <= machine / 2) return Done{};
+    if (asked <= std::max(machine / 2, memory_of(MappingConfig{}))) return Done{};
     return fail(
         ExitCode::bad_config,
         fmt::format(
