@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
-#include "common/wire/crc.hpp"
 #include "host/apps/playback/pace.hpp"
 #include "host/apps/recording/given_rig.hpp"
+#include "host/io/mapfile/file_checksum.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -17,15 +17,11 @@
 namespace octoskin {
 namespace {
 
-std::uint32_t crc32_of_text(std::string_view text, std::uint32_t before = 0) {
-    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, before);
-}
-
 /// Of its .ot file, which is larger than the map: it need not be in the memory beside that.
 std::uint32_t crc32_of_map(const FusedMap& map, decltype(write_ot) write) {
     std::uint32_t crc = 0;
     const auto add = [&crc](std::string_view bytes) {
-        crc = crc32_of_text(bytes, crc);
+        crc = file_checksum(bytes, crc);
         return true;
     };
     write(map, add);
@@ -165,7 +161,7 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
                                 order->header().joints, rig.joints.joints.size()));
     }
     const bool has_daemons_mapping =
-        order->header().mapping_crc32 == crc32_of_text(mapping_text(request.mapping));
+        order->header().mapping_crc32 == file_checksum(mapping_text(request.mapping));
     auto warnings = begin_with_first(request, rig, order->header(), has_daemons_mapping, pipeline);
     if (!warnings) return unexpected(warnings.error());
     if (request.listener != nullptr && pipeline.map().known_voxels() > 0)

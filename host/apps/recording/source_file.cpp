@@ -6,7 +6,7 @@
 #include <fstream>
 #include <vector>
 
-#include "common/wire/crc.hpp"
+#include "host/io/mapfile/file_checksum.hpp"
 
 namespace octoskin {
 
@@ -20,8 +20,7 @@ std::optional<std::uint32_t> crc32_of(std::span<const FilePlace> files, const By
         std::ifstream stream(opened->path_for_libraries(), std::ios::binary);
         if (!stream) return std::nullopt;
         while (stream.read(buffer.data(), buffer.size()), stream.gcount() > 0) {
-            const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.data());
-            crc = crc32({bytes, static_cast<std::size_t>(stream.gcount())}, crc);
+            crc = file_checksum({buffer.data(), static_cast<std::size_t>(stream.gcount())}, crc);
             read += static_cast<std::uint64_t>(stream.gcount());
             if (report) report(read);
         }

@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "common/wire/crc.hpp"
+#include "host/io/mapfile/file_checksum.hpp"
 
 namespace octoskin {
 namespace {
@@ -144,7 +144,7 @@ class FileDraft::Partial {
             return failed(SaveStep::attributes);
         std::optional<SaveError> error;
         content([&](std::string_view bytes) {
-            crc_ = crc32({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, crc_);
+            crc_ = file_checksum(bytes, crc_);
             if (!error) error = write_all(descriptor, bytes);
             return !error;
         });

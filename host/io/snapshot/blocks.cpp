@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/wire/crc.hpp"
+#include "host/io/mapfile/file_checksum.hpp"
 
 namespace octoskin::snapshot {
 namespace {
@@ -13,10 +13,6 @@ constexpr std::array<std::string_view, kBlockKinds> kTags{"HEAD", "LOGO", "PRIO"
 constexpr std::size_t kTagBytes = 4;
 /// Kind, number and length.
 constexpr std::size_t kHeadBytes = kTagBytes + 2 * sizeof(std::uint32_t);
-
-std::uint32_t crc32_of_text(std::string_view text, std::uint32_t before = 0) {
-    return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, before);
-}
 
 }  // namespace
 
@@ -29,7 +25,7 @@ void BlockWriter::end_block() {
     std::string head(tag_of(kind_));
     ByteWriter(head).put(number_++);
     ByteWriter(head).put(static_cast<std::uint32_t>(payload_.size()));
-    ByteWriter(payload_).put(crc32_of_text(payload_, crc32_of_text(head)));
+    ByteWriter(payload_).put(file_checksum(payload_, file_checksum(head)));
     is_taken_ = is_taken_ && sink_(head) && sink_(payload_);
     payload_.clear();
 }
@@ -45,7 +41,7 @@ std::optional<Block> BlockReader::next() noexcept {
     const bool is_next = number == number_ && kind >= kind_ && length > 0 && length <= kPayloadMax;
     if (!is_next || rest.size() - kHeadBytes < length + sizeof(std::uint32_t)) return std::nullopt;
     const auto crc = ByteReader(rest.substr(kHeadBytes + length)).get<std::uint32_t>();
-    if (crc != crc32_of_text(rest.substr(0, kHeadBytes + length))) return std::nullopt;
+    if (crc != file_checksum(rest.substr(0, kHeadBytes + length))) return std::nullopt;
     const Block block{kind, rest.substr(kHeadBytes, length), at_};
     ++number_;
     kind_ = kind;
