@@ -81,8 +81,11 @@ Board::~Board() {
 Board::Left Board::end() {
     constexpr Microseconds kPatience{1'000'000};
     Left left{.xshut_refused = devices_.xshut.set_all_low(), .stuck = {}};
-    for (std::size_t bus = 0; bus < threads_.size(); ++bus)
-        if (!threads_[bus]->end(kPatience)) left.stuck.push_back(arguments_.i2c[bus]);
+    const NodeTime begun = node_now();
+    for (std::size_t bus = 0; bus < threads_.size(); ++bus) {
+        const Microseconds rest = std::max(kPatience - elapsed(begun, node_now()), Microseconds{0});
+        if (!threads_[bus]->end(rest)) left.stuck.push_back(arguments_.i2c[bus]);
+    }
     return left;
 }
 

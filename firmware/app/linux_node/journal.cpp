@@ -75,12 +75,9 @@ void Journal::update(const node::Node& node, const linux_port::CanInterface& can
         unconfirmed_ = can.unconfirmed();
         say("CAN: " + std::to_string(unconfirmed_) + " frames never confirmed since start");
     }
-    if (const auto gone = data_ready.gone(); gone.size() != data_ready_gone_) {
-        data_ready_gone_ = gone.size();
-        for (const std::string& name : gone)
-            say("data-ready line " + name +
-                ": gone with its GPIO chip; the sensors of its bus are asked over I2C");
-    }
+    for (const auto& gone = data_ready.gone(); data_ready_gone_ < gone.size(); ++data_ready_gone_)
+        say("data-ready line " + gone[data_ready_gone_] +
+            ": gone with its GPIO chip; the sensors of its bus are asked over I2C");
     if (xshut.failures() != xshut_failures_) {
         xshut_failures_ = xshut.failures();
         say("XSHUT: the kernel refused to set a line, " + std::to_string(xshut_failures_) +

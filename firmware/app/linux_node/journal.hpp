@@ -35,7 +35,7 @@ class Journal {
     std::uint8_t ignored_data_ready_ = 0;
     std::uint64_t unconfirmed_ = 0;
     std::uint64_t xshut_failures_ = 0;
-    std::size_t data_ready_gone_ = 0;
+    std::size_t data_ready_gone_ = 0;  ///< so many have been said
 };
 
 }  // namespace octoskin::linux_node

@@ -146,13 +146,7 @@ void DataReadyInputs::on_readable(std::size_t bus) {
     Input& input = inputs_[bus];
     input.has_fallen = input.line.take_falls();  // only a line that has not fallen is listened to
     input.is_gone = !input.has_fallen;
-}
-
-std::vector<std::string> DataReadyInputs::gone() const {
-    std::vector<std::string> names;
-    for (const Input& input : inputs_)
-        if (input.is_gone) names.push_back(input.name);
-    return names;
+    if (input.is_gone) gone_.push_back(input.name);
 }
 
 }  // namespace octoskin::linux_port

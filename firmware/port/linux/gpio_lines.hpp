@@ -91,8 +91,8 @@ class DataReadyInputs final : public node::DataReadyLines {
     /// Its descriptor is readable. Where there is no fall to be read all the same the line is gone with its
     /// chip: the descriptor would be readable for good.
     void on_readable(std::size_t bus);
-    /// Those that are gone, by bus; as "gpiochip0:17".
-    [[nodiscard]] std::vector<std::string> gone() const;
+    /// Those that are gone, in the order in which they went; as "gpiochip0:17".
+    [[nodiscard]] const std::vector<std::string>& gone() const noexcept { return gone_; }
 
   private:
     struct Input {
@@ -102,6 +102,7 @@ class DataReadyInputs final : public node::DataReadyLines {
         bool is_gone = false;
     };
     std::vector<Input> inputs_;
+    std::vector<std::string> gone_;
 };
 
 }  // namespace octoskin::linux_port

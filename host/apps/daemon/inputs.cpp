@@ -342,7 +342,8 @@ void Inputs::feed_joints(std::optional<WallTime> until) {
             ++joints_thinned_;
             continue;
         }
-        for (const wire::CanFrame& frame : *frames) feed(frame, place_of(sample));
+        const WallTime place = place_of(sample);
+        for (const wire::CanFrame& frame : *frames) feed(frame, place);
     }
 }
 

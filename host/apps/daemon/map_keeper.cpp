@@ -74,12 +74,13 @@ Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& f
 
 bool finish_save(const OpenFolder& folder) {
     const FilePlace draft(folder, draft_name_of(kSnapshotFile));
+    if (!draft.is_there()) return false;
     const auto map_crc32 = crc32_of(FilePlace(folder, kMapFile));
     const auto is_of_map = [&](const FilePlace& snapshot) {
         const auto origin = origin_of_snapshot_file(snapshot);
         return map_crc32 && origin && origin->map_crc32 == map_crc32;
     };
-    if (!draft.is_there() || !is_of_map(draft) || is_of_map(FilePlace(folder, kSnapshotFile))) return false;
+    if (!is_of_map(draft) || is_of_map(FilePlace(folder, kSnapshotFile))) return false;
     return static_cast<bool>(folder.move(draft.filename(), kSnapshotFile));
 }
 

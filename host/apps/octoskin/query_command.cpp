@@ -330,8 +330,8 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
     command
         .add_option("--own-space", options.own_space_m,
                     "As the arm stands, what is occupied where only the arm can be counts as free, and what "
-                    "is unknown "
-                    "or stale within it and so many metres of it. Give it where nothing can hide there")
+                    "is unknown or stale within it and so many metres of it. Give it where nothing can hide "
+                    "there")
         ->check(from_to(0.0, 1.0));
     command
         .add_option("--stands", options.stands,

@@ -94,8 +94,8 @@ std::string describe(const CameraError& error, std::size_t sensors) {
     return "not where the rig has it, or its scale is off: that explains what " + std::to_string(sensors) +
            " sensors contradict (by an estimate " + by.data() +
            "). Compare the arm's posture with its joint states first, as a joint whose zero is off looks the "
-           "same; else "
-           "measure the camera's pose anew (docs/method.md, \"A sensor that contradicts the camera\")";
+           "same; else measure the camera's pose anew (docs/method.md, \"A sensor that contradicts the "
+           "camera\")";
 }
 
 }  // namespace octoskin
