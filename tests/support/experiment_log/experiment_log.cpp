@@ -6,7 +6,7 @@
 
 namespace octoskin::test {
 
-std::vector<StampedFrame> experiment_log(rig::Rig rig, std::uint64_t seed) {
+std::vector<StampedFrame> experiment_log(rig::Rig rig, std::uint64_t seed, std::uint32_t revolutions) {
     sim::Scenario scenario =
         sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
     const auto world = sim::World::read(scenario.world).value();
@@ -14,6 +14,7 @@ std::vector<StampedFrame> experiment_log(rig::Rig rig, std::uint64_t seed) {
     const auto capsules = rig::read_capsules(rig.urdf, {}).value();
     rig.camera.reset();
     scenario.rest_s = 2.0;
+    scenario.motion.revolutions = revolutions;
     std::vector<StampedFrame> log;
     const sim::ExperimentInput input{.rig = rig,
                                      .capsules = capsules,

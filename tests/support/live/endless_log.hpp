@@ -14,8 +14,8 @@ namespace octoskin::test {
 
 class EndlessLog {
   public:
-    /// START and STOP must be in the log, and the robot should stand at STOP where it stood at START.
-    /// `us_per_us`: the rate of each node's clock; that of another node is 1.
+    /// START and STOP must be in the log. Joints that are not at STOP where they are at START jump at the
+    /// begin of each further round. `us_per_us`: the rate of each node's clock; that of another node is 1.
     EndlessLog(const std::vector<StampedFrame>& log, std::map<wire::NodeId, double> us_per_us);
 
     /// In the order of their stamps. What the log's host sent, and what its nodes answered to SYNC, is left

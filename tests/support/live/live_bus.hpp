@@ -62,6 +62,7 @@ class LiveBus {
     void be_host();
     void put(const wire::CanFrame& frame);
     void babble_with(const wire::CanFrame& frame);
+    [[nodiscard]] std::int64_t log_time_ns(std::int64_t steady_ns) const;
     [[nodiscard]] std::int64_t log_now_ns() const;
     [[nodiscard]] bool is_silent(wire::NodeId node) const;
 

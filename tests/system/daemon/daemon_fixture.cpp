@@ -13,8 +13,8 @@
 
 namespace octoskin::test {
 
-std::vector<StampedFrame> make_log(rig::Rig rig) {
-    return experiment_log(std::move(rig), 3);
+std::vector<StampedFrame> make_log(rig::Rig rig, std::uint32_t revolutions) {
+    return experiment_log(std::move(rig), 3, revolutions);
 }
 
 const std::vector<StampedFrame>& log_of_experiment() {

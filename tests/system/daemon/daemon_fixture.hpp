@@ -22,8 +22,8 @@ namespace octoskin::test {
 
 /// The frames of the experiment's rig: 2 s at rest, then the arm moves.
 [[nodiscard]] const std::vector<StampedFrame>& log_of_experiment();
-/// The same of another rig.
-[[nodiscard]] std::vector<StampedFrame> make_log(rig::Rig rig);
+/// The same of another rig, or with more revolutions of the arm, of 10 s each, before its joints jump.
+[[nodiscard]] std::vector<StampedFrame> make_log(rig::Rig rig, std::uint32_t revolutions = 1);
 
 /// Twenty frames of a wall 3 m away, at 10 Hz, through OpenNI2's own recorder: in the first `columns` of 512,
 /// nothing in the others. A narrow one contradicts no range sensor.
