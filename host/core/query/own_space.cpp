@@ -29,20 +29,36 @@ std::uint64_t voxels_of(const VoxelBox& box) {
            (box.highest.z - box.lowest.z + 1ULL);
 }
 
-/// Capsules, how far beyond them, and of which voxels.
+/// Capsules, how far beyond them, and which voxels near them.
 struct Region {
     std::span<const PosedCapsule> capsules;
     double margin_m = 0.0;
-    bool (*is_freed)(const FusedMap& map, const VoxelKey& key);
+    /// Of a voxel whose centre is within `margin_m` of the capsule.
+    bool (*is_freed)(const FusedMap& map, const VoxelKey& key, const PosedCapsule& capsule);
 };
 
-bool is_unknown_or_stale(const FusedMap& map, const VoxelKey& key) {
+bool is_unknown_or_stale(const FusedMap& map, const VoxelKey& key, const PosedCapsule&) {
     const Occupancy state = map.occupancy(key);
     return state == Occupancy::unknown || (state == Occupancy::free && map.is_stale(key));
 }
 
-bool is_occupied(const FusedMap& map, const VoxelKey& key) {
-    return map.occupancy(key) == Occupancy::occupied;
+/// A capsule is convex: it holds what is between its points, too.
+bool holds_cube(const PosedCapsule& capsule, const Eigen::Vector3d& centre, double edge_m) {
+    for (const double x : {-0.5, 0.5}) {
+        for (const double y : {-0.5, 0.5}) {
+            for (const double z : {-0.5, 0.5}) {
+                const Eigen::Vector3d corner = centre + edge_m * Eigen::Vector3d(x, y, z);
+                if (!(distance_to_surface(capsule, corner) <= 0.0)) return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// What marked a voxel may be in any part of it.
+bool is_occupied_within(const FusedMap& map, const VoxelKey& key, const PosedCapsule& capsule) {
+    return map.occupancy(key) == Occupancy::occupied &&
+           holds_cube(capsule, map.centre_of(key), map.resolution_m());
 }
 
 /// Of the layers from `z_begin` to `z_last`: terms that clamp whatever they are added to at the least there
@@ -56,7 +72,7 @@ void list_own(const FusedMap& map, const Region& region, const PosedCapsule& cap
                 const VoxelKey key{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
                                    static_cast<std::uint16_t>(z)};
                 const bool is_near = distance_to_surface(capsule, map.centre_of(key)) <= region.margin_m;
-                if (is_near && region.is_freed(map, key)) updates.push_back({key, all_the_way});
+                if (is_near && region.is_freed(map, key, capsule)) updates.push_back({key, all_the_way});
             }
         }
     }
@@ -99,7 +115,7 @@ std::uint64_t voxels_of(const FusedMap& map, const Region& region) {
 std::optional<std::size_t> free_own_space(FusedMap& map, const OwnBody& body, double margin_m,
                                           const std::function<bool()>& is_ending) {
     const Region about{body.around, margin_m, is_unknown_or_stale};
-    const Region within{body.certain, 0.0, is_occupied};
+    const Region within{body.certain, 0.0, is_occupied_within};
     if (voxels_of(map, about) + voxels_of(map, within) > kOwnSpaceVoxelsMax) return std::nullopt;
     const auto unknown = free_region(map, about, is_ending);
     const auto occupied = unknown ? free_region(map, within, is_ending) : std::nullopt;

@@ -24,12 +24,13 @@ struct OwnBody {
 };
 
 /// Frees each unknown voxel whose centre is within `margin_m` of the surface of `body.around`, and confirms
-/// each stale free one; frees each occupied voxel whose centre lies within `body.certain`, and no other: an
-/// obstacle may be where a capsule is wider than the link. Returns how many there were. `map` is a copy to
-/// ask, not the map that goes on. What there is no room for stays unknown. Whoever gives a margin says that
-/// nothing is hidden in it; a capsule that is wider than its link hides what is between the two, too. Empty:
-/// there are more voxels than kOwnSpaceVoxelsMax, and nothing was done; or `is_ending`, which is asked at
-/// each layer of bricks, has said so. O(voxels of the capsules' boxes), 10 ns each. Throws std::bad_alloc.
+/// each stale free one; frees each occupied voxel that lies wholly within one capsule of `body.certain`, and
+/// no other: an obstacle may be where a capsule is wider than the link, and in the part of a voxel that is
+/// beside it. Returns how many there were. `map` is a copy to ask, not the map that goes on. What there is no
+/// room for stays unknown. A caller that gives a margin says that nothing is hidden in it; a capsule that is
+/// wider than its link hides what is between the two, too. Empty: there are more voxels than
+/// kOwnSpaceVoxelsMax, and nothing was done; or `is_ending`, which is asked at each layer of bricks, has said
+/// so. O(voxels of the capsules' boxes), 10 ns each. Throws std::bad_alloc.
 std::optional<std::size_t> free_own_space(
     FusedMap& map, const OwnBody& body, double margin_m,
     const std::function<bool()>& is_ending = [] { return false; });

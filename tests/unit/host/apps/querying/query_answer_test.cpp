@@ -332,15 +332,16 @@ TEST_F(QueryAnswer, says_of_a_pocket_without_a_view_whether_any_was_tried) {
 }
 
 TEST_F(QueryAnswer, takes_own_space_for_free_whatever_range_sensors_counted_there) {
-    const MappingConfig config = fast_mapping();
+    MappingConfig config = fast_mapping();
+    config.map.resolution_m = 0.02;  // some voxels lie wholly within the arm, which is 0.08 m thick
     FusedMap map(config.map);
-    constexpr std::array<std::uint16_t, 2> kSides{32736, 32768};
+    constexpr std::array<std::uint16_t, 2> kSides{32704, 32768};
     for (const auto x : kSides) {
         for (const auto y : kSides) {
-            for (const auto z : kSides) ASSERT_TRUE(map.set_cube({{x, y, z}, 5}, -1.0F));
+            for (const auto z : kSides) ASSERT_TRUE(map.set_cube({{x, y, z}, 6}, -1.0F));
         }
     }
-    const VoxelKey inside = *map.key_of({0.2, 0.02, 0.3});
+    const VoxelKey inside = *map.key_of({0.2, 0.01, 0.31});
     ConeVoxels cone;
     cone.cap = {{inside, 1.0F}};
     cone.middle = {inside};

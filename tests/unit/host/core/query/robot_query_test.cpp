@@ -300,18 +300,24 @@ TEST(PathQuery, makes_them_as_much_larger_as_a_hand_that_slides_out_of_a_turning
     }
 }
 
+/// The same capsules with that radius.
+std::vector<PosedCapsule> with_radius(std::vector<PosedCapsule> capsules, double radius_m) {
+    for (PosedCapsule& capsule : capsules) capsule.radius_m = radius_m;
+    return capsules;
+}
+
 TEST(OwnSpace, is_free_where_the_arm_is_and_where_it_was_unknown_about_it) {
     const TwoJointArm arm;
     const RobotQuery query = query_of(arm);
     FusedMap map = without(free_about_origin(), {-0.1, -0.2, 0.2}, {0.6, 0.2, 0.4});
     mark(map, {0.2, 0.02, 0.3});
-    const auto capsules = query.pose(std::array{0.0, 0.0});
-    EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied);
+    const auto capsules = with_radius(*query.pose(std::array{0.0, 0.0}), 0.05);
+    EXPECT_EQ(worst_of(query, map, capsules)->state, PostureState::occupied);
     FusedMap copy = map.copy();
-    EXPECT_GT(free_own_space(copy, {*capsules, *capsules}, 0.04).value(), 0U);
-    EXPECT_EQ(worst_of(query, copy, *capsules)->state, PostureState::free);
+    EXPECT_GT(free_own_space(copy, {capsules, capsules}, 0.04).value(), 0U);
+    EXPECT_EQ(worst_of(query, copy, capsules)->state, PostureState::free);
     EXPECT_EQ(copy.occupancy(*copy.key_of({0.2, 0.16, 0.3})), Occupancy::unknown) << "beyond the margin";
-    EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied) << "the map itself was changed";
+    EXPECT_EQ(worst_of(query, map, capsules)->state, PostureState::occupied) << "the map itself was changed";
 }
 
 TEST(OwnSpace, of_more_voxels_than_there_may_be_is_not_freed_and_can_be_ended) {
@@ -334,12 +340,20 @@ TEST(OwnSpace, leaves_occupied_what_is_not_certainly_the_arm) {
     mark(map, {0.2, 0.02, 0.3});
     const RobotQuery query = query_of(TwoJointArm());
     const auto around = query.pose(std::array{0.0, 0.0});
-    std::vector<PosedCapsule> certain = *around;
-    for (PosedCapsule& capsule : certain) capsule.radius_m = 0.01;
-    EXPECT_EQ(free_own_space(map, {*around, certain}, 0.1), 0U);
+    EXPECT_EQ(free_own_space(map, {*around, with_radius(*around, 0.01)}, 0.1), 0U);
     EXPECT_EQ(worst_of(query, map, *around)->state, PostureState::occupied);
     EXPECT_EQ(free_own_space(map, {*around, {}}, 0.1), 0U);
-    EXPECT_EQ(free_own_space(map, {*around, *around}, 0.1), 1U);
+    EXPECT_EQ(free_own_space(map, {*around, with_radius(*around, 0.05)}, 0.1), 1U);
+}
+
+// Of the voxel from the axis to 0.04 m beside it and from 0.02 m below to 0.02 m above, the corners are
+// 0.0447 m from the axis: an obstacle may be in one of them.
+TEST(OwnSpace, leaves_occupied_a_voxel_that_the_surface_of_the_arm_passes_through) {
+    FusedMap map = free_about_origin();
+    mark(map, {0.2, 0.02, 0.3});
+    const auto capsules = query_of(TwoJointArm()).pose(std::array{0.0, 0.0});
+    EXPECT_EQ(free_own_space(map, {*capsules, with_radius(*capsules, 0.044)}, 0.1), 0U);
+    EXPECT_EQ(free_own_space(map, {*capsules, with_radius(*capsules, 0.045)}, 0.1), 1U);
 }
 
 TEST(OwnSpace, leaves_occupied_what_is_outside_the_arm) {
