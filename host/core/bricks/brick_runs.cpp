@@ -54,8 +54,6 @@ void find_runs(const VoxelUpdate* updates, std::size_t count, BrickRuns& found) 
     const Tag u;
     const std::size_t lanes = hn::Lanes(u);
     const auto in_lane_0 = hn::FirstN(u, 1);
-    // In lane n the bits of lanes 0 to n.
-    const Words up_to_lane = hn::Sub(hn::Shl(hn::Set(u, 2), hn::Iota(u, 0)), hn::Set(u, 1));
     // One lane on, and in lane 0 what was in the last one.
     alignas(64) std::array<std::int32_t, hn::MaxLanes(u)> lane_before;
     for (std::size_t lane = 0; lane < lanes; ++lane)
@@ -63,14 +61,12 @@ void find_runs(const VoxelUpdate* updates, std::size_t count, BrickRuns& found) 
     const auto one_on = hn::SetTableIndices(u, lane_before.data());
     Words xy_turned_before = hn::Zero(u);
     Words z_turned_before = hn::Set(u, 0xFFFF'FFFFU);  // no brick's: the first update begins a run
+    std::array<VoxelUpdate, hn::MaxLanes(u)> last;     // what comes after the last update has a term of 0
+    std::size_t runs = 0;
     found.updates = 0;
-    found.runs = 0;
     for (std::size_t begin = 0; begin < count; begin += lanes) {
-        // What comes after the last has a term of 0.
-        std::array<VoxelUpdate, hn::MaxLanes(u)> last;
         const VoxelUpdate* some = updates + begin;
         if (count - begin < lanes) {
-            last.fill({});
             std::copy(some, updates + count, last.begin());
             some = last.data();
         }
@@ -91,16 +87,17 @@ void find_runs(const VoxelUpdate* updates, std::size_t count, BrickRuns& found) 
         std::uint8_t bytes[8] = {};
         hn::StoreMaskBits(u, begins, bytes);
         const std::uint32_t bits = bytes[0] | (std::uint32_t{bytes[1]} << 8U);
-        const Words run = hn::PopulationCount(hn::And(hn::Set(u, bits), up_to_lane));
-        hn::StoreU(hn::Add(run, hn::Set(u, static_cast<std::uint32_t>(found.runs) - 1)), u,
-                   found.run_of.data() + begin);
-        found.runs += hn::CompressStore(hn::Iota(u, static_cast<std::uint32_t>(begin)), begins, u,
-                                        found.first_of.data() + found.runs);
+        // Not by CompressStore: for AVX2, GCC copies its table of 1 KiB to the stack, vector by vector.
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            found.first_of[runs] = static_cast<std::uint32_t>(begin + lane);
+            runs += bits >> lane & 1U;
+        }
         found.updates += plain;
-        if (plain < lanes) return;
+        if (plain < lanes) break;
         xy_turned_before = xy_turned;
         z_turned_before = z_turned;
     }
+    found.runs = runs;
 }
 
 }  // namespace octoskin::HWY_NAMESPACE
