@@ -12,6 +12,22 @@ bool is_none(const BrickMask& voxels) {
     return std::ranges::all_of(voxels, [](std::uint64_t word) { return word == 0; });
 }
 
+/// All cells at once: where a run ends no processor foresees. An entry is made in its place, for a copy of
+/// one would wait for what it is made of.
+void append_runs(std::span<const VoxelUpdate> updates, const BrickRuns& found, Evidence& evidence) {
+    const std::size_t before = evidence.cells.size();
+    for (std::size_t i = 0; i < found.updates; ++i)
+        evidence.cells.push_back({static_cast<std::uint16_t>(found.cell_of[i]), updates[i].log_odds});
+    for (std::size_t run = 0; run < found.runs; ++run) {
+        const std::size_t begin = found.first_of[run];
+        const std::size_t end = run + 1 < found.runs ? found.first_of[run + 1] : found.updates;
+        BrickEvidence& brick = evidence.bricks.emplace_back();
+        brick.first = brick_of(updates[begin].key);
+        brick.cells_begin = static_cast<std::uint32_t>(before + begin);
+        brick.cells_end = static_cast<std::uint32_t>(before + end);
+    }
+}
+
 }  // namespace
 
 BrickEvidence& Evidence::last(MortonCode brick) {
@@ -65,17 +81,7 @@ void Evidence::take_in_order(std::span<const VoxelUpdate> updates) {
     BrickRuns found;
     while (!updates.empty()) {
         find_runs(updates, found);
-        for (std::size_t run = 0; run < found.runs; ++run) {
-            const std::size_t begin = found.first_of[run];
-            const std::size_t end = run + 1 < found.runs ? found.first_of[run + 1] : found.updates;
-            const auto first = static_cast<std::uint32_t>(cells.size());
-            for (std::size_t i = begin; i < end; ++i)
-                cells.push_back({static_cast<std::uint16_t>(found.cell_of[i]), updates[i].log_odds});
-            bricks.push_back({.first = brick_of(updates[begin].key),
-                              .voxels = {},
-                              .cells_begin = first,
-                              .cells_end = static_cast<std::uint32_t>(cells.size())});
-        }
+        append_runs(updates, found, *this);
         updates = updates.subspan(found.updates);
         if (updates.empty()) return;
         // A run's end, or a term that is 0 or not finite: the map counts it.
