@@ -84,8 +84,8 @@ Camera read_camera(const Value& value) {
     camera.cy = table.number("cy_px", {0.0, static_cast<double>(camera.height)});
     read_lens(table, camera);
     camera.rate_hz = table.number("rate_hz", {0.1, 1000.0});
-    camera.depth_min_m = table.number("depth_min_m", {0.0, 100.0}, camera.depth_min_m);
-    camera.depth_max_m = table.number("depth_max_m", {0.0, 100.0}, camera.depth_max_m);
+    camera.depth_min_m = table.number("depth_min_m", {0.0, kDepthLargest_m}, camera.depth_min_m);
+    camera.depth_max_m = table.number("depth_max_m", {0.0, kDepthLargest_m}, camera.depth_max_m);
     if (!(camera.depth_min_m < camera.depth_max_m))
         table.fail("depth_max_m", "expected more than depth_min_m");
     if (const Value* data_set = table.find("data_set"))

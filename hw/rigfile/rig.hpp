@@ -63,6 +63,9 @@ struct JointSource {
     double rate_hz = 100.0;
 };
 
+/// Depth images are in millimetres of 16 bits.
+inline constexpr double kDepthLargest_m = 65.5;
+
 struct Camera {
     std::uint32_t width = 0;
     std::uint32_t height = 0;

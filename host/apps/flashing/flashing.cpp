@@ -28,10 +28,8 @@ Result<image::ElfImage, AppError> load_image(const Order& order) {
     if (!image) return unexpected(reading_error(order.elf, {ExitCode::bad_data, image.error().what}));
     const std::vector<std::string> faults = image::faults_of(*image, order.board);
     if (faults.empty()) return image.value();
-    std::string message =
-        fmt::format("{}: not an image for the board {}:", order.elf.string(), order.board.name);
-    for (const std::string& fault : faults) message += "\n  " + fault;
-    return fail(ExitCode::bad_data, message);
+    return fail(ExitCode::bad_data, fmt::format("{}: not an image for the board {}: {}", order.elf.string(),
+                                                order.board.name, fmt::join(faults, "; ")));
 }
 
 /// The block as the board will read it, out of the bytes that are going to be written.

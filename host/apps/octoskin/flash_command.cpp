@@ -110,11 +110,11 @@ void report_option_bytes(const flashing::Programmed& programmed) {
         print("option bytes 0x{:08X}: as they must be\n", programmed.flash_optr);
         return;
     }
-    std::string message =
-        fmt::format("programmed and running, but the option bytes (0x{:08X}) are not as they must be:",
-                    programmed.flash_optr);
-    for (const std::string& fault : faults) message += "\n  " + fault;
-    throw CommandFailure({ExitCode::failed, message + "\nrun the same command with --write-option-bytes"});
+    throw CommandFailure(
+        {ExitCode::failed,
+         fmt::format("programmed and running, but the option bytes (0x{:08X}) are not as they must be: {}: "
+                     "run the same command with --write-option-bytes",
+                     programmed.flash_optr, fmt::join(faults, "; "))});
 }
 
 void flash(const FlashOptions& options) {

@@ -58,7 +58,7 @@ std::vector<RaySlope> rays_of(const rig::Camera& camera) {
 
 DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, double sigma_m, std::uint64_t seed)
     : camera_(camera), sigma_m_(sigma_m), noise_(seed, NoiseSource::depth) {
-    assert(camera.depth_max_m < 65.5);
+    assert(camera.depth_max_m <= rig::kDepthLargest_m);  // checked where the rig was read
     if (!camera.lens.is_none()) {
         rays_ = rays_of(camera);
     }

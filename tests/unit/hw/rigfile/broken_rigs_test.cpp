@@ -100,6 +100,8 @@ const Broken kBroken[] = {
     {"sensor-looking-at-a-point.yaml", 3, "nodes[0].sensors[0].pose.looking_at_m", "expected a known key"},
     {"camera-looking-straight-down.yaml", 10, "camera.pose.looking_at_m", "give rpy_deg instead"},
     {"camera-depth-reversed.yaml", 11, "camera.depth_max_m", "expected more than depth_min_m"},
+    {"camera-depth-beyond-its-images.yaml", 10, "camera.depth_max_m",
+     "expected a number from 0 to 65.5, found '70'"},
     {"camera-centre-outside.yaml", 7, "camera.cx_px", "expected a number from 0 to 64, found '65'"},
     {"camera-lens-that-turns-back.yaml", 12, "camera.distortion",
      "found k1 -0.2297, k2 1.4766, p1 0.0005, p2 -0.0075, k3 -3.4194: pixel (0, 0) has none"},
