@@ -28,18 +28,16 @@ if(OCTOSKIN_SANITIZE MATCHES "address")
     target_compile_options(octoskin_compile_options INTERFACE
         $<$<NOT:${runs_on_a_board}>:-fno-sanitize=null,alignment,object-size>)
 endif()
-# What the sources of programs alone are compiled with, after the above. Theirs, and those of tests, are code that runs once: under
-# sanitizers it is not optimised, which takes half the time. Libraries are.
+# Code that runs once or works on nothing large: programs, tests, commands, texts, JSON. Where much of a build's time goes, and little
+# of a program's. Under sanitizers it is not optimised, which takes half the compiler's time. octoskin_program_options is for
+# programs, octoskin_test_options for tests, octoskin_app_options for the libraries of OCTOSKIN_APP_ROOMS: after the above.
 add_library(octoskin_program_options INTERFACE)
-if(OCTOSKIN_SANITIZE)
-    target_compile_options(octoskin_program_options INTERFACE -O0)
-endif()
-# What test programs are compiled with, after the above, and the product's and the laboratory's commands, texts and JSON: where much
-# of a build's time goes, and little of a program's.
 add_library(octoskin_test_options INTERFACE)
 add_library(octoskin_app_options INTERFACE)
 if(OCTOSKIN_SANITIZE)
+    target_compile_options(octoskin_program_options INTERFACE -O0)
     target_link_libraries(octoskin_test_options INTERFACE octoskin_program_options)
+    target_link_libraries(octoskin_app_options INTERFACE octoskin_program_options)
 elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
     # When it optimises little, GCC 12 warns in vain of optional values, and of `std::string(...) + "..."` as if the longer
     # string lay in the short one's own bytes. The address sanitizer sees what does overflow.

@@ -17,7 +17,7 @@
 # DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
 # repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
 #
-# In the rooms host/apps and host/lab a library is optimised little, unless it has LONG_LOOPS: what works on voxels is in others.
+# In the rooms of OCTOSKIN_APP_ROOMS a library is optimised little, unless it has LONG_LOOPS: what works on voxels is in others.
 #
 # A library that is linked into a module, which is loaded when it is needed, is one IN_MODULE.
 #
@@ -45,6 +45,11 @@ set(OCTOSKIN_ALL_ROOMS common firmware/drivers firmware/core firmware/port hw/db
 set(OCTOSKIN_MAY_USE_host/lab ${OCTOSKIN_ALL_ROOMS})
 set(OCTOSKIN_MAY_USE_firmware/app ${OCTOSKIN_ALL_ROOMS})
 set(OCTOSKIN_MAY_USE_tests ${OCTOSKIN_ALL_ROOMS})
+
+set(OCTOSKIN_APP_ROOMS "host/(apps|lab)")
+if(OCTOSKIN_SANITIZE)  # what reads and writes files, too
+    set(OCTOSKIN_APP_ROOMS "host/(apps|io|io/folder|lab)|hw/(dbc|image|rigfile)|firmware/app")
+endif()
 
 function(octoskin_check_room target room)
     if(NOT DEFINED OCTOSKIN_MAY_USE_${room})
@@ -126,9 +131,7 @@ endmacro()
 # What says what there is to say, and works on nothing large.
 function(octoskin_compile_as_app target)
     target_link_libraries(${target} PRIVATE octoskin_app_options)
-    get_target_property(type ${target} TYPE)
-    # Under sanitizers a program is not optimised, and the headers are.
-    if(TARGET octoskin_app_headers AND NOT (OCTOSKIN_SANITIZE AND type STREQUAL "EXECUTABLE"))
+    if(TARGET octoskin_app_headers)
         # With the definitions that the headers were read with.
         target_link_libraries(${target} PRIVATE fmt::fmt nlohmann_json::nlohmann_json spdlog::spdlog)
         target_precompile_headers(${target} REUSE_FROM octoskin_app_headers)
@@ -163,7 +166,7 @@ function(octoskin_library name)
         endif()
         if(ARG_IN_MODULE)
             set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-        elseif(ARG_ROOM MATCHES "^host/(apps|lab)$" AND NOT ARG_LONG_LOOPS)
+        elseif(ARG_ROOM MATCHES "^(${OCTOSKIN_APP_ROOMS})$" AND NOT ARG_LONG_LOOPS)
             octoskin_compile_as_app(${target})
         elseif(TARGET octoskin_host_headers AND ARG_ROOM MATCHES "^(host|hw)/")
             target_precompile_headers(${target} REUSE_FROM octoskin_host_headers)
