@@ -5,7 +5,7 @@
 #                    [IN_MODULE] [LONG_LOOPS])
 #   octoskin_program(<name> ROOM <room> [FOLDER <folder>] SOURCES ... [DEPENDS ...] [EXTERNAL ...])
 #   octoskin_test(<name> [FOLDER <folder>] LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...] [HALF_IN_QEMU <filter>]
-#                 [ALONE | WAITS])
+#                 [ALONE | WAITS] [COST <seconds>] [RELEASE_TOO] [THREADED <source>...])
 #
 # In the rooms that OCTOSKIN_UNITY names the sources of a library or a test program are compiled several at once, but for a
 # library that is told to keep them APART, and those of a test program that it names as APART: the name of something that is
@@ -25,6 +25,13 @@
 # is not built for one, and of the others the HOST_SOURCES, which need an operating system, or minutes there. Each is named
 # when configuring. A program that mostly WAITS takes half a processor: run with twice as many at once as there are
 # processors. What HALF_IN_QEMU selects there, a filter of GoogleTest's, is a test of its own, and the rest another.
+#
+# The test with the highest COST begins first: one that takes half a minute, begun last, has all processors but one wait for it.
+#
+# What ./check runs in which build: a test of label unit under the address sanitizer alone, which its label `sanitized` says,
+# unless it is one for RELEASE_TOO, for a sanitizer has it do less or measure something else; a test of another label in the release
+# build (target octoskin_release_tests), and what the preset host-asan-ubsan names once more. THREADED are those of its sources
+# that have to do with threads: under the thread sanitizer, where there is nothing else (octoskin_thread_tests), it is made of these.
 
 set(OCTOSKIN_MAY_USE_common common)
 set(OCTOSKIN_MAY_USE_firmware/drivers common firmware/drivers)
@@ -220,7 +227,8 @@ endfunction()
 find_program(OCTOSKIN_TEST_LINKER ld.lld)
 
 function(octoskin_test name)
-    cmake_parse_arguments(ARG "ALONE;WAITS" "TIMEOUT;HALF_IN_QEMU;FOLDER" "LABELS;SOURCES;HOST_SOURCES;DEPENDS;EXTERNAL;APART" ${ARGN})
+    cmake_parse_arguments(ARG "ALONE;WAITS;RELEASE_TOO" "COST;TIMEOUT;HALF_IN_QEMU;FOLDER"
+        "LABELS;SOURCES;HOST_SOURCES;THREADED;DEPENDS;EXTERNAL;APART" ${ARGN})
     if(NOT ARG_TIMEOUT)
         set(ARG_TIMEOUT 60)
     endif()
@@ -239,6 +247,9 @@ function(octoskin_test name)
         math(EXPR ARG_TIMEOUT "5 * ${ARG_TIMEOUT}")
     elseif(CMAKE_CROSSCOMPILING)  # in an emulator that other work slows down
         math(EXPR ARG_TIMEOUT "20 * ${ARG_TIMEOUT}")
+    endif()
+    if(ARG_THREADED AND OCTOSKIN_SANITIZE MATCHES "thread")
+        set(ARG_SOURCES ${ARG_THREADED})
     endif()
     octoskin_check_room(${name} tests ${ARG_DEPENDS})
     octoskin_helpers_beside_tests()
@@ -268,12 +279,25 @@ function(octoskin_test name)
         target_precompile_headers(${name} REUSE_FROM octoskin_sim_test_headers)
     endif()
     set_target_properties(${name} PROPERTIES OCTOSKIN_ROOM tests BUILD_RPATH ${PROJECT_BINARY_DIR}/bin)
+    set(cost "")
+    if(ARG_COST)
+        set(cost COST ${ARG_COST})
+    endif()
     set(halves 2)
     if(ARG_WAITS AND NOT OCTOSKIN_SANITIZE)  # a sanitizer has much to do
         set(halves 1)
     endif()
     if("unit" IN_LIST ARG_LABELS)
         add_dependencies(octoskin_unit_tests ${name})
+    endif()
+    if("unit" IN_LIST ARG_LABELS AND NOT ARG_RELEASE_TOO)
+        list(APPEND ARG_LABELS sanitized)
+    else()
+        add_dependencies(octoskin_release_tests ${name})
+    endif()
+    if(ARG_THREADED)
+        list(APPEND ARG_LABELS threads)
+        add_dependencies(octoskin_thread_tests ${name})
     endif()
     if("unit" IN_LIST ARG_LABELS OR "property" IN_LIST ARG_LABELS)
         # One process for the whole file: the unit suite has to stay under ten seconds.
@@ -285,12 +309,12 @@ function(octoskin_test name)
         else()
             add_test(NAME ${name} COMMAND ${name})
         endif()
-        set_tests_properties(${tests} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${halves})
+        set_tests_properties(${tests} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${halves} ${cost})
         if(CMAKE_CROSSCOMPILING AND NOT CMAKE_SYSTEM_NAME STREQUAL "Generic")
             set_tests_properties(${name} PROPERTIES ENVIRONMENT "GTEST_FILTER=-${OCTOSKIN_NOT_IN_QEMU_USER}")
         endif()
     else()
         gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
-            PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${halves} RUN_SERIAL ${ARG_ALONE})
+            PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} PROCESSORS ${halves} RUN_SERIAL ${ARG_ALONE} ${cost})
     endif()
 endfunction()
