@@ -10,11 +10,10 @@
 
 #include "common/result.hpp"
 #include "common/time.hpp"
+#include "host/core/kinematics/joint_twist.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 
 namespace octoskin {
-
-inline constexpr std::size_t kJointsMax = 7;  ///< a joint-state sample on the wire has as many
 
 /// The position of every moved joint, radians (metres for a prismatic joint).
 struct JointPosition {

@@ -206,6 +206,23 @@ void RobotModel::forward(std::span<const double> position,
     }
 }
 
+void RobotModel::twists(LinkId link, std::span<const Eigen::Isometry3d> T_base_link,
+                        std::span<JointTwist> twists) const noexcept {
+    const auto& links = impl_->links;
+    assert(T_base_link.size() == links.size() && twists.size() >= joint_count());
+    std::ranges::fill(twists, JointTwist{});
+    for (std::size_t at = link; at != 0; at = links[at].parent) {
+        const Link& moved = links[at];
+        if (moved.joint == kNoJoint) continue;
+        Eigen::Isometry3d T_base_axis = Eigen::Isometry3d::Identity();
+        to_eigen(to_kdl(T_base_link[moved.parent]) * moved.T_parent_axis, T_base_axis);
+        const Eigen::Vector3d axis = T_base_axis.linear().col(2);
+        const bool shifts = moved.axis_to_link.getJoint().getType() == KDL::Joint::TransZ;
+        twists[moved.joint] =
+            shifts ? JointTwist{.shift = axis} : JointTwist{axis, T_base_axis.translation().cross(axis)};
+    }
+}
+
 std::vector<double> RobotModel::levers_m(std::span<const double> farthest) const {
     const auto& links = impl_->links;
     assert(farthest.size() == joint_count());

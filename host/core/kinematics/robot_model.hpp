@@ -13,6 +13,7 @@
 
 #include "common/result.hpp"
 #include "host/core/kinematics/capsule.hpp"
+#include "host/core/kinematics/joint_twist.hpp"
 
 namespace octoskin {
 
@@ -84,6 +85,11 @@ class RobotModel {
     /// `T_base_link`: link_count() long. Limits are not checked here (JointHistory does). Any thread; no
     /// allocation; about 1 us for a 7-joint arm.
     void forward(std::span<const double> position, std::span<Eigen::Isometry3d> T_base_link) const noexcept;
+
+    /// Of each joint above `link`, base frame; the others' are zero. `T_base_link`: what forward() gave;
+    /// `twists`: at least joint_count() long. About 20 ns a joint.
+    void twists(LinkId link, std::span<const Eigen::Isometry3d> T_base_link,
+                std::span<JointTwist> twists) const noexcept;
 
     /// By LinkId, metres: wherever the joints are, no origin of a link is further from the axis of any joint
     /// that turns it. Of a prismatic joint only as long as it is no further from its 0 than `farthest`

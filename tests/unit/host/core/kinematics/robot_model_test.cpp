@@ -105,6 +105,35 @@ TEST(RobotModel, every_kind_of_joint_and_axis_equals_the_product_of_transforms) 
     }
 }
 
+// Oracle: where a point of the link goes with a little of the joint.
+TEST(RobotModel, tells_how_a_link_moves_with_each_joint) {
+    const RobotModel model = built(tree());
+    const std::array<double, 3> q = {0.2, -0.7, 1.3};
+    constexpr double kLittle = 1e-6;
+    const Vector3d p_link(0.3, -0.1, 0.2);
+    std::vector<Isometry3d> T_base_link(model.link_count());
+    std::vector<Isometry3d> moved(model.link_count());
+    model.forward(q, T_base_link);
+    for (const char* const link : {"base", "arm", "hand", "side", "tool"}) {
+        const LinkId id = model.find_link(link).value();
+        JointTwists twists;
+        model.twists(id, T_base_link, twists);
+        const Vector3d p = T_base_link[id] * p_link;
+        for (std::size_t joint = 0; joint < kJointsMax; ++joint) {
+            std::array<double, 3> further = q;
+            if (joint < q.size()) further.at(joint) += kLittle;
+            model.forward(further, moved);
+            const Vector3d expected = (moved[id] * p_link - p) / kLittle;
+            const Vector3d by_twist = twists.at(joint).turn.cross(p) + twists.at(joint).shift;
+            EXPECT_LE((by_twist - expected).norm(), 1e-5) << link << ", joint " << joint;
+            const JointTwist elsewhere =
+                octoskin::placed(placed({1, 2, 0}, 0.4, {1, 2, 3}), twists.at(joint));
+            const Vector3d p_elsewhere = placed({1, 2, 0}, 0.4, {1, 2, 3}) * p;
+            EXPECT_NEAR((elsewhere.turn.cross(p_elsewhere) + elsewhere.shift).norm(), expected.norm(), 1e-5);
+        }
+    }
+}
+
 TEST(RobotModel, numbers_parents_before_children_and_keeps_the_order_of_moved_joints) {
     const RobotModel model = built(tree());
     EXPECT_EQ(model.find_link("base"), LinkId{0});

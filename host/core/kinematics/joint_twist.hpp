@@ -1,0 +1,32 @@
+// How what a robot carries moves with one of its joints.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+
+namespace octoskin {
+
+inline constexpr std::size_t kJointsMax = 7;  ///< a joint-state sample on the wire has as many
+
+/// A point p moves by turn x p + shift for each radian of the joint, or metre of a prismatic one. Zero: the
+/// joint does not move it. The frame is stated by whoever holds it.
+struct JointTwist {
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+};
+/// In the order of every joint vector.
+using JointTwists = std::array<JointTwist, kJointsMax>;
+
+/// The same in frame a. About 10 ns.
+[[nodiscard]] inline JointTwist placed(const Eigen::Isometry3d& T_a_b, const JointTwist& twist_b) {
+    const Eigen::Vector3d turn = T_a_b.linear() * twist_b.turn;
+    return {.turn = turn, .shift = T_a_b.linear() * twist_b.shift - turn.cross(T_a_b.translation())};
+}
+
+[[nodiscard]] inline JointTwists placed(const Eigen::Isometry3d& T_a_b, JointTwists twists) {
+    for (JointTwist& twist : twists) twist = placed(T_a_b, twist);
+    return twists;
+}
+
+}  // namespace octoskin
