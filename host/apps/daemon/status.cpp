@@ -179,11 +179,17 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     return json;
 }
 
+/// What the comparison of images with ranges finds off, if anything.
+PoseFault pose_fault(const DaemonView& view) {
+    const SensorWitness* const witness = view.pipeline->builder().witness();
+    return witness != nullptr ? witness->pose().fault().value_or(PoseFault{}) : PoseFault{};
+}
+
 Json camera_json(const DaemonView& view) {
     if (!view.camera) return nullptr;
     const SensorWitness* const witness = view.pipeline->builder().witness();
-    const CameraError* const error =
-        witness != nullptr && witness->camera().error() ? &*witness->camera().error() : nullptr;
+    const PoseFault fault = pose_fault(view);
+    const auto& error = fault.camera;
     const auto axes = [](const Eigen::Vector3d& of) { return Json{of.x(), of.y(), of.z()}; };
     return {{"open", view.camera->is_open},
             {"why", view.camera->why},
@@ -192,21 +198,26 @@ Json camera_json(const DaemonView& view) {
             {"untimed", view.camera->untimed},
             {"repeated", view.camera->repeated},
             {"opened", view.camera->opened},
-            {"is_off", witness != nullptr ? Json(error != nullptr) : Json(nullptr)},
-            {"turned_deg", error != nullptr ? axes(error->turn_deg) : Json(nullptr)},
-            {"shifted_m", error != nullptr ? axes(error->shift_m) : Json(nullptr)},
-            {"depth_scale", error != nullptr ? Json(error->depth_scale) : Json(nullptr)},
-            {"explains_sensors", error != nullptr ? witness->camera().explained() : 0},
+            {"is_off", witness != nullptr ? Json(error && !fault.joint) : Json(nullptr)},
+            {"turned_deg", error ? axes(error->turn_deg) : Json(nullptr)},
+            {"shifted_m", error ? axes(error->shift_m) : Json(nullptr)},
+            {"depth_scale", error ? Json(error->depth_scale) : Json(nullptr)},
+            {"explains_sensors", error ? fault.explained : 0},
             {"age_s", age_s(view.camera->newest, view.now)}};
 }
 
 Json joint_states_json(const DaemonView& view) {
     const JointSenderCheck& senders = view.pipeline->intake().joint_senders();
     const auto& jumped = view.pipeline->joint_gate().jump().newest();
+    const PoseFault fault = pose_fault(view);
+    const auto& joints = view.rig->joints.joints;
     return {{"second_sender", are_joints_withheld(view)},
             {"contradictions", senders.contradictions()},
-            {"jumped", jumped ? Json(view.rig->joints.joints.at(jumped->joint)) : Json(nullptr)},
-            {"jump_age_s", age_s(view.used.joint_jump, view.now)}};
+            {"jumped", jumped ? Json(joints.at(jumped->joint)) : Json(nullptr)},
+            {"jump_age_s", age_s(view.used.joint_jump, view.now)},
+            {"off_joint", fault.joint ? Json(joints.at(fault.joint->joint)) : Json(nullptr)},
+            {"off_by", fault.joint ? Json(fault.joint->offset) : Json(nullptr)},
+            {"or_camera", fault.joint && fault.camera}};
 }
 
 Json senders_json(const JointSenders& senders, HostTime now) {

@@ -25,7 +25,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "can", "the interface, below"},
     Meaning{"", "clock", "the bus's time, below"},
     Meaning{"", "nodes", "a list, one object for each node of the rig, below"},
-    Meaning{"", "joint_states", "whether joint states come from one sender, below"},
+    Meaning{"", "joint_states",
+            "whether joint states come from one sender, and whether they are true, below"},
     Meaning{"", "joints_socket", "joint states from this machine, below; null without --joints"},
     Meaning{"", "recording", "the recording that is made, or the last one, below; null without"},
     Meaning{"", "camera", "the depth camera, below; null without one"},
@@ -182,8 +183,8 @@ constexpr std::array kStatusMeanings = {
         "nodes.sensors.camera", "doubt",
         "why it is cannot_tell: too_few_comparisons, a fault would not have shown yet; ambiguous, there is "
         "too little evidence for a fault, and too little against it; camera_not_known, the other sensors do "
-        "not show well enough where the camera is; camera_is_off, or likely; several_contradict, more than "
-        "two sensors do; null: it is not"},
+        "not show well enough where the camera is; camera_is_off, or likely; joint_is_off, alone or beside "
+        "the camera, or likely; several_contradict, more than two sensors do; null: it is not"},
     Meaning{"nodes.sensors.camera", "not_excluded",
             "a list, the faults that it may have by what was compared; turned and exchanged are in it until "
             "each turn and each exchange has been excluded, also those that would not have changed a range"},
@@ -209,6 +210,14 @@ constexpr std::array kStatusMeanings = {
             "the joint that was last further from the sample before it than the arm moves in that time; "
             "null: none was"},
     Meaning{"joint_states", "jump_age_s", "since such a sample was rejected; null: none was"},
+    Meaning{
+        "joint_states", "off_joint",
+        "the joint that is not where its joint states say, which explains what several sensors contradict, "
+        "and no sensor is named meanwhile; null: none"},
+    Meaning{"joint_states", "off_by",
+            "by about how much it is further, radians, metres of a prismatic joint; null: none is off"},
+    Meaning{"joint_states", "or_camera",
+            "an error of the camera explains about as much: it cannot be told which of the two is off"},
     Meaning{"joints_socket", "samples", "samples that came, of the right form"},
     Meaning{"joints_socket", "displaced",
             "datagrams that gave way to newer ones: the daemon was held up while 1024 waited, or they come "
@@ -283,12 +292,13 @@ constexpr std::array kStatusMeanings = {
         "how often it was opened; over once: it was gone, fell silent, showed one image again and again, or "
         "all its frames came late"},
     Meaning{"camera", "is_off",
-            "one error of its pose or depth explains what several sensors contradict, and no sensor is named "
-            "meanwhile; null: its images are not compared with ranges"},
+            "one error of its pose or depth explains what several sensors contradict, clearly more than an "
+            "offset of a joint does, and no sensor is named meanwhile; null: its images are not compared "
+            "with ranges"},
     Meaning{
         "camera", "turned_deg",
-        "then about how far it is turned against the rig, about its axes: x right, y down, z ahead; null: "
-        "it is not off"},
+        "then, and with joint_states.or_camera, about how far it is turned against the rig, about its axes: "
+        "x right, y down, z ahead; null: it is not off"},
     Meaning{"camera", "shifted_m", "or shifted along them; null: it is not off"},
     Meaning{"camera", "depth_scale", "or the true depth by that of its image; null: it is not off"},
     Meaning{"camera", "explains_sensors", "of how many sensors that explains the contradictions"},

@@ -167,8 +167,8 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
 void find_contradictions(const HostRig& rig, Playback& playback) {
     const SensorWitness* const witness = playback.pipeline.builder().witness();
     if (witness == nullptr) return;
-    if (const auto& error = witness->camera().error())
-        playback.warnings.push_back("camera: " + describe(*error, witness->camera().explained()));
+    if (const auto& fault = witness->pose().fault())
+        playback.warnings.push_back(describe(*fault, rig.joints.joints));
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
             const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(i));

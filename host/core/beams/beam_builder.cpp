@@ -126,4 +126,13 @@ Eigen::Isometry3d BeamBuilder::T_map_sensor(const BeamSource& source, const Robo
     return T_map_base_ * robot.T_base_link[found->second.link] * found->second.T_link_sensor;
 }
 
+JointTwists BeamBuilder::twists_map(const BeamSource& source, const RobotPose& robot,
+                                    const RobotModel& robot_model) const {
+    const auto found = sensors_.find(source.sensor_id());
+    assert(found != sensors_.end());
+    JointTwists twists;
+    robot_model.twists(found->second.link, robot.T_base_link, twists);
+    return placed(T_map_base_, twists);
+}
+
 }  // namespace octoskin

@@ -48,6 +48,9 @@ class BeamBuilder {
 
     /// Where the sensor of such a reading is, map frame. The source must be one of the rig's (asserted).
     [[nodiscard]] Eigen::Isometry3d T_map_sensor(const BeamSource& source, const RobotPose& robot) const;
+    /// How that moves with each of the robot's joints, map frame. `robot_model`: the one it was built with.
+    [[nodiscard]] JointTwists twists_map(const BeamSource& source, const RobotPose& robot,
+                                         const RobotModel& robot_model) const;
 
   private:
     struct Zone {

@@ -164,7 +164,8 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     const Status<ReadingReason> added =
         is_out ? unexpected(ReadingReason::contradicts_camera) : add_range(measurement, *beam);
     if (witness_ && (added || is_out)) {
-        witness_->on_beam(*beam, beams_.T_map_sensor(source, *robot));
+        witness_->on_beam(*beam, beams_.T_map_sensor(source, *robot),
+                          beams_.twists_map(source, *robot, robot_.robot()));
     }
     return added;
 }

@@ -35,6 +35,8 @@ const char* name(SensorDoubt doubt) {
             return "camera_is_off";
         case SensorDoubt::several_contradict:
             return "several_contradict";
+        case SensorDoubt::joint_is_off:
+            return "joint_is_off";
     }
     return "unknown";
 }
@@ -75,6 +77,19 @@ std::string describe_fault(const SensorEvidence& evidence) {
            " of its node: are the two swapped at the harness?";
 }
 
+std::string describe_error(const CameraError& error) {
+    std::array<char, 96> by{};
+    std::snprintf(by.data(), by.size(), "turned by %.1f deg, shifted by %.1f cm, its depth off by %.1f %%",
+                  error.turn_deg.norm(), 100.0 * error.shift_m.norm(), 100.0 * (error.depth_scale - 1.0));
+    return by.data();
+}
+
+std::string describe_error(const JointError& error) {
+    std::array<char, 64> by{};
+    std::snprintf(by.data(), by.size(), "further by %+.3f rad, or m of a prismatic joint", error.offset);
+    return by.data();
+}
+
 }  // namespace
 
 /// Ranges that agree are not told: those of a sensor that is 6 cm off do, and more of them come while it is
@@ -87,15 +102,21 @@ std::string describe(const SensorEvidence& evidence) {
            " behind a surface that it sees)";
 }
 
-std::string describe(const CameraError& error, std::size_t sensors) {
-    std::array<char, 96> by{};
-    std::snprintf(by.data(), by.size(), "turned by %.1f deg, shifted by %.1f cm, its depth off by %.1f %%",
-                  error.turn_deg.norm(), 100.0 * error.shift_m.norm(), 100.0 * (error.depth_scale - 1.0));
-    return "not where the rig has it, or its scale is off: that explains what " + std::to_string(sensors) +
-           " sensors contradict (by an estimate " + by.data() +
-           "). Compare the arm's posture with its joint states first, as a joint whose zero is off looks the "
-           "same; else measure the camera's pose anew (docs/method.md, \"A sensor that contradicts the "
-           "camera\")";
+std::string describe(const PoseFault& fault, std::span<const std::string> joints) {
+    const std::string explains =
+        ": that explains what " + std::to_string(fault.explained) + " sensors contradict (by an estimate ";
+    const std::string see = " (docs/method.md, \"A sensor that contradicts the camera\")";
+    if (!fault.joint)
+        return "camera: not where the rig has it, or its scale is off" + explains +
+               describe_error(*fault.camera) + "): measure the camera's pose anew" + see;
+    const std::string joint = "joint " + joints[fault.joint->joint];
+    if (!fault.camera)
+        return joint + ": not where its joint states say" + explains + describe_error(*fault.joint) +
+               "): compare the arm's posture with its joint states, and set the joint's zero anew" + see;
+    return "camera or " + joint + ": one of them is not where it is said to be, and it cannot be told which" +
+           explains + describe_error(*fault.joint) + ", or the camera " + describe_error(*fault.camera) +
+           "). Compare the arm's posture with its joint states first; else measure the camera's pose anew" +
+           see;
 }
 
 }  // namespace octoskin

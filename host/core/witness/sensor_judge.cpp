@@ -69,7 +69,7 @@ SensorFault fault_at(std::size_t place) {
 }  // namespace
 
 SensorJudge::SensorJudge(std::span<const std::size_t> sensors_of_nodes)
-    : camera_(std::accumulate(sensors_of_nodes.begin(), sensors_of_nodes.end(), std::size_t{0})) {
+    : pose_(std::accumulate(sensors_of_nodes.begin(), sensors_of_nodes.end(), std::size_t{0})) {
     for (const std::size_t count : sensors_of_nodes) {
         const std::size_t begin = sensors_.size();
         for (std::size_t i = 0; i < count; ++i) {
@@ -141,8 +141,8 @@ void SensorJudge::judge(std::span<const Compared> compared) {
                 weigh_exchange(compared[i], mounted[i], compared[j], mounted[j]);
         }
     }
-    for (const Compared& one : compared) ask_camera(one);
-    camera_.decide();
+    for (const Compared& one : compared) ask_pose(one);
+    if (!compared.empty()) pose_.decide(compared.back().beam.captured);
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
         decide(static_cast<std::uint16_t>(i));
         sensors_[i].looks = {looks_[i], sensors_[i].looks[0]};
@@ -150,25 +150,32 @@ void SensorJudge::judge(std::span<const Compared> compared) {
     for (const Compared& one : compared) remember(one);
 }
 
-void SensorJudge::ask_camera(const Compared& compared) {
+void SensorJudge::ask_pose(const Compared& compared) {
     const RangePrediction& at = compared.predictions.mounted;
     const double range_m = *compared.beam.range_m;
     if (!at.range_m || (!at.is_from_behind && range_m < at.hidden_until_m)) return;
-    camera_.compare(compared.sensor,
-                    {.off_m = range_m - *at.range_m,
-                     .sigma_m = std::hypot(compared.beam.sigma_m, at.sigma_m),
-                     .is_from_behind = at.is_from_behind},
-                    compared.predictions.hits);
+    const auto change = range_change({.off_m = range_m - *at.range_m,
+                                      .sigma_m = std::hypot(compared.beam.sigma_m, at.sigma_m),
+                                      .is_from_behind = at.is_from_behind},
+                                     compared.predictions.hits);
+    if (change) pose_.compare(compared.sensor, *change, compared.twists_camera);
 }
 
 bool SensorJudge::contradicts(const Sensor& sensor) const {
     return sensor.verdict.fault || sensor.is_far_off || sensor.verdict.evidence >= kContradictsFrom;
 }
 
+/// While one of the two is named or likely.
+SensorDoubt SensorJudge::doubt_of_pose() const {
+    const bool is_camera = pose_.fault() ? !pose_.fault()->joint : pose_.camera().is_suspect();
+    return is_camera ? SensorDoubt::camera_is_off : SensorDoubt::joint_is_off;
+}
+
 std::optional<SensorDoubt> SensorJudge::against_naming(std::uint16_t number, const Eigen::Vector3d& p_camera,
                                                        double misplaced_max_m) const {
-    if (camera_.error() || camera_.is_suspect()) return SensorDoubt::camera_is_off;
-    if (camera_.may_misplace_m(number, p_camera) > misplaced_max_m) return SensorDoubt::camera_not_known;
+    if (pose_.fault() || pose_.is_suspect()) return doubt_of_pose();
+    if (pose_.camera().may_misplace_m(number, p_camera) > misplaced_max_m)
+        return SensorDoubt::camera_not_known;
     // Another test may have found one since the newest image was judged: they are counted anew.
     const auto contradicting =
         std::ranges::count_if(sensors_, [this](const Sensor& sensor) { return contradicts(sensor); });
@@ -280,7 +287,7 @@ std::optional<SensorDoubt> SensorJudge::doubt_of(Sensor& sensor) const {
     const auto number = static_cast<std::size_t>(&sensor - sensors_.data());
     for (std::size_t i = 0; i < sensor.exchanged.size(); ++i)
         if (sensor.node_begin + i != number) look_at(sensor.exchanged[i], SensorFault::exchanged, false);
-    if (camera_.error()) return SensorDoubt::camera_is_off;
+    if (pose_.fault()) return doubt_of_pose();
     if (is_ambiguous) return SensorDoubt::ambiguous;
     return is_left ? std::optional(SensorDoubt::too_few_comparisons) : std::nullopt;
 }
@@ -289,7 +296,7 @@ void SensorJudge::decide(std::uint16_t number) {
     Sensor& sensor = sensors_[number];
     const auto by_evidence = [](const FaultSum& a, const FaultSum& b) { return a.for_it < b.for_it; };
     const bool is_taken_back = sensor.named != nullptr && sensor.named->against_it >= kTakenBackFrom;
-    if (is_taken_back || camera_.error()) {
+    if (is_taken_back || pose_.fault()) {
         sensor.named = nullptr;
         sensor.verdict.fault.reset();
         sensor.verdict.exchanged_with.reset();
@@ -311,9 +318,7 @@ void SensorJudge::decide(std::uint16_t number) {
         is_exchange &&
         sensors_[sensor.node_begin + other].exchanged[number - sensor.node_begin].for_it < kDeniedFrom;
     const double enough = is_exchange ? kExchangedFrom : kNamedFrom;
-    const bool is_enough =
-        sensor.verdict.evidence >= enough && !is_denied && is_convincing(sensor, likeliest);
-    if (!is_enough) return;
+    if (sensor.verdict.evidence < enough || is_denied || !is_convincing(sensor, likeliest)) return;
     if (const auto doubt =
             against_naming(number, sensor.p_camera, is_exchange ? kMisplacedOfExchangedM : kMisplacedM)) {
         sensor.verdict.doubt = doubt;

@@ -1,6 +1,6 @@
 // Sequential tests of range sensors against what the camera predicts of them: whether each ranges as the rig
 // has it, or as one that is off, turned, exchanged with another, or short every now and then; or whether one
-// error of the camera explains as much.
+// error of the camera, or of a joint, explains as much.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "host/core/beams/beam.hpp"
-#include "host/core/witness/camera_judge.hpp"
 #include "host/core/witness/fault_sum.hpp"
+#include "host/core/witness/pose_judge.hpp"
 #include "host/core/witness/range_predictor.hpp"
 #include "host/core/witness/thickness_memory.hpp"
 
@@ -34,7 +34,8 @@ enum class SensorDoubt : std::uint8_t {
     ambiguous,            ///< a fault has neither enough evidence for it nor enough against it
     camera_not_known,     ///< the other sensors do not show well enough where the camera is
     camera_is_off,        ///< an error of the camera is named, or likely
-    several_contradict,   ///< more than two sensors do: the robot's pose may be what is off
+    several_contradict,   ///< more than two sensors do
+    joint_is_off,         ///< an offset of a joint is named, alone or beside the camera, or likely
 };
 
 /// One range and what the camera predicts at its time.
@@ -42,6 +43,7 @@ struct Compared {
     std::uint16_t sensor = 0;  ///< by its place in the rig, node by node
     Beam beam;                 ///< with a range
     RangePredictions predictions;
+    JointTwists twists_camera = {};  ///< how the sensor moves with each joint, camera coordinates
 };
 
 class SensorJudge {
@@ -54,13 +56,13 @@ class SensorJudge {
     /// What another test has found of a sensor counts as its contradicting.
     void set_far_off(std::uint16_t sensor, bool is_far_off) { sensors_[sensor].is_far_off = is_far_off; }
 
-    /// Why a sensor that contradicts may not be named, if so. Not while the camera may be what is off:
-    /// because an error of it explains what several sensors contradict, or this one and others a little; or
-    /// because more than two sensors contradict at once.
+    /// Why a sensor that contradicts may not be named, if so. Not while the camera or a joint may be what is
+    /// off: because an error of it explains what several sensors contradict, or this one and others a little;
+    /// or because more than two sensors contradict at once.
     [[nodiscard]] std::optional<SensorDoubt> against_naming(std::uint16_t sensor,
                                                             const Eigen::Vector3d& p_camera,
                                                             double misplaced_max_m) const;
-    [[nodiscard]] const CameraJudge& camera() const noexcept { return camera_; }
+    [[nodiscard]] const PoseJudge& pose() const noexcept { return pose_; }
 
     /// With neither fault nor doubt the sensor agrees: no fault that would have changed its ranges is left.
     struct Verdict {
@@ -117,7 +119,8 @@ class SensorJudge {
                      double misfit_mounted);
     void weigh_exchange(const Compared& of, const Expected& own, const Compared& other,
                         const Expected& others);
-    void ask_camera(const Compared& compared);
+    void ask_pose(const Compared& compared);
+    [[nodiscard]] SensorDoubt doubt_of_pose() const;
     [[nodiscard]] bool contradicts(const Sensor& sensor) const;
     [[nodiscard]] bool is_convincing(const Sensor& sensor, const FaultSum& sum) const;
     [[nodiscard]] std::optional<SensorDoubt> doubt_of(Sensor& sensor) const;
@@ -127,7 +130,7 @@ class SensorJudge {
     std::vector<Sensor> sensors_;
     std::vector<Look> looks_;  ///< of the image that is judged
     ThicknessMemory thickness_;
-    CameraJudge camera_;
+    PoseJudge pose_;
 };
 
 }  // namespace octoskin

@@ -85,10 +85,11 @@ SensorWitness::SensorWitness(const HostRig& rig, const WitnessConfig& config)
     next_ = sensors_.size();
 }
 
-void SensorWitness::on_beam(const Beam& beam, const Eigen::Isometry3d& T_map_sensor) {
+void SensorWitness::on_beam(const Beam& beam, const Eigen::Isometry3d& T_map_sensor,
+                            const JointTwists& twists_map) {
     auto& newest = sensors_[index_of(beam.source.node_id, beam.source.sensor)].newest;
     std::rotate(newest.begin(), newest.end() - 1, newest.end());
-    newest.front() = Placed{beam, T_map_sensor};
+    newest.front() = Placed{beam, T_map_sensor, twists_map};
     compare_next();
 }
 
@@ -140,7 +141,8 @@ void SensorWitness::compare_next() {
         if (says_something) count(sensor, beam, finding);
         if (beam.range_m) {
             compared_.push_back({static_cast<std::uint16_t>(next_), beam,
-                                 sensor.predictors[zone].predict(view, placed->T_map_sensor)});
+                                 sensor.predictors[zone].predict(view, placed->T_map_sensor),
+                                 octoskin::placed(view.T_camera_map(), placed->twists_map)});
             says_something |= compared_.back().predictions.mounted.range_m.has_value();
         }
         if (says_something) sensor.counted = beam;
@@ -175,7 +177,7 @@ void SensorWitness::judge() {
             judge_.against_naming(static_cast<std::uint16_t>(i),
                                   T_map_camera_.inverse() * sensors_[i].p_contradicted_map, kMisplacedM);
         evidence.is_far_off =
-            sensors_[i].found_far_off && (evidence.is_far_off || !against_naming) && !judge_.camera().error();
+            sensors_[i].found_far_off && (evidence.is_far_off || !against_naming) && !judge_.pose().fault();
         evidence.fault = verdict.fault;
         evidence.doubt = doubt_of(sensors_[i], verdict, against_naming);
         evidence.not_excluded = verdict.not_excluded;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,8 +64,9 @@ struct SensorEvidence {
     }
 };
 
-/// "not where the rig has it: ..." with what to do, for a person.
-[[nodiscard]] std::string describe(const CameraError& error, std::size_t sensors);
+/// "camera: not where the rig has it ...", "joint panda_joint4: ...", "camera or joint panda_joint1: ..."
+/// with what to do, for a person. `joints`: the rig's, in its order.
+[[nodiscard]] std::string describe(const PoseFault& fault, std::span<const std::string> joints);
 
 /// What the camera showed at one instant, all of its size. Their memory goes in and out.
 struct SeenImages {
@@ -87,9 +89,9 @@ class SensorWitness {
     /// The rig must have a camera.
     SensorWitness(const HostRig& rig, const WitnessConfig& config);
 
-    /// A beam, and where its sensor was; the newest ones of each sensor are kept. Compares one of those that
-    /// wait: 0.05 to 0.2 ms where there is one, else 0.1 us.
-    void on_beam(const Beam& beam, const Eigen::Isometry3d& T_map_sensor);
+    /// A beam, where its sensor was, and how that moves with each joint, map frame; the newest ones of each
+    /// sensor are kept. Compares one of those that wait: 0.05 to 0.2 ms where there is one, else 0.1 us.
+    void on_beam(const Beam& beam, const Eigen::Isometry3d& T_map_sensor, const JointTwists& twists_map = {});
 
     /// Images of the camera's size (asserted), seen from `T_map_camera`; what they are given for is some
     /// images of before. Each sensor's newest beam waits to be compared with them, if the two are of about
@@ -106,8 +108,9 @@ class SensorWitness {
     /// Of a sensor of the rig (asserted).
     [[nodiscard]] const SensorEvidence& evidence(std::uint8_t node_id, std::uint8_t sensor) const;
 
-    /// How the camera is off, while that explains what several sensors contradict; then no sensor is named.
-    [[nodiscard]] const CameraJudge& camera() const noexcept { return judge_.camera(); }
+    /// How the camera, or a joint, is off, while that explains what several sensors contradict; then no
+    /// sensor is named.
+    [[nodiscard]] const PoseJudge& pose() const noexcept { return judge_.pose(); }
 
     /// Whether its readings are to be kept from the map: it contradicts the camera, and no fewer other
     /// sensors agree with it. Else it may be the camera.
@@ -117,6 +120,7 @@ class SensorWitness {
     struct Placed {
         Beam beam;
         Eigen::Isometry3d T_map_sensor;
+        JointTwists twists_map;
     };
     struct Contradiction {
         HostTime captured;

@@ -63,8 +63,9 @@ Outcome outcome_of(const KeptRun& run, const Says& says) {
             compared.back().beam.range_m = range->range_m;
         }
         judge.judge(compared);
-        outcome.camera_evidence_max = std::max(outcome.camera_evidence_max, judge.camera().evidence());
-        outcome.is_camera_named |= judge.camera().error().has_value();
+        outcome.camera_evidence_max =
+            std::max(outcome.camera_evidence_max, judge.pose().camera().evidence().evidence);
+        outcome.is_camera_named |= judge.pose().fault().has_value();
         for (SensorNumber i = 0; i < kSensors; ++i) {
             const auto& verdict = judge.verdict(static_cast<std::uint16_t>(i));
             outcome.evidence_max[i] = std::max(outcome.evidence_max[i], verdict.evidence);

@@ -119,7 +119,8 @@ class Rig {
           beams_(needed(BeamBuilder::build(setup_.rig, setup_.robot, {.sees_cones = true}))),
           tracker_(needed(RobotTracker::build(setup_.rig, std::move(setup_.robot), {}))),
           has_turned_(choice.has_turned),
-          has_predictions_(choice.has_predictions) {
+          has_predictions_(choice.has_predictions),
+          joint_offset_rad_(choice.joint_offset_rad) {
         run.rig = setup_.rig;
         run.rig.camera->T_base_camera = told(setup_.rig.camera->T_base_camera, choice.camera_error);
         std::uint32_t noise_id = 0;
@@ -177,6 +178,7 @@ class Rig {
         const Eigen::VectorXd joints = stage.trajectory.at(sim::SimTime{us});
         JointMeasurement sample{HostTime{1'000 * us}, {}};
         std::copy(joints.begin(), joints.end(), sample.position_rad.begin());
+        for (std::size_t i = 0; i < kJointsMax; ++i) sample.position_rad[i] -= joint_offset_rad_[i];
         if (!tracker_.add(sample)) std::abort();
     }
 
@@ -207,6 +209,7 @@ class Rig {
             T_map_sensor.linear() *
             host().nodes[source.node_id - 1U].sensors[source.sensor].zones[zone].direction_sensor;
         kept.T_map_sensor = T_map_sensor;
+        kept.twists_map = beams_.twists_map(source, robot, tracker_.robot());
         if (!has_predictions_) return kept;
         const auto began = std::chrono::steady_clock::now();
         kept.predictions = sensor.predictors[zone].predict(view, T_map_sensor);
@@ -221,6 +224,7 @@ class Rig {
     RobotTracker tracker_;
     bool has_turned_;
     bool has_predictions_;
+    JointPositions joint_offset_rad_;
     std::vector<Sensor> sensors_;
     double predicted_ = 0.0;
 };

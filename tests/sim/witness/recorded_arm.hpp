@@ -26,10 +26,13 @@ struct KeptRange {
     double noise_m = 0.0;  ///< what of that is noise
 };
 
+using JointPositions = std::array<double, kJointsMax>;
+
 /// One reading of one sensor.
 struct KeptReading {
     Beam beam;  ///< of the sound sensor, but for the range
     Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+    JointTwists twists_map{};
     RangePredictions predictions;                         ///< if they are wanted
     std::optional<KeptRange> sound;                       ///< empty: it saw nothing, or the gate refuses it
     std::array<std::optional<KeptRange>, kTurns> turned;  ///< with its mount turned
@@ -66,6 +69,8 @@ struct KeptChoice {
     std::optional<std::array<Eigen::Vector3d, 2>> camera_at_m = std::nullopt;
     /// What the rig says is the true pose without this, and the image's depth is the true one without it.
     CameraError camera_error = {};
+    /// Of each joint, rad: what its joint states say is the true position less this.
+    JointPositions joint_offset_rad = {};
 };
 
 /// Of each rig, of hw/rigs, with the same images. `pixel_divisor`: 1 is the rig's camera, 2 one of half as

@@ -65,15 +65,16 @@ std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double ra
                                camera.rate_hz, rate_hz)};
 }
 
-void add_camera_error(const DaemonView& view, Problems& problems) {
+void add_pose_fault(const DaemonView& view, Problems& problems) {
     const SensorWitness* const witness = view.pipeline->builder().witness();
-    if (witness == nullptr || !witness->camera().error()) return;
-    const std::string text = describe(*witness->camera().error(), witness->camera().explained());
-    problems.push_back({"camera pose", "camera: " + text, {}});
+    if (witness == nullptr || !witness->pose().fault()) return;
+    const PoseFault& fault = *witness->pose().fault();
+    const char* const key = !fault.joint ? "camera pose" : !fault.camera ? "joint pose" : "camera or joint";
+    problems.push_back({key, describe(fault, view.rig->joints.joints), {}});
 }
 
 void add_camera(const DaemonView& view, Problems& problems) {
-    add_camera_error(view, problems);
+    add_pose_fault(view, problems);
     if (!view.camera || !view.rig->camera) return;
     const double rate_hz = view.rig->camera->rate_hz;
     const auto& frames = view.pipeline->accounts().depth_frames;

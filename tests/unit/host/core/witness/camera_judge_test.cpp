@@ -51,10 +51,10 @@ class CornerScene : public testing::Test {
                                    .direction = view.T_camera_map().linear() * direction,
                                    .plane = *plane,
                                    .share = 1.0};
-                judge_.compare(
-                    static_cast<std::uint16_t>(sensor),
-                    {.off_m = range_m - *reach.surface_m, .sigma_m = 0.02, .is_from_behind = false},
-                    {&hit, 1});
+                if (const auto change = range_change(
+                        {.off_m = range_m - *reach.surface_m, .sigma_m = 0.02, .is_from_behind = false},
+                        {&hit, 1}))
+                    judge_.compare(static_cast<std::uint16_t>(sensor), *change);
             }
             judge_.decide();
         }
@@ -79,7 +79,7 @@ TEST_F(CornerScene, a_camera_that_is_where_the_rig_has_it_is_not_named) {
 TEST_F(CornerScene, one_that_is_three_degrees_off_is_named_with_about_that) {
     look(4, turned(3.0, Eigen::Vector3d::UnitY()));
     ASSERT_TRUE(judge_.error());
-    EXPECT_GE(judge_.explained(), 3U);
+    EXPECT_GE(judge_.evidence().explained, 3U);
     EXPECT_NEAR(judge_.error()->turn_deg.y(), 3.0, 1.1);
     EXPECT_LE(std::abs(judge_.error()->turn_deg.x()), 1.0);
     EXPECT_GT(judge_.may_misplace_m(0, 2.0 * kAhead), 0.08);
@@ -105,19 +105,22 @@ TEST_F(CornerScene, one_whose_depth_is_five_percent_short_is_named_until_it_is_r
 TEST_F(CornerScene, one_sensor_that_is_off_is_not_the_camera) {
     look(4, Eigen::Isometry3d::Identity());
     for (int i = 0; i < 40; ++i) look(1, Eigen::Isometry3d::Identity(), 0.06, 1);
-    EXPECT_FALSE(judge_.error()) << judge_.evidence();
-    EXPECT_LE(judge_.evidence(), 1.0);
+    EXPECT_FALSE(judge_.error()) << judge_.evidence().evidence;
+    EXPECT_LE(judge_.evidence().evidence, 1.0);
 }
 
 TEST_F(CornerScene, offsets_of_a_centimetre_that_each_sensor_has_are_not_the_camera) {
     look(4, Eigen::Isometry3d::Identity(), 0.01, 100);
-    EXPECT_FALSE(judge_.error()) << judge_.evidence();
+    EXPECT_FALSE(judge_.error()) << judge_.evidence().evidence;
     EXPECT_FALSE(judge_.is_suspect());
 }
 
 TEST_F(CornerScene, the_error_is_described_with_its_turn_shift_and_scale) {
-    const std::string text = describe(
-        CameraError{.turn_deg = {0.0, 2.0, 0.0}, .shift_m = {0.03, 0.0, 0.0}, .depth_scale = 1.015}, 4);
+    const PoseFault fault{
+        .camera = CameraError{.turn_deg = {0.0, 2.0, 0.0}, .shift_m = {0.03, 0.0, 0.0}, .depth_scale = 1.015},
+        .joint = std::nullopt,
+        .explained = 4};
+    const std::string text = describe(fault, {});
     EXPECT_NE(text.find("turned by 2.0 deg, shifted by 3.0 cm, its depth off by 1.5 %"), std::string::npos)
         << text;
 }
@@ -125,7 +128,7 @@ TEST_F(CornerScene, the_error_is_described_with_its_turn_shift_and_scale) {
 TEST_F(CornerScene, what_is_off_by_more_than_a_camera_is_says_nothing) {
     look(4, Eigen::Isometry3d::Identity(), 0.3);
     EXPECT_FALSE(judge_.error());
-    EXPECT_EQ(judge_.evidence(), 0.0);
+    EXPECT_EQ(judge_.evidence().evidence, 0.0);
 }
 
 }  // namespace

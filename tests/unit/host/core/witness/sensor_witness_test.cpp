@@ -330,7 +330,7 @@ TEST_F(SensorWitnessTest, names_no_sensor_before_others_have_shown_where_the_cam
     compare(200, 1.06, wall_at(2.0F));
     EXPECT_FALSE(evidence().contradicts());
     EXPECT_EQ(evidence().doubt, SensorDoubt::camera_not_known);
-    EXPECT_FALSE(witness_.camera().error());
+    EXPECT_FALSE(witness_.pose().fault());
 }
 
 // One wall at right angles shows no turn; an offset and short ranges have to be excluded.

@@ -1,0 +1,61 @@
+#include "host/core/witness/pose_judge.hpp"
+
+#include <algorithm>
+
+namespace octoskin {
+namespace {
+
+/// What explains more by this, with the evidence that one sensor alone gives left out, is what is off. An
+/// error of the camera has seven unknowns to a joint's one, and takes up some of everything that is not quite
+/// as predicted: it has to lead by a share of all that it explains, too.
+constexpr double kLead = 3.0;
+constexpr double kLeadOfCamera = 0.25;
+/// A lead of a shorter time is of one view of one thing.
+constexpr Nanoseconds kLeadTime{3'000'000'000};
+
+/// By how much more one error explains than another, without the sensor that says so most.
+double lead(const ErrorEvidence& of, const ErrorEvidence& to) {
+    double sum = 0.0;
+    double most = 0.0;
+    for (std::size_t i = 0; i < of.said.size(); ++i) {
+        const double more = of.said[i] - to.said[i];
+        sum += more;
+        most = std::max(most, more);
+    }
+    return sum - most;
+}
+
+}  // namespace
+
+void PoseJudge::compare(std::uint16_t sensor, const RangeChange& change, const JointTwists& twists) {
+    camera_.compare(sensor, change);
+    joints_.compare(sensor, change, twists);
+}
+
+PoseJudge::Leader PoseJudge::leader() const {
+    const ErrorEvidence& of_camera = camera_.evidence();
+    const ErrorEvidence& of_joint = joints_.evidence();
+    if (lead(of_joint, of_camera) >= kLead) return Leader::joint;
+    const double enough = std::max(kLead, kLeadOfCamera * of_camera.evidence);
+    return lead(of_camera, of_joint) >= enough ? Leader::camera : Leader::none;
+}
+
+void PoseJudge::decide(HostTime now) {
+    camera_.decide();
+    joints_.decide();
+    const bool is_error = camera_.error() || joints_.error();
+    const Leader leader = is_error ? this->leader() : Leader::none;
+    if (leader != leader_ || now < leads_since_) leads_since_ = now;
+    leader_ = leader;
+    fault_.reset();
+    if (!is_error) return;
+    const bool is_alone = leader != Leader::none && now - leads_since_ >= kLeadTime;
+    PoseFault fault;
+    if (!is_alone || leader == Leader::camera) fault.camera = camera_.likeliest();
+    if (!is_alone || leader == Leader::joint) fault.joint = joints_.likeliest();
+    fault.explained = std::max(fault.camera ? camera_.evidence().explained : 0,
+                               fault.joint ? joints_.evidence().explained : 0);
+    fault_ = fault;
+}
+
+}  // namespace octoskin
