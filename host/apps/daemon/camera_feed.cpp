@@ -10,7 +10,6 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
-#include "host/core/depth/repeated_images.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helper_process.hpp"
 
@@ -130,7 +129,7 @@ void CameraFeed::watch_camera() {
     if (!header) return note_closed(with_complaint(not_opened(uri_), *process));
     note_opened(header->rate_mhz * 1e-3);
     openni2::FramePipe frames(process->descriptor(), silence_max_, end_);
-    RepeatedImages images;
+    images_.begin_opening();
     while (!is_ending_) {
         auto frame = frames.read_frame(header->size);
         if (!frame || !frame->has_value()) {
@@ -143,12 +142,12 @@ void CameraFeed::watch_camera() {
         }
         const HostTime captured{static_cast<std::int64_t>((*frame)->timestamp_us) * 1000};
         DepthFrame taken{captured, header->size.width, header->size.height, std::move((*frame)->depth_mm)};
-        if (is_oni_name(uri_) || !images.take(taken)) {
+        if (is_oni_name(uri_) || !images_.take(taken)) {
             put(std::move(taken));
             continue;
         }
         note_repeated();
-        if (images.has_value() && images.lasted() > silence_max_)
+        if (images_.has_value() && images_.lasted() > silence_max_)
             return note_closed(with_complaint("it shows one image again and again", *process));
     }
 }

@@ -13,6 +13,7 @@
 
 #include "common/time.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/core/depth/repeated_images.hpp"
 #include "host/io/openni2/camera_mode.hpp"
 
 namespace octoskin {
@@ -42,9 +43,10 @@ class CameraFeed {
     /// `uri`: an OpenNI2 device, or the path of an .oni file that is played at its own speed, again and
     /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
     /// opened anew, and so is one whose frames all come late (openni2::CaptureClock::is_lost), and a device
-    /// that shows one image with values for so long: a film may. `helper`: the program that reads the camera,
-    /// in place of octoskin-camera. `mode`: what a device is put into, if it has such a mode. Throws
-    /// std::system_error if there is no thread or descriptor to be had.
+    /// that shows none but its last images, with values, for so long: a film may. In the next opening these
+    /// are repetitions from the first on. `helper`: the program that reads the camera, in place of
+    /// octoskin-camera. `mode`: what a device is put into, if it has such a mode. Throws std::system_error if
+    /// there is no thread or descriptor to be had.
     CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
                std::optional<std::filesystem::path> helper = {},
                std::optional<openni2::CameraMode> mode = {});
@@ -79,6 +81,7 @@ class CameraFeed {
     std::chrono::milliseconds silence_max_;
     std::optional<std::filesystem::path> helper_;
     std::optional<openni2::CameraMode> mode_;
+    RepeatedImages images_;  ///< of all openings: a camera that hangs may go on with its image; the thread's
     int event_ = -1;
     int end_ = -1;  ///< readable when the thread is to end
     mutable std::mutex mutex_;

@@ -167,6 +167,27 @@ TEST_F(CameraFeedTest, opens_a_camera_anew_that_repeats_an_image_unless_it_is_em
     EXPECT_EQ(film.record().repeated, 0U);
 }
 
+// Opened anew it shows the same image, at times that go on, until it shows another one.
+TEST_F(CameraFeedTest, hands_over_nothing_of_a_camera_that_hangs_though_it_is_opened_anew) {
+    const std::string times = (scratch_ / "times").string();
+    std::string first = kHeader;
+    for (int i = 0; i < 30; ++i) first += frame_at(10 * i, 'a');
+    std::string second = kHeader;
+    for (int i = 0; i < 30; ++i) second += frame_at(400 + 10 * i, 'a');
+    const std::string third = kHeader + frame_at(800, 'a') + frame_at(810, 'b');
+    CameraFeed feed("", 2s,
+                    camera("echo >> " + times + "\ncase $(wc -l < " + times + ") in\n1)\n" + first +
+                           ";;\n2)\n" + second + ";;\n*)\n" + third + ";;\nesac\nexec sleep 100"));
+    std::vector<HostTime> taken;
+    ASSERT_TRUE(wait_until([&] {
+        while (const auto frame = feed.take()) taken.push_back(frame->captured);
+        return !taken.empty() && taken.back() == HostTime{8'100'000'000};
+    }));
+    EXPECT_EQ(feed.record().opened, 3U);
+    EXPECT_EQ(feed.record().repeated, 16 + 22 + 1U) << "the second opening lasts as long as the first";
+    EXPECT_EQ(taken.size() + feed.record().displaced, 6 + 1U);
+}
+
 TEST_F(CameraFeedTest, tells_the_helper_which_camera_and_which_mode) {
     const std::string told = (scratch_ / "told").string();
     const auto program = camera("echo \"$# $1 $2\" > " + told + ".new; mv " + told + ".new " + told);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <vector>
 
 namespace octoskin {
 namespace {
@@ -28,7 +29,53 @@ TEST(RepeatedImages, are_those_that_equal_more_than_five_before_them_for_over_ha
 TEST(RepeatedImages, are_none_while_a_single_value_changes) {
     RepeatedImages images;
     for (int i = 0; i < 100; ++i)
-        EXPECT_FALSE(images.take(frame(i * 100ms, static_cast<std::uint16_t>(900 + i % 2))));
+        EXPECT_FALSE(images.take(frame(i * 100ms, static_cast<std::uint16_t>(900 + i))));
+}
+
+// A driver's ring of buffers.
+TEST(RepeatedImages, are_those_of_a_ring_of_up_to_eight_by_turns) {
+    for (const int ring : {2, 3, 4, 8}) {
+        RepeatedImages images;
+        for (int i = 0; i < 100; ++i) {
+            const auto mm = static_cast<std::uint16_t>(900 + i % ring);
+            EXPECT_EQ(images.take(frame(i * 100ms, mm)), i >= ring + 5) << ring << ' ' << i;
+        }
+        EXPECT_EQ(images.lasted(), (100 - ring) * 100ms);
+        EXPECT_FALSE(images.take(frame(10s, 1))) << "it goes on";
+        EXPECT_FALSE(images.take(frame(11s, 1)));
+    }
+}
+
+TEST(RepeatedImages, are_none_where_an_image_comes_again_now_and_then) {
+    RepeatedImages images;
+    for (int i = 0; i < 300; ++i) {
+        const auto mm = static_cast<std::uint16_t>(i % 6 == 0 ? 900 + i : 0);  // five of six show nothing
+        EXPECT_FALSE(images.take(frame(i * 100ms, mm))) << i;
+    }
+}
+
+TEST(RepeatedImages, are_found_wherever_they_differ_and_are_none_there) {
+    std::vector<std::uint16_t> pixels(11, 900);
+    RepeatedImages images;
+    for (std::uint64_t i = 0; i < 16 * pixels.size(); ++i) {
+        pixels[i % 11] = static_cast<std::uint16_t>(pixels[i % 11] ^ (1U << (i / 11)));
+        EXPECT_FALSE(images.take({HostTime{static_cast<std::int64_t>(i) * 100'000'000}, 11, 1, pixels})) << i;
+        EXPECT_EQ(images.lasted(), 0ms) << i;
+    }
+}
+
+TEST(RepeatedImages, go_on_where_a_camera_is_opened_anew_and_last_from_there) {
+    RepeatedImages images;
+    for (int i = 0; i <= 20; ++i) (void)images.take(frame(i * 100ms, 900));
+    EXPECT_EQ(images.lasted(), 2s);
+    images.begin_opening();
+    EXPECT_EQ(images.lasted(), 0ms);
+    EXPECT_TRUE(images.take(frame(4s, 900)));
+    EXPECT_EQ(images.lasted(), 0ms);
+    EXPECT_TRUE(images.take(frame(5s, 900)));
+    EXPECT_EQ(images.lasted(), 1s);
+    images.begin_opening();
+    EXPECT_FALSE(images.take(frame(8s, 901))) << "it is well again";
 }
 
 TEST(RepeatedImages, may_be_without_any_value) {
