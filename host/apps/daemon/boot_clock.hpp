@@ -68,7 +68,7 @@ class MapTime {
 
     /// `map` goes on, whose time was what it is then; empty: that is not known. It grows older by as many
     /// seconds as have passed since then, which is the answer, and waits; if that is not known, all of it is
-    /// stale, and the answer empty. Throws std::bad_alloc.
+    /// stale, and the answer empty.
     std::optional<std::int64_t> begin_with(FusedMap& map, const std::optional<BootTime>& saved);
     /// To be called every now and then. The pipeline's map grows older by what passes while it waits for its
     /// first measurement: of the program, or after the machine slept, which is noticed here: the map then

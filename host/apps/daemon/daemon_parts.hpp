@@ -55,9 +55,8 @@ struct Daemon::Parts {
     std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
-    void keep_within(const MapConfig& next);
     [[nodiscard]] bool is_placed_as(std::uint32_t placement_crc32) const;
-    [[nodiscard]] bool take_limits(const Settings& next);
+    [[nodiscard]] bool take_limits(const MapConfig& next);
     [[nodiscard]] bool go_on_with(Next& next);
     void ask_reload();
     void begin_reload();

@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
-#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -59,16 +58,14 @@ bool Daemon::Parts::take_next(NextResult next) {
     return next.has_value();
 }
 
-/// False, and as before: there is no memory for that.
+/// False, and as before: there is no memory for that. What follows the limits has no way back: where that
+/// needs memory that is not there the daemon ends, with the map still the pipeline's.
 bool Daemon::Parts::go_on_with(Next& next) {
+    if (!take_limits(next.settings.mapping.map)) return false;
     recordings.stop(monotonic_now(), "the daemon read its files anew (SIGHUP)");  // whole with the old ones
-    keep_within(next.settings.mapping.map);
     inputs.prepare_for(next.settings.host.rig);
     const std::uint64_t dropped = settle_pipeline();
-    if (!take_limits(next.settings)) {
-        inputs.prepare_for(settings.host.rig);
-        return false;
-    }
+    if (!is_placed_as(next.settings.recorded.placement_crc32)) pipeline.forget_times();
     next.pipeline.go_on_from(pipeline);
     settings = std::move(next.settings);
     pipeline = std::move(next.pipeline);
@@ -93,21 +90,12 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
                        describe_other_voxels(request.map_folder / kMapFile, now, wanted), kMapFilesText);
 }
 
-/// What still waits must not make the map larger than it may be from then on: the next start would refuse it.
-void Daemon::Parts::keep_within(const MapConfig& next) {
-    MapConfig both = settings.mapping.map;
-    both.memory_max_mib = std::min(both.memory_max_mib, next.memory_max_mib);
-    pipeline.limit_map(both);
-}
-
-/// While the map is still the pipeline's: it must not be lost with what there is no memory for.
-bool Daemon::Parts::take_limits(const Settings& next) {
+/// While the pipeline goes on: what still waits must not make the map larger than the next start may load.
+bool Daemon::Parts::take_limits(const MapConfig& next) {
     try {
-        pipeline.limit_map(next.mapping.map);
-        if (!is_placed_as(next.recorded.placement_crc32)) pipeline.forget_times();
+        pipeline.limit_map(next);
         return true;
     } catch (const std::bad_alloc&) {
-        pipeline.limit_map(settings.mapping.map);
         reload_error = "there is no memory for the map within its new limits beside the old one";
         return false;
     }

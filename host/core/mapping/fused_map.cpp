@@ -60,8 +60,8 @@ void FusedMap::date_and_expire() {
     if (config_.age.unknown_after_s > 0) editor.expire();
 }
 
-void FusedMap::forget_times() {
-    layers_.ages.forget_times();
+void FusedMap::forget_times() noexcept {
+    layers_.ages = {};
 }
 
 void FusedMap::limit(const MapConfig& config) {

@@ -66,9 +66,9 @@ class FusedMap {
     /// and what is too old expires. True if ages grew; false if the map does not wait, and if there is no
     /// memory for that: a later call adds it. Costs as `go_on`.
     bool wait(std::int64_t seconds) noexcept;
-    /// How long ago anything was seen is not known any more: everything is stale until a sensor sees it.
-    /// O(stamps). Throws std::bad_alloc, and then nothing is changed.
-    void forget_times();
+    /// How long ago anything was seen is not known any more: everything is as of before the map's time, which
+    /// begins anew, and stale until a sensor sees it. O(stamps).
+    void forget_times() noexcept;
     /// From now on other limits hold, at the same resolution (asserted): what lies beyond new clamps is
     /// clamped; bricks beyond a smaller memory stay. The counters begin anew. O(voxels) if the clamps change.
     /// Throws std::bad_alloc if there is no memory for as many voxels once more, if the clamps or the counts'

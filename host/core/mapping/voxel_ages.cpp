@@ -91,11 +91,6 @@ bool VoxelAges::wait(std::int64_t seconds) {
     return true;
 }
 
-void VoxelAges::forget_times() {
-    change_stamps([](std::uint16_t stamp) -> std::uint16_t { return stamp == 0 ? stamp : kOfBefore; });
-    clock_ = {};
-}
-
 void VoxelAges::leap(Nanoseconds by) noexcept {
     clock_.zero_s += whole_seconds(HostTime{by.count() + kNanosecondsPerSecond / 2});
 }

@@ -72,10 +72,6 @@ class VoxelAges {
     /// So many seconds have passed since `begin_to_wait`, in all. Nothing unless the clock waits and has
     /// begun, or if as many or more were added already. True if ages grew. Throws as `go_on`.
     bool wait(std::int64_t seconds);
-    /// How long ago anything was seen is not known any more: all stamps are as of before the clock, which
-    /// begins anew. Throws std::bad_alloc, and then nothing is changed.
-    void forget_times();
-
     /// What a voxel that is confirmed now is given. The lower, the weaker: earlier, of another sensor.
     [[nodiscard]] std::uint16_t stamp(SensorKind kind) const noexcept {
         return static_cast<std::uint16_t>((clock_.now << kKindBits) | static_cast<std::uint16_t>(kind));

@@ -55,7 +55,7 @@ class MapBuilder {
     /// to be called behind `forget_motion`.
     void begin_to_wait() noexcept { own_map().begin_to_wait(); }
     /// FusedMap::forget_times, of the map of all sensors.
-    void forget_times() { own_map().forget_times(); }
+    void forget_times() noexcept { own_map().forget_times(); }
     /// Of a map that waits for the time to go on: FusedMap::wait.
     void wait(std::int64_t seconds);
     /// Other limits for it, at the same resolution (asserted).

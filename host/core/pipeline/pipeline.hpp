@@ -70,8 +70,8 @@ class Pipeline {
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
     /// The same with what the range sensors read before: MapBuilder::begin_with.
     [[nodiscard]] std::size_t begin_with(MapState state) { return builder_.begin_with(std::move(state)); }
-    /// All of the fused map is stale until it is seen again: FusedMap::forget_times. Throws std::bad_alloc.
-    void forget_times() { builder_.forget_times(); }
+    /// All of the fused map is stale until it is seen again: FusedMap::forget_times.
+    void forget_times() noexcept { builder_.forget_times(); }
     /// Of a map that was saved, until its first measurement: FusedMap::wait.
     void wait(std::int64_t seconds) { builder_.wait(seconds); }
     /// The machine slept, and the clocks of what comes stood still, or are those of others: as where the time
@@ -79,7 +79,8 @@ class Pipeline {
     /// that its order ends, and what was captured before and comes late is not used. The fused map waits as
     /// one that was saved: `wait` says what has passed.
     void go_on_after_sleep();
-    /// Other limits for the fused map from now on, at the same resolution (asserted): FusedMap::limit.
+    /// Other limits for the fused map from now on, at the same resolution (asserted): FusedMap::limit. Throws
+    /// std::bad_alloc, and then nothing is changed.
     void limit_map(const MapConfig& config) { builder_.limit_map(config); }
     /// After `finish`: the fused map.
     [[nodiscard]] FusedMap take_map() { return builder_.take_map(); }

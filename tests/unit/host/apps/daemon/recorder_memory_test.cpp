@@ -87,5 +87,20 @@ TEST(MapTimeWithoutMemory, is_that_of_before_where_the_map_cannot_grow_older) {
     EXPECT_EQ(map.confirmation({32768, 32768, 32768})->age_s, VoxelAges::kAgeMax_s);
 }
 
+// A reload comes to it when there is no way back any more.
+TEST(MapTimeWithoutMemory, is_forgotten_though_a_copy_of_the_map_has_it_too) {
+    FusedMap map(MapConfig{.age = {.stale_after_s = 10, .unknown_after_s = 0}});
+    map.go_on(HostTime{5'000'000'000});
+    feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 1.0F}});
+    const FusedMap shares = map.copy();
+    is_memory_gone = true;
+    map.forget_times();
+    is_memory_gone = false;
+    map.go_on(HostTime{6'000'000'000});
+    EXPECT_FALSE(map.confirmation({32768, 32768, 32768}));
+    EXPECT_TRUE(map.is_stale({32768, 32768, 32768}));
+    EXPECT_TRUE(shares.confirmation({32768, 32768, 32768}));
+}
+
 }  // namespace
 }  // namespace octoskin
