@@ -57,7 +57,7 @@ Inputs::Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop
           opener(request, rig), [this] { can_ready_ = EventSource(); }, state_reader(request)),
       joint_node_(rig.joints.node_id),
       local_joints_(local_joints_of(rig)),
-      joint_burst_(local_joints_.distance_min()),
+      joint_burst_(rig.joints.rate_hz),
       bit_rates_(rig.bit_rates) {}
 
 Status<AppError> Inputs::take_sockets(const HostRig& rig) {
@@ -117,7 +117,7 @@ void Inputs::change_rig(const HostRig& rig) {
     joint_node_ = rig.joints.node_id;
     bit_rates_ = rig.bit_rates;
     local_joints_ = local_joints_of(rig);
-    joint_burst_.expect(local_joints_.distance_min());
+    joint_burst_.expect(rig.joints.rate_hz);
     rig_changed_ = wall_now();
     if (joints_) joints_->expect(rig.joints.joints.size());
     camera_mode_ = mode_for(rig);
@@ -312,26 +312,21 @@ bool Inputs::has_lost_its_place(const JointSample& sample) const {
     return is_before(rig_changed_) || (has_joints_left_ && is_before(newest_stamp_));
 }
 
-JointBurst::Turn Inputs::turn_of_oldest(WallTime now) {
-    const JointSample& oldest = joints_waiting_.front();
-    if (oldest.has_own_time) return joint_burst_.use(oldest.came);
-    const bool is_alone = joints_waiting_.size() == 1;
-    return joint_burst_.turn_of(oldest.came, is_alone ? std::nullopt : std::optional(joints_waiting_[1].came),
-                                now);
-}
-
 /// Frames of the bus have overtaken a sample that waited for the end of a burst: the order of stamps tells
-/// the bus's time.
+/// the bus's time. By more than a sample can have waited, and this loop with it, only a clock that was set
+/// back differs.
 WallTime Inputs::place_of(const JointSample& sample) const {
+    constexpr Nanoseconds kOvertakenMax = 2 * JointBurst::kWaitMax;
     const bool is_overtaken = newest_stamp_ && *newest_stamp_ > sample.came &&
-                              newest_stamp_->ns - sample.came.ns < JointBurst::kGap.count();
+                              newest_stamp_->ns - sample.came.ns < kOvertakenMax.count();
     return is_overtaken ? *newest_stamp_ : sample.came;
 }
 
 /// Those that came by then; empty: all, but what may be of a burst that is not over.
 void Inputs::feed_joints(std::optional<WallTime> until) {
     while (!joints_waiting_.empty() && (!until || joints_waiting_.front().came <= *until)) {
-        const JointBurst::Turn turn = turn_of_oldest(until.value_or(wall_now()));
+        const JointBurst::Turn turn =
+            joint_burst_.turn_of_oldest(joints_waiting_, until.value_or(wall_now()));
         if (turn == JointBurst::Turn::wait) return;
         const JointSample sample = std::move(joints_waiting_.front());
         joints_waiting_.pop_front();

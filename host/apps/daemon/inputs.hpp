@@ -104,7 +104,6 @@ class Inputs {
     void collect_joints(int& datagrams_left);
     [[nodiscard]] bool has_lost_its_place(const JointSample& sample) const;
     void note_displaced(HostTime now);
-    [[nodiscard]] JointBurst::Turn turn_of_oldest(WallTime now);
     [[nodiscard]] WallTime place_of(const JointSample& sample) const;
     void feed_joints(std::optional<WallTime> until);
     void drain_camera();

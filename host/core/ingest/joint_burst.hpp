@@ -1,6 +1,8 @@
 // Joint samples without a time that were held up on their way.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -12,14 +14,20 @@ namespace octoskin {
 /// in a burst behind a gap, the oldest first, and only the newest of them says where the arm is now.
 class JointBurst {
   public:
-    /// Behind so long a gap the first samples may be a burst: 20 ms are common, and move no arm far.
-    static constexpr Nanoseconds kGap{50'000'000};
+    /// Behind a shorter gap there is no burst: 20 ms are common, and move no arm far.
+    static constexpr Nanoseconds kGapMin{50'000'000};
+    /// No sample waits for longer: its readings wait for it.
+    static constexpr Nanoseconds kWaitMax{20'000'000};
 
-    /// `lasts`: what comes within that time of a burst's first sample is of the burst.
-    explicit JointBurst(Nanoseconds lasts) : lasts_(lasts) {}
+    /// Of samples that come `rate_hz` times a second, the rig's rate, 1 or more.
+    explicit JointBurst(double rate_hz) { expect(rate_hz); }
 
     /// Of samples that come at another rate from now on.
-    void expect(Nanoseconds lasts) { lasts_ = lasts; }
+    void expect(double rate_hz) {
+        const double period_ns = 1e9 / rate_hz;
+        gap_ = std::max(kGapMin, Nanoseconds{std::llround(1.5 * period_ns)});
+        lasts_ = std::min(kWaitMax, Nanoseconds{std::llround(0.75 * period_ns)});
+    }
 
     enum class Turn : std::uint8_t {
         use,
@@ -29,11 +37,18 @@ class JointBurst {
     /// Of the oldest sample that waits, which came at `came`; the one behind it came at `next`. All that came
     /// before `now` is known. To be asked of each sample in turn, again where it waits.
     [[nodiscard]] Turn turn_of(WallTime came, std::optional<WallTime> next, WallTime now) {
-        const bool is_behind_gap = !used_ || came.ns - used_->ns > kGap.count();
+        const bool is_behind_gap = !used_ || came.ns - used_->ns > gap_.count();
         if (!is_behind_gap) return use(came);
         if (!begun_) begun_ = came;
         if (next && is_of_burst(*next)) return Turn::drop;
         return next || !is_of_burst(now) ? use(came) : Turn::wait;
+    }
+    /// Of the oldest of samples that wait, which are not none.
+    template <class Samples>
+    [[nodiscard]] Turn turn_of_oldest(const Samples& waiting, WallTime now) {
+        const auto& oldest = waiting.front();
+        if (oldest.has_own_time) return use(oldest.came);
+        return turn_of(oldest.came, waiting.size() > 1 ? std::optional(waiting[1].came) : std::nullopt, now);
     }
     /// A sample with a time, which is right however late it comes.
     Turn use(WallTime came) {
@@ -48,7 +63,8 @@ class JointBurst {
         return time >= *begun_ && time.ns - begun_->ns < lasts_.count();
     }
 
-    Nanoseconds lasts_;
+    Nanoseconds gap_{0};             ///< a burst comes behind a longer one; a stream at its rate has none
+    Nanoseconds lasts_{0};           ///< what comes within it of a burst's first sample is of the burst
     std::optional<WallTime> used_;   ///< when the sample came that was used last
     std::optional<WallTime> begun_;  ///< when the first of the burst came that is not over
 };

@@ -33,9 +33,6 @@ class LocalJoints {
     /// period after the one before are left out, since nobody on the bus can tell so many apart.
     LocalJoints(wire::NodeId node_id, std::size_t joint_count, double rate_hz);
 
-    /// The least time between two samples.
-    [[nodiscard]] Nanoseconds distance_min() const noexcept { return distance_min_; }
-
     static constexpr double kLargest = 8.388607;  ///< what a frame's 24 bits with sign hold
     /// The frames of one sample, taken at `sampled` on the host's clock. Radians (metres for a prismatic
     /// joint), in the rig's order.
@@ -48,7 +45,7 @@ class LocalJoints {
   private:
     wire::NodeId node_id_;
     std::size_t joint_count_;
-    Nanoseconds distance_min_;
+    Nanoseconds distance_min_;        ///< the least time between two samples
     std::optional<HostTime> newest_;  ///< when the newest sample was taken that became frames
     std::uint8_t sequence_ = 0;
 };

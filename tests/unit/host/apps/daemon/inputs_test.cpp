@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <thread>
 
@@ -20,7 +21,32 @@ using namespace std::chrono_literals;
 
 class InputsTest : public DaemonViewTest {
   protected:
+    /// Ours alone is the bus then, and joint states come so often.
+    void begin_with_rate(double joints_hz) {
+        scene_.rig.joints.rate_hz = joints_hz;
+        std::array<int, 2> ends{};
+        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+        other_end_.emplace("other", ends[0]);
+        request_.can_descriptor = ends[1];
+        slow_.reset();
+        slow_ = inputs_with_joint_socket();
+        slow_->watch(scene_.rig);
+    }
+    /// Frames of the bus every few milliseconds.
+    void keep_bus_alive(std::chrono::duration<double> lasts) {
+        const auto end = std::chrono::steady_clock::now() + lasts;
+        do {
+            ++bus_frames_;
+            EXPECT_TRUE(other_end_->send(wire::encode(wire::FollowUp{1, 5'000'000}, wire::kHostId)).value());
+            slow_->catch_up();
+            std::this_thread::sleep_for(3ms);
+        } while (std::chrono::steady_clock::now() < end);
+    }
     [[nodiscard]] std::uint64_t frames_in() const { return beside_.accounts().frames.in(); }
+    [[nodiscard]] const HostClockEstimate& host_clock() const { return beside_.intake().host_clock(); }
+
+    std::unique_ptr<Inputs> slow_;
+    std::uint64_t bus_frames_ = 0;
 };
 
 // By the order of the next rig's joints they would be a pose that never was.
@@ -47,6 +73,23 @@ TEST_F(InputsTest, joint_states_from_before_a_reload_that_come_to_light_after_it
     inputs->catch_up();
     EXPECT_EQ(frames_in(), 0U);
     EXPECT_EQ(inputs->joints_displaced(), 5U);
+}
+
+// Frames of the bus overtake what waits for the end of a burst.
+TEST_F(InputsTest, joint_states_without_a_time_set_no_clock_back_whatever_their_rate) {
+    constexpr int kSamples = 2;
+    for (const double rate_hz : {1.0, 5.0, 10.0, 12.0, 14.5, 15.0, 16.0, 20.0, 50.0, 100.0, 1000.0}) {
+        begin_with_rate(rate_hz);
+        keep_bus_alive(10ms);
+        const std::uint64_t before = frames_in() - bus_frames_;
+        for (int i = 0; i < kSamples; ++i) {
+            send_joints("0.5");
+            keep_bus_alive(std::chrono::duration<double>(1.0 / rate_hz));
+        }
+        keep_bus_alive(20ms);
+        EXPECT_EQ(frames_in() - bus_frames_ - before, kSamples * wire::kFramesPerJointSample) << rate_hz;
+        EXPECT_EQ(host_clock().steps_back() + host_clock().stamps_ignored(), 0U) << rate_hz;
+    }
 }
 
 // A host that sends SYNC itself knows when that was on the bus.
