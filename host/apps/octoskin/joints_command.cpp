@@ -11,12 +11,9 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
-#include <set>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "common/cut_text.hpp"
 #include "common/wire/codec.hpp"
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
@@ -27,10 +24,10 @@
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/octoskin/joint_forwarder.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/core/ingest/local_joints.hpp"
-#include "host/core/kinematics/joint_history.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "host/io/socketcan/can_socket.hpp"
@@ -45,21 +42,6 @@ struct JointsOptions {
     std::filesystem::path socket = default_joint_socket();
     std::string interface;
     std::filesystem::path rig;
-};
-
-/// Where a line's sample goes.
-class JointOutput {
-  public:
-    virtual ~JointOutput() = default;
-    /// `sample`: the line's; empty where no rig tells of how many joints it must be. False if it could not be
-    /// sent now; it will not be sent later.
-    [[nodiscard]] virtual bool put(const std::string& line, const std::optional<JointSample>& sample) = 0;
-    /// Whatever else the way there asks for; called often.
-    virtual void attend() = 0;
-    /// -1, or what is worth a call of `attend` when it is readable.
-    [[nodiscard]] virtual int descriptor() const = 0;
-    /// Why nothing can be sent, for a person; empty while it can.
-    [[nodiscard]] virtual std::string why() const = 0;
 };
 
 /// The text as it is: the daemon checks and counts it, and answers nothing.
@@ -164,28 +146,18 @@ std::optional<rig::Rig> rig_of(const JointsOptions& options) {
     return value_or_fail(read_given_rig(options.rig));
 }
 
-/// What a line must keep to. The daemon drops what is beyond it, where whoever sends the lines does not see.
-struct RigJoints {
-    std::vector<std::string> names;
-    std::vector<JointLimits> limits;
-
-    /// Of a sample that the daemon would not take, why; empty: it is within the limits.
-    [[nodiscard]] std::string fault_of(std::span<const double> position) const {
-        for (std::size_t i = 0; i < position.size(); ++i) {
-            if (limits[i].hold(position[i], JointHistoryConfig{}.limit_tolerance)) continue;
-            return fmt::format("joint {} of {}, {}, is {}, beyond the robot's limits {} to {}", i + 1,
-                               position.size(), names[i], position[i], limits[i].min, limits[i].max);
-        }
-        return {};
-    }
-};
-
 std::optional<RigJoints> joints_of(const std::optional<rig::Rig>& rig) {
     if (!rig) return std::nullopt;
     const auto host = make_host_setup(*rig);
     if (!host) throw CommandFailure(reading_error(ExitCode::bad_config, host.error()));
     const auto limits = host->robot.limits();
     return RigJoints{rig->joints.joints, {limits.begin(), limits.end()}};
+}
+
+/// The daemon does it where lines go to its socket.
+std::optional<JointBurst> burst_of(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
+    if (options.interface.empty()) return std::nullopt;
+    return JointBurst(rig->joints.rate_hz);
 }
 
 std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
@@ -196,86 +168,15 @@ std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std
     return std::make_unique<CanOutput>(options.interface, *rig);
 }
 
-/// Lines on their way, and what is said of them: once for each reason why they are lost or refused, once when
-/// they go through again.
-class Forwarder {
-  public:
-    /// `joints`: of the rig, if there is one to check lines against.
-    Forwarder(JointOutput& output, std::optional<RigJoints> joints)
-        : output_(output), joints_(std::move(joints)) {}
-
-    void put(const std::string& line) {
-        std::optional<JointSample> sample;
-        if (joints_) {
-            const std::size_t count = joints_->names.size();
-            const HostTime now = monotonic_now();  // it counts as taken now unless it says otherwise
-            auto parsed = parse_joints(line, count, now, now);
-            if (!parsed) {
-                const char* const name =
-                    names_of(parsed.error()).at(static_cast<std::size_t>(parsed.error()));
-                return refuse(name, fmt::format("line not sent, {}: {} (wanted: {})",
-                                                describe(parsed.error(), line, count, now), shown(line),
-                                                kJointTextWanted));
-            }
-            if (const std::string fault = joints_->fault_of(parsed->position); !fault.empty())
-                return refuse("out_of_limits",
-                              fmt::format("line not sent, out_of_limits: {}: {}", fault, shown(line)));
-            sample = std::move(parsed).value();
-        }
-        if (!output_.put(line, sample)) return lose();
-        if (!losses_told_.empty()) spdlog::info("samples go through again; so far lost: {}", lines(lost_));
-        losses_told_.clear();
-        refusals_told_.clear();
-        ++sent_;
-    }
-    /// What became of the lines. Throws CommandFailure if not a single one went through.
-    void finish() const {
-        const auto level = lost_ + refused_ > 0 ? spdlog::level::warn : spdlog::level::info;
-        spdlog::log(level, "{} sent, {} lost, {} refused", lines(sent_), lost_, refused_);
-        if (sent_ == 0 && lost_ + refused_ > 0) throw CommandFailure({ExitCode::unavailable, why_});
-    }
-
-  private:
-    static constexpr std::size_t kLossesTold = 8;
-
-    /// Of a line that may be long, as much as tells what it is.
-    static std::string shown(const std::string& line) {
-        constexpr std::size_t kShown = 120;
-        return cut_text(line, kShown);
-    }
-
-    void lose() {
-        ++lost_;
-        why_ = output_.why();
-        if (why_.empty() || losses_told_.size() >= kLossesTold || !losses_told_.insert(why_).second) return;
-        spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
-    }
-    void refuse(const char* reason, std::string why) {
-        ++refused_;
-        why_ = std::move(why);
-        if (refusals_told_.insert(reason).second) spdlog::warn("{}", why_);
-    }
-    static std::string lines(std::uint64_t count) {
-        return fmt::format("{} line{}", count, count == 1 ? "" : "s");
-    }
-
-    JointOutput& output_;
-    std::optional<RigJoints> joints_;
-    std::uint64_t sent_ = 0;
-    std::uint64_t lost_ = 0;
-    std::uint64_t refused_ = 0;
-    std::set<std::string> losses_told_;    ///< each reason once since the last line that went through
-    std::set<std::string> refusals_told_;  ///< likewise
-    std::string why_;                      ///< of the newest line that did not go through
-};
-
-void put_lines(std::string& pending, Forwarder& forwarder) {
+void put_lines(std::string& pending, JointForwarder& forwarder) {
+    forwarder.begin_block();
     while (true) {  // each round takes one line off
         const std::size_t end = pending.find('\n');
         if (end == std::string::npos) break;
         if (end > 0) forwarder.put(pending.substr(0, end));
         pending.erase(0, end + 1);
     }
+    forwarder.send_due();
     if (pending.size() > kJointTextMax)
         throw CommandFailure(
             {ExitCode::bad_data, fmt::format("standard input: a line of over {} bytes", kJointTextMax)});
@@ -283,17 +184,19 @@ void put_lines(std::string& pending, Forwarder& forwarder) {
 
 void forward(const JointsOptions& options) {
     constexpr int kAttendMs = 200;
+    constexpr int kBurstMs = 2;  // its end is no line
     const auto rig = rig_of(options);
     const auto output = make_output(options, rig);
-    Forwarder forwarder(*output, joints_of(rig));
+    JointForwarder forwarder(*output, joints_of(rig), burst_of(options, rig));
     const EndSignals signals;
     std::string pending;
     while (true) {  // until standard input or a signal ends it
         output->attend();
+        forwarder.send_due();
         std::array<pollfd, 3> ready{{{STDIN_FILENO, POLLIN, 0},
                                      {output->descriptor(), POLLIN, 0},
                                      {signals.descriptor(), POLLIN, 0}}};
-        ::poll(ready.data(), ready.size(), kAttendMs);
+        ::poll(ready.data(), ready.size(), forwarder.is_waiting() ? kBurstMs : kAttendMs);
         if (ready[2].revents != 0) return forwarder.finish();  // what is pending is no whole line
         if (ready[0].revents == 0) continue;
         std::array<char, 4096> bytes{};
@@ -307,6 +210,7 @@ void forward(const JointsOptions& options) {
         pending.append(bytes.data(), static_cast<std::size_t>(count));
         put_lines(pending, forwarder);
     }
+    forwarder.begin_block();
     if (!pending.empty()) forwarder.put(pending);
     forwarder.finish();
 }

@@ -7,10 +7,16 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <thread>
+#include <variant>
+#include <vector>
 
+#include "common/wire/codec.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
+#include "host/io/socketcan/can_socket.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::test {
@@ -142,6 +148,44 @@ TEST(JointsCommand, says_at_the_end_that_there_was_no_bus_whatever_the_rate_of_t
         "yes '0 0 0 -1 0 1 0' | head -n 100 | " OCTOSKIN_PROGRAM
         " joints --can nocan9 --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml 2> /dev/null";
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
+}
+
+/// The first joint, in microradians, of each sample that `octoskin joints --can` sends of what this shell
+/// script writes.
+std::vector<std::int32_t> first_joints_of(const std::string& script) {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()), 0);
+    const std::string command = "(" + script +
+                                ") | " OCTOSKIN_PROGRAM " joints --can fd:" + std::to_string(ends[1]) +
+                                " --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml 2> /dev/null";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
+    socketcan::CanSocket bus("bus", ends[0]);
+    std::vector<std::int32_t> positions;
+    while (true) {
+        const auto received = bus.receive();
+        if (!received || !*received) break;
+        const auto decoded = wire::decode((*received)->entry.frame);
+        const auto* const state = decoded ? std::get_if<wire::JointState>(&decoded->message) : nullptr;
+        const auto* const pair = state != nullptr ? std::get_if<wire::JointPair>(state) : nullptr;
+        if (pair != nullptr && pair->index == 0) positions.push_back(pair->position_urad[0]);
+    }
+    ::close(ends[1]);
+    return positions;
+}
+
+/// Of lines that were held up the oldest is where the arm was.
+TEST(JointsCommand, sends_of_a_block_of_lines_without_a_time_the_newest_alone) {
+    const std::string rest = " 0 0 -1 0 1 0\\n";
+    const std::string block = "printf '0.1" + rest + "0.2" + rest + "0.3" + rest + "'";
+    const auto sent =
+        first_joints_of("printf '0" + rest + "'; sleep 0.3; " + block + "; sleep 0.3; " + block);
+    ASSERT_FALSE(sent.empty());
+    EXPECT_EQ(sent.back(), 300'000);
+    for (const std::int32_t position : sent) EXPECT_TRUE(position == 0 || position == 300'000) << position;
+    const std::string dated =
+        "python3 -c 'import time; t = time.monotonic(); print(t - 0.05, 0.1, 0, 0, -1, 0, 1, 0); "
+        "print(t, 0.2, 0, 0, -1, 0, 1, 0)'";
+    EXPECT_EQ(first_joints_of(dated), (std::vector<std::int32_t>{100'000, 200'000}));
 }
 
 TEST(JointsCommand, refuses_lines_of_another_number_of_joints_wherever_they_go) {

@@ -1,0 +1,112 @@
+#include "host/apps/octoskin/joint_forwarder.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <limits>
+#include <utility>
+
+#include "common/cut_text.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/daemon/clocks.hpp"
+#include "host/core/kinematics/joint_history.hpp"
+
+namespace octoskin::app {
+namespace {
+
+/// Of a line that may be long, as much as tells what it is.
+std::string shown(const std::string& line) {
+    constexpr std::size_t kShown = 120;
+    return cut_text(line, kShown);
+}
+
+std::string lines(std::uint64_t count) {
+    return fmt::format("{} line{}", count, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string RigJoints::fault_of(std::span<const double> position) const {
+    for (std::size_t i = 0; i < position.size(); ++i) {
+        if (limits[i].hold(position[i], JointHistoryConfig{}.limit_tolerance)) continue;
+        return fmt::format("joint {} of {}, {}, is {}, beyond the robot's limits {} to {}", i + 1,
+                           position.size(), names[i], position[i], limits[i].min, limits[i].max);
+    }
+    return {};
+}
+
+JointForwarder::JointForwarder(JointOutput& output, std::optional<RigJoints> joints,
+                               std::optional<JointBurst> burst)
+    : output_(output), joints_(std::move(joints)), burst_(burst) {}
+
+void JointForwarder::begin_block() {
+    now_ = monotonic_now();
+    came_ = wall_now();
+}
+
+void JointForwarder::put(const std::string& line) {
+    if (!joints_) return send(line, std::nullopt);
+    const std::size_t count = joints_->names.size();
+    auto sample = parse_joints(line, count, now_, now_);  // it counts as taken now unless it says otherwise
+    if (!sample) {
+        const char* const name = names_of(sample.error()).at(static_cast<std::size_t>(sample.error()));
+        return refuse(
+            name, fmt::format("line not sent, {}: {} (wanted: {})",
+                              describe(sample.error(), line, count, now_), shown(line), kJointTextWanted));
+    }
+    if (const std::string fault = joints_->fault_of(sample->position); !fault.empty())
+        return refuse("out_of_limits",
+                      fmt::format("line not sent, out_of_limits: {}: {}", fault, shown(line)));
+    if (!burst_) return send(line, *sample);
+    sample->came = came_;
+    waiting_.push_back(std::move(*sample));
+}
+
+void JointForwarder::send_due() {
+    send_until(wall_now());
+}
+
+void JointForwarder::send_until(WallTime now) {
+    while (!waiting_.empty()) {
+        const JointBurst::Turn turn = burst_->turn_of_oldest(waiting_, now);
+        if (turn == JointBurst::Turn::wait) return;
+        const JointSample oldest = std::move(waiting_.front());
+        waiting_.pop_front();
+        if (turn == JointBurst::Turn::use) {
+            send({}, oldest);
+        } else {
+            ++left_out_;
+        }
+    }
+}
+
+void JointForwarder::send(const std::string& line, const std::optional<JointSample>& sample) {
+    const std::uint64_t count = 1 + std::exchange(left_out_, 0);
+    if (!output_.put(line, sample)) return lose(count);
+    if (!losses_told_.empty()) spdlog::info("samples go through again; so far lost: {}", lines(lost_));
+    losses_told_.clear();
+    refusals_told_.clear();
+    sent_ += count;
+}
+
+void JointForwarder::finish() {
+    send_until(WallTime{std::numeric_limits<std::int64_t>::max()});
+    const auto level = lost_ + refused_ > 0 ? spdlog::level::warn : spdlog::level::info;
+    spdlog::log(level, "{} sent, {} lost, {} refused", lines(sent_), lost_, refused_);
+    if (sent_ == 0 && lost_ + refused_ > 0) throw CommandFailure({ExitCode::unavailable, why_});
+}
+
+void JointForwarder::lose(std::uint64_t count) {
+    lost_ += count;
+    why_ = output_.why();
+    if (why_.empty() || losses_told_.size() >= kLossesTold || !losses_told_.insert(why_).second) return;
+    spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
+}
+
+void JointForwarder::refuse(const char* reason, std::string why) {
+    ++refused_;
+    why_ = std::move(why);
+    if (refusals_told_.insert(reason).second) spdlog::warn("{}", why_);
+}
+
+}  // namespace octoskin::app
