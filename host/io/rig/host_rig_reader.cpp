@@ -1,10 +1,14 @@
 #include "host/io/rig/host_rig_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "host/core/kinematics/joint_history.hpp"
 #include "host/io/rig/zone_optics.hpp"
 #include "host/io/urdf/urdf_robot.hpp"
 #include "hw/rigfile/joined.hpp"
@@ -82,6 +86,18 @@ std::string warning_of(const std::vector<LinkWithoutBody>& links) {
            "in robot.links_without_body of the rig";
 }
 
+/// Where one lost sample leaves a gap that is not bridged, a sentence; else empty.
+std::string rate_warning(double rate_hz) {
+    const double bridged_s = std::chrono::duration<double>(JointHistoryConfig{}.bracket_max).count();
+    const double wanted_hz = 2.0 / bridged_s;
+    if (rate_hz >= wanted_hz) return {};
+    return fmt::format(
+        "joints.rate_hz {:g}: at most {:g} ms between two joint samples are bridged: what is measured about "
+        "one that is lost or late has no pose (joints_missing). Have them sent {:g} times a second or more, "
+        "and write that rate there",
+        rate_hz, bridged_s * 1e3, wanted_hz);
+}
+
 std::vector<std::string> notes_of(const std::vector<LinkWithBorrowedBody>& links) {
     std::vector<std::string> notes;
     for (const LinkWithBorrowedBody& link : links) {
@@ -138,6 +154,8 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
                            " has a <collision>: nothing of the robot is taken out of images and ranges");
     }
     if (auto warning = warning_of(host.links_without_body); !warning.empty())
+        warnings.push_back(std::move(warning));
+    if (auto warning = rate_warning(rig.joints.rate_hz); !warning.empty())
         warnings.push_back(std::move(warning));
     return HostSetup{std::move(host), std::move(robot).value(), std::move(warnings), std::move(notes)};
 }

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/config/node_config.hpp"
@@ -171,6 +172,22 @@ TEST(HostRigReader, warns_of_a_robot_without_a_body) {
     EXPECT_EQ(bare->warnings,
               std::vector<std::string>{"no link at or below panda_link0 has a <collision>: nothing of the "
                                        "robot is taken out of images and ranges"});
+}
+
+TEST(HostRigReader, warns_of_joint_states_so_rare_that_the_gap_of_a_lost_one_is_not_bridged) {
+    rig::Rig rig = experiment();
+    const auto warnings_at = [&rig](double rate_hz) {
+        rig.joints.rate_hz = rate_hz;
+        const auto setup = make_host_setup(rig);
+        return setup ? setup->warnings : std::vector<std::string>{"refused"};
+    };
+    EXPECT_EQ(warnings_at(20.0), std::vector<std::string>());
+    for (const auto& [rate_hz, begin] : {std::pair(19.9, "joints.rate_hz 19.9: at most 100 ms"),
+                                         std::pair(1.0, "joints.rate_hz 1: at most 100 ms")}) {
+        const auto warnings = warnings_at(rate_hz);
+        ASSERT_EQ(warnings.size(), 1U);
+        EXPECT_EQ(warnings[0].rfind(begin, 0), 0U) << warnings[0];
+    }
 }
 
 HostSetup partial(const std::string& file) {
