@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "host/apps/recording/file_set.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -28,6 +29,22 @@ TEST(FolderLock, is_held_by_one_at_a_time_whose_process_is_named) {
     EXPECT_TRUE(FolderLock::take(scratch / "another"));
     first.reset();
     EXPECT_TRUE(FolderLock::take(folder));
+}
+
+/// As of a replay, whose maps would replace the daemon's own at its end.
+TEST(FolderLock, is_not_taken_where_files_are_about_to_be_put) {
+    const testing_support::ScratchFolder scratch;
+    {
+        const auto files = FileSet::begin(FilePlace(scratch.path()));
+        ASSERT_TRUE(files) << files.error().message;
+        const auto refused = FolderLock::take(scratch.path());
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+        EXPECT_FALSE(std::filesystem::exists(scratch / FolderLock::kFile));
+    }
+    const auto taken = FolderLock::take(scratch.path());
+    ASSERT_TRUE(taken) << taken.error().message;
+    EXPECT_FALSE(FileSet::begin(FilePlace(scratch.path())));
 }
 
 /// Of what others can open they can keep the lock.
