@@ -220,7 +220,7 @@ void ControlSocket::refuse(Client& client, const std::string& error, ExitCode co
 }
 
 bool ControlSocket::answer(Client& client, const std::string& request) {
-    if (!later_ || !later_(request, tickets_ + 1)) return send(client, answer_(request));
+    if (!later_ || !later_(request, tickets_ + 1, client.user)) return send(client, answer_(request));
     ++tickets_;
     const auto waiting = std::ranges::count_if(clients_, [](const Client& one) { return one.ticket != 0; });
     const auto of_user = std::ranges::count_if(

@@ -25,8 +25,9 @@ class ControlSocket {
     using Answer = std::function<std::string(const std::string& request)>;
 
     /// Takes a request that needs time: true, and `reply` with the ticket will follow, from the loop's
-    /// thread. Until then nothing more is read of that client, which is not idle either.
-    using Later = std::function<bool(const std::string& request, std::uint64_t ticket)>;
+    /// thread. Until then nothing more is read of that client, which is not idle either. `user`: the
+    /// client's, the overflow user where it cannot be seen.
+    using Later = std::function<bool(const std::string& request, std::uint64_t ticket, uid_t user)>;
 
     /// So many are served at once, beside those whose question waits. Who comes beyond that takes the place
     /// of one that has asked nothing, or has sent half a request and no more just now; or of one whose

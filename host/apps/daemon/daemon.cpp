@@ -76,7 +76,9 @@ Status<AppError> Daemon::Parts::take_sockets() {
     if (!opened) return unexpected(opened.error());
     control = std::move(opened).value();
     control->answer_later(
-        [this](const std::string& line, std::uint64_t ticket) { return queries.take(line, ticket); },
+        [this](const std::string& line, std::uint64_t ticket, uid_t user) {
+            return queries.take(line, ticket, user);
+        },
         [this](std::uint64_t ticket) { queries.forget(ticket); });
     return inputs.take_sockets(settings.host.rig);
 }

@@ -1,8 +1,10 @@
 #include "host/apps/daemon/query_desk.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/querying/query_answer.hpp"
@@ -23,10 +25,16 @@ std::vector<double> present_joints(const Pipeline& pipeline, std::size_t count, 
     return newest;
 }
 
+std::string no_memory_line() {
+    return query_refused({ExitCode::unavailable, "no memory for an answer"}).dump();
+}
+
 }  // namespace
 
-QueryDesk::QueryDesk(const HostSetup& setup, std::chrono::milliseconds field_idle_max)
+QueryDesk::QueryDesk(const HostSetup& setup, std::chrono::milliseconds field_idle_max,
+                     std::chrono::milliseconds work_max)
     : field_idle_max_(field_idle_max),
+      work_max_(work_max),
       setup_(std::make_shared<const HostSetup>(setup)),
       thread_(start_without_signals([this] { run(); })) {}
 
@@ -43,24 +51,35 @@ void QueryDesk::change_robot(const HostSetup& setup) {
     setup_ = std::make_shared<const HostSetup>(setup);
 }
 
-bool QueryDesk::take(const std::string& line, std::uint64_t ticket) {
+bool QueryDesk::take(const std::string& line, std::uint64_t ticket, uid_t user) {
     if (!is_query(line)) return false;
+    Questions taken;
+    taken.push_back({line, user, 0, {{ticket, no_memory_line()}}});
     {
         const std::scoped_lock lock(mutex_);
-        waiting_.push_back({line, ticket});
+        taken.front().round = round_of_next(user);
+        waiting_.splice(waiting_.end(), taken);
     }
     changed_.notify_all();
     return true;
 }
 
-void QueryDesk::forget(std::uint64_t ticket) {
-    const std::scoped_lock lock(mutex_);
-    std::erase_if(waiting_, [ticket](const Question& question) { return question.ticket == ticket; });
-    if (asked_ == ticket) is_forgotten_ = true;
+/// With the lock. A user has one question in a round: what it asks beyond waits until others had theirs.
+std::uint64_t QueryDesk::round_of_next(uid_t user) const {
+    std::uint64_t round = round_;
+    for (const Questions* questions : {&at_work_, &waiting_})
+        for (const Question& question : *questions)
+            if (question.user == user) round = std::max(round, question.round + 1);
+    return round;
 }
 
-std::vector<std::pair<std::uint64_t, std::string>> QueryDesk::serve(const Pipeline& pipeline,
-                                                                    const Now& now) {
+void QueryDesk::forget(std::uint64_t ticket) {
+    const std::scoped_lock lock(mutex_);
+    std::erase_if(waiting_, [ticket](const Question& question) { return question.ticket() == ticket; });
+    if (!at_work_.empty() && at_work_.front().ticket() == ticket) is_forgotten_ = true;
+}
+
+QueryDesk::Answers QueryDesk::serve(const Pipeline& pipeline, const Now& now) {
     event_.clear();
     std::unique_lock lock(mutex_);
     auto answers = std::exchange(answers_, {});
@@ -82,18 +101,19 @@ void QueryDesk::run() {
         Ground ground = std::move(*ground_);
         ground_.reset();
         if (waiting_.empty()) continue;  // forgotten meanwhile
-        const Question question = std::move(waiting_.front());
-        waiting_.pop_front();
-        asked_ = question.ticket;
+        at_work_.splice(at_work_.end(), waiting_, std::ranges::min_element(waiting_, {}, &Question::round));
+        Question& question = at_work_.front();
+        round_ = question.round;
         is_forgotten_ = false;
         lock.unlock();
-        std::string line;
         try {
-            line = answer(question.line, std::move(ground));
-        } catch (const std::exception&) {  // no memory to say so: an empty line, which is an answer, too
+            question.answer.front().line = answer(question.line, std::move(ground));
+        } catch (const std::exception&) {  // no memory to say why: it says so already
         }
         lock.lock();
-        tell(asked_, std::move(line));
+        answers_.splice(answers_.end(), question.answer);
+        at_work_.clear();
+        event_.wake();
     }
 }
 
@@ -111,12 +131,6 @@ void QueryDesk::wait_for_questions(std::unique_lock<std::mutex>& lock) {
     changed_.wait(lock, [this] { return ground_ || is_ending_; });
 }
 
-/// With the lock.
-void QueryDesk::tell(std::uint64_t ticket, std::string line) {
-    answers_.emplace_back(ticket, std::move(line));
-    event_.wake();
-}
-
 std::string QueryDesk::answer(const std::string& question, Ground ground) {
     nlohmann::ordered_json json;
     try {
@@ -124,7 +138,7 @@ std::string QueryDesk::answer(const std::string& question, Ground ground) {
         const auto request = read_query(question);
         json = request ? answer_query(*request,
                                       {&ground.setup->rig, &ground.setup->robot, std::move(ground.map),
-                                       std::move(ground.present), &field_, true, ground.now.wall},
+                                       std::move(ground.present), &field_, true, ground.now.wall, work_max_},
                                       [this] { return is_ending_ || is_forgotten_; })
                        : query_refused(request.error());
     } catch (const std::exception& error) {  // no memory, most likely

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "host/core/query/own_space.hpp"
@@ -77,7 +78,7 @@ Json point_json(const Eigen::Vector3d& point) {
 class Asking {
   public:
     Asking(const QueryRequest& request, QueryGround ground, const std::function<bool()>& is_ending)
-        : request_(request), ground_(std::move(ground)), is_ending_(is_ending) {}
+        : request_(request), ground_(std::move(ground)), is_told_to_end_(is_ending) {}
 
     Result<Json, AppError> run() {
         auto robot = RobotQuery::build(*ground_.rig, *ground_.robot,
@@ -108,6 +109,23 @@ class Asking {
     [[nodiscard]] std::optional<std::size_t> refused() const noexcept { return refused_; }
 
   private:
+    [[nodiscard]] bool is_over_time() const {
+        return ground_.work_max && std::chrono::steady_clock::now() - begun_ > *ground_.work_max;
+    }
+
+    /// `what` was not done: it was told to end, or it took too long.
+    [[nodiscard]] Unexpected<AppError> ended(std::string_view what) const {
+        if (!is_over_time()) return fail(ExitCode::unavailable, fmt::format("it ended before {}", what));
+        const char* const remedy = request_.kind == QueryKind::postures
+                                       ? "ask about parts of the path, or give a larger step or a smaller "
+                                         "reach_m or own_space_m"
+                                       : "give fewer views_tried or pockets_max, or a smaller radius_m or "
+                                         "own_space_m";
+        return fail(ExitCode::unavailable,
+                    fmt::format("one question may take {:.0f} s, which were over before {}: {}",
+                                std::chrono::duration<double>(*ground_.work_max).count(), what, remedy));
+    }
+
     /// What a daemon knows of it was within the limits.
     Status<AppError> check_present() const {
         if (ground_.is_live || ground_.present.empty()) return Done{};
@@ -183,7 +201,7 @@ class Asking {
         const auto certain = own_capsules(stands, true);
         if (octoskin::free_own_space(ground_.map, {around, certain}, *request_.own_space_m, is_ending_))
             return Done{};
-        if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the arm's own space was known");
+        if (is_ending_()) return ended("the arm's own space was known");
         return fail(
             ExitCode::usage,
             fmt::format("own_space_m {}: about this arm that is more than {} million voxels of {} m; "
@@ -198,7 +216,7 @@ class Asking {
         const LegConfig config{request_.reach_m, field_for_path(), is_ending_};
         for (std::size_t i = 0; i < legs_.size(); ++i) {
             const auto answer = ask(*robot_, ground_.map, legs_[i], config);
-            if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the path was asked about");
+            if (is_ending_()) return ended("the path was asked about");
             if (!answer) {
                 return fail(ExitCode::usage,
                             text_of(answer.error(), *ground_.rig, *ground_.robot, request_.path[i]));
@@ -283,7 +301,8 @@ class Asking {
                             "above {} m: ask from less high on (z_min_m, --above)",
                             request_.radius_m, base.z(), region.z_min_m));
         }
-        const auto found = UnknownPockets::find(ground_.map, region, voxels_min);
+        const auto found = UnknownPockets::find(ground_.map, region, voxels_min, is_ending_);
+        if (is_ending_()) return ended("the pockets were found");
         if (!found) {
             return fail(ExitCode::usage,
                         fmt::format("a region of {} m about the base has too many voxels of {} m, or reaches "
@@ -296,12 +315,11 @@ class Asking {
         if (why_no_views.is_null())
             views = find_views(*ground_.rig, *robot_, ground_.map, *found, request_.path.front(), config,
                                is_ending_);
-        if (is_ending_()) return fail(ExitCode::unavailable, "it ended before the pockets were looked into");
+        if (is_ending_()) return ended("the pockets were looked into");
         Json pockets = Json::array();
         for (std::size_t i = 0; i < std::min(request_.pockets_max, found->pockets().size()); ++i)
             pockets.push_back(pocket_json(found->pockets()[i], i < views.size() ? views[i] : std::nullopt));
-        if (is_ending_())
-            return fail(ExitCode::unavailable, "it ended before the ways there were asked about");
+        if (is_ending_()) return ended("the ways there were asked about");
         return Json{{"ok", true},
                     {"resolution_m", ground_.map.resolution_m()},
                     {"own_space_m", own_space_json()},
@@ -353,7 +371,9 @@ class Asking {
 
     QueryRequest request_;
     QueryGround ground_;
-    const std::function<bool()>& is_ending_;
+    const std::function<bool()>& is_told_to_end_;
+    const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+    const std::function<bool()> is_ending_ = [this] { return is_told_to_end_() || is_over_time(); };
     std::optional<RobotQuery> robot_;
     std::vector<Leg> legs_;  ///< one for each configuration of the path
     std::optional<std::size_t> refused_;

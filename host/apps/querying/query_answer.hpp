@@ -1,6 +1,7 @@
 // What a map answers.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -32,13 +33,16 @@ struct QueryGround {
     bool is_live = false;
     /// When the map was as it is, by this machine's clock; empty: of a file, which does not say.
     std::optional<WallTime> map_time = std::nullopt;
+    /// Longer nobody works on one question: others wait. Empty: as long as it takes.
+    std::optional<std::chrono::milliseconds> work_max = std::nullopt;
 };
 
 /// "ok": true, or false with "error" and "code", the exit code for it, and with "configuration" where the
 /// error is one of the path's. "own_space_m": as in the request, or null. Of postures: "state", the worst,
 /// and "legs", one for each configuration: the way to it from the one before. Of pockets: "pockets". All
-/// keys: docs/planner.md. Some 0.1 ms a posture; `is_ending` is asked before each posture, and true ends it
-/// with an error.
+/// keys: docs/planner.md. Some 0.1 ms a posture; `is_ending` is asked before each posture and each few
+/// thousand voxels, and true ends it with an error; so does the end of `work_max`, which says what to make
+/// smaller.
 [[nodiscard]] nlohmann::ordered_json answer_query(
     const QueryRequest& request, QueryGround ground,
     const std::function<bool()>& is_ending = [] { return false; });

@@ -12,16 +12,33 @@
 namespace octoskin {
 namespace {
 
+/// Whether the search is to end, which is asked for each voxel, and seldom passed on.
+class End {
+  public:
+    explicit End(const std::function<bool()>& is_ending) : is_ending_(is_ending) {}
+    /// Once it is so it stays so.
+    bool is_here() {
+        constexpr std::size_t kAtOnce = 4096;
+        if (!is_here_ && ++asked_ % kAtOnce == 0) is_here_ = is_ending_();
+        return is_here_;
+    }
+
+  private:
+    const std::function<bool()>& is_ending_;
+    std::size_t asked_ = 0;
+    bool is_here_ = false;
+};
+
 enum class Cell : std::uint8_t { outside, known, free, unknown, taken };
 
 /// The region's box, with a layer of `outside` about it, so that each voxel of it has six neighbours.
 class Grid {
   public:
-    Grid(const FusedMap& map, const PocketRegion& region, VoxelKey lowest, VoxelKey highest)
+    Grid(const FusedMap& map, const PocketRegion& region, VoxelKey lowest, VoxelKey highest, End& end)
         : lowest_(lowest),
           size_{highest.x - lowest.x + 3U, highest.y - lowest.y + 3U, highest.z - lowest.z + 3U},
           cells_(size_[0] * size_[1] * size_[2], Cell::outside) {
-        for (std::size_t i = 0; i < cells_.size(); ++i) {
+        for (std::size_t i = 0; i < cells_.size() && !end.is_here(); ++i) {
             if (is_edge(i)) continue;
             const VoxelKey key = key_of(i);
             if (!is_within(region, map.centre_of(key))) continue;
@@ -64,10 +81,11 @@ struct Component {
 };
 
 /// Takes all that is connected with `first` out of the grid.
-Component take_component(Grid& grid, std::size_t first) {
+Component take_component(Grid& grid, std::size_t first, End& end) {
     Component component{{first}, {}};
     grid[first] = Cell::taken;
-    for (std::size_t i = 0; i < component.cells.size(); ++i) {  // bounded by the grid: each is taken once
+    // Bounded by the grid: each is taken once.
+    for (std::size_t i = 0; i < component.cells.size() && !end.is_here(); ++i) {
         bool is_border = false;
         for (const std::size_t other : grid.beside(component.cells[i])) {
             is_border = is_border || grid[other] == Cell::free;
@@ -118,27 +136,30 @@ std::optional<Corners> corners_of(const FusedMap& map, const PocketRegion& regio
 }  // namespace
 
 std::optional<UnknownPockets> UnknownPockets::find(const FusedMap& map, const PocketRegion& region,
-                                                   std::size_t voxels_min) {
+                                                   std::size_t voxels_min,
+                                                   const std::function<bool()>& is_ending) {
     if (!(region.radius_m > 0.0) || !std::isfinite(region.z_min_m)) return std::nullopt;
     const auto corners = corners_of(map, region);
     if (!corners) return std::nullopt;
-    Grid grid(map, region, corners->lowest, corners->highest);
+    End end(is_ending);
+    Grid grid(map, region, corners->lowest, corners->highest, end);
     UnknownPockets found;
     std::vector<Border> borders;
-    for (std::size_t i = 0; i < grid.size(); ++i) {
+    for (std::size_t i = 0; i < grid.size() && !end.is_here(); ++i) {
         found.region_voxels_ += grid[i] != Cell::outside ? 1U : 0U;
         if (grid[i] != Cell::unknown) {
             found.unknown_voxels_ += grid[i] == Cell::taken ? 1U : 0U;
             continue;
         }
         ++found.unknown_voxels_;
-        const Component component = take_component(grid, i);
+        const Component component = take_component(grid, i, end);
         if (component.border.empty() || component.cells.size() < voxels_min) continue;
         const auto number = static_cast<std::uint32_t>(found.pockets_.size());
         found.pockets_.push_back(pocket_of(map, grid, component));
         for (const std::size_t cell : component.border)
             borders.push_back({morton_of(grid.key_of(cell)), number});
     }
+    if (end.is_here()) return std::nullopt;
     std::vector<std::uint32_t> order(found.pockets_.size());
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, std::ranges::greater{},

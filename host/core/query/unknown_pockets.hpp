@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -40,8 +41,10 @@ class UnknownPockets {
     /// than `voxels_min` voxels, and those that no free voxel borders, are left out. Empty: the region is not
     /// finite, reaches out of the octree, or its box has more than kVoxelsMax voxels. About 30 ns a voxel of
     /// the box, and for as long as it works a byte and up to 16 more if it is unknown; throws std::bad_alloc.
-    [[nodiscard]] static std::optional<UnknownPockets> find(const FusedMap& map, const PocketRegion& region,
-                                                            std::size_t voxels_min);
+    /// `is_ending` is asked each few thousand voxels, and true ends it: empty, too.
+    [[nodiscard]] static std::optional<UnknownPockets> find(
+        const FusedMap& map, const PocketRegion& region, std::size_t voxels_min,
+        const std::function<bool()>& is_ending = [] { return false; });
 
     /// The largest first; of equals the one that comes first along z, y and x.
     [[nodiscard]] const std::vector<UnknownPocket>& pockets() const noexcept { return pockets_; }

@@ -33,8 +33,9 @@ class AnsweringLater : public testing::Test {
         EXPECT_TRUE(opened) << opened.error().message;
         socket_ = std::move(opened).value();
         socket_->answer_later(
-            [this](const std::string& request, std::uint64_t ticket) {
+            [this](const std::string& request, std::uint64_t ticket, uid_t user) {
                 if (request != "slow") return false;
+                users_.push_back(user);
                 tickets_.push_back(ticket);
                 return true;
             },
@@ -66,6 +67,7 @@ class AnsweringLater : public testing::Test {
     testing_support::ScratchFolder folder_;
     EventLoop loop_;
     std::unique_ptr<ControlSocket> socket_;
+    std::vector<uid_t> users_;
     std::vector<std::uint64_t> tickets_;
     std::vector<std::uint64_t> gone_;
     std::atomic<bool> may_answer_ = false;
@@ -84,6 +86,7 @@ TEST_F(AnsweringLater, serves_others_meanwhile_and_reads_on_afterwards) {
                   static_cast<ssize_t>(wanted.size()));
         EXPECT_EQ(std::string_view(bytes.data(), wanted.size()), wanted);
     });
+    EXPECT_EQ(users_, std::vector<uid_t>{::getuid()});
     ::close(client);
 }
 
@@ -121,7 +124,7 @@ TEST_F(AnsweringLater, tells_it_in_time_though_nobody_else_comes) {
     std::atomic<std::uint64_t> gone = 0;
     std::atomic<std::uint64_t> taken = 0;
     (*quick)->answer_later(
-        [&](const std::string&, std::uint64_t ticket) {
+        [&](const std::string&, std::uint64_t ticket, uid_t) {
             taken = ticket;
             return true;
         },
@@ -202,7 +205,7 @@ TEST_F(AnsweringLater, takes_nobody_for_idle_who_waits) {
     ASSERT_TRUE(quick);
     std::uint64_t taken = 0;
     (*quick)->answer_later(
-        [&](const std::string&, std::uint64_t ticket) {
+        [&](const std::string&, std::uint64_t ticket, uid_t) {
             taken = ticket;
             return true;
         },

@@ -56,9 +56,10 @@ class QueryDeskTest : public testing::Test {
         }
         pipeline_.begin_with(std::move(next));
     }
+    static constexpr uid_t kUser = 1000;
     void ask(const QueryRequest& request, std::uint64_t ticket) { ask(desk_, request, ticket); }
-    static void ask(QueryDesk& desk, const QueryRequest& request, std::uint64_t ticket) {
-        ASSERT_TRUE(desk.take(to_line(request), ticket));
+    static void ask(QueryDesk& desk, const QueryRequest& request, std::uint64_t ticket, uid_t user = kUser) {
+        ASSERT_TRUE(desk.take(to_line(request), ticket, user));
     }
     /// The state that the daemon answers of where the arm has free space about it, while the time is in
     /// doubt.
@@ -171,6 +172,41 @@ TEST_F(QueryDeskTest, answers_all_that_are_not_forgotten) {
     for (std::uint64_t ticket = 1; ticket <= 40; ++ticket) ask(path({{0.0}}), ticket);
     desk_.forget(41);
     EXPECT_EQ(answers(40).size(), 40U);
+}
+
+TEST_F(QueryDeskTest, answers_users_by_turns) {
+    // The first waits for its map meanwhile.
+    for (std::uint64_t ticket = 11; ticket <= 14; ++ticket) ask(desk_, path({{0.0}}), ticket, kUser);
+    for (std::uint64_t ticket = 21; ticket <= 22; ++ticket) ask(desk_, path({{0.0}}), ticket, kUser + 1);
+    ask(desk_, path({{0.0}}), 31, kUser + 2);
+    std::vector<std::uint64_t> order;
+    while (order.size() < 7) {
+        pollfd readable{desk_.descriptor(), POLLIN, 0};
+        ASSERT_EQ(::poll(&readable, 1, 20'000), 1);
+        for (const auto& [ticket, line] : desk_.serve(pipeline_, {kNow, kNow, kWall})) {
+            EXPECT_TRUE(Json::parse(line).at("ok").get<bool>());
+            order.push_back(ticket);
+            if (ticket == 11) ask(desk_, path({{0.0}}), 15, kUser);
+        }
+    }
+    EXPECT_EQ(order, (std::vector<std::uint64_t>{11, 21, 31, 12, 22, 13, 14}));
+    EXPECT_EQ(answers(1).count(15), 1U);
+}
+
+TEST_F(QueryDeskTest, ends_a_question_that_takes_too_long) {
+    QueryDesk hasty(setup_, QueryDesk::kFieldIdleMax, std::chrono::milliseconds(1));
+    ask(hasty, long_one(), 1);
+    const Json path_answer = answers(hasty, 1)[1];
+    EXPECT_FALSE(path_answer.at("ok").get<bool>());
+    EXPECT_EQ(path_answer.at("code"), static_cast<int>(ExitCode::unavailable));
+    QueryRequest pockets;
+    pockets.kind = QueryKind::pockets;
+    pockets.path = {{0.0}};
+    pockets.radius_m = 4.0;
+    ask(hasty, pockets, 2);
+    const Json pockets_answer = answers(hasty, 1)[2];
+    EXPECT_FALSE(pockets_answer.at("ok").get<bool>());
+    EXPECT_EQ(pockets_answer.at("code"), static_cast<int>(ExitCode::unavailable));
 }
 
 TEST_F(QueryDeskTest, states_when_the_map_was_as_it_answers) {

@@ -20,6 +20,25 @@ FusedMap two_pockets() {
     return without(one, {-0.88, -0.04, 0.24}, {-0.8, 0.04, 0.32});
 }
 
+TEST(UnknownPockets, are_not_sought_to_the_end_once_nobody_waits) {
+    int asked = 0;
+    const auto ends_at = [&asked](int count) {
+        asked = 0;
+        return [&asked, count] { return ++asked >= count; };
+    };
+    EXPECT_FALSE(UnknownPockets::find(free_about_origin(), kRegion, 1, ends_at(1)));
+    EXPECT_EQ(asked, 1);
+    // Of the box's voxels, and of the unknown ones once more.
+    const FusedMap nothing_known{MapConfig{}};
+    EXPECT_TRUE(UnknownPockets::find(nothing_known, kRegion, 1, ends_at(1'000'000)));
+    const int in_all = asked;
+    EXPECT_GT(in_all, 10);
+    for (const int count : {2, in_all / 2, in_all}) {
+        EXPECT_FALSE(UnknownPockets::find(nothing_known, kRegion, 1, ends_at(count)));
+        EXPECT_EQ(asked, count);
+    }
+}
+
 TEST(UnknownPockets, are_listed_by_size_with_volume_and_centre) {
     const auto found = UnknownPockets::find(two_pockets(), kRegion, 1);
     ASSERT_TRUE(found);
