@@ -49,12 +49,7 @@ ExitCode Daemon::run() {
     (void)sd_notify(0, "READY=1");
     spdlog::info("running: rig '{}', {}{}", parts_->settings.host.rig.name, parts_->request.interface,
                  parts_->request.is_listen_only ? ", listening only" : "");
-    int outcome = kInternalDefect;
-    try {
-        outcome = parts_->loop.run();
-    } catch (const std::exception& error) {
-        outcome = tell_why_it_ends(error);
-    }
+    const int outcome = parts_->run_loop();
     const Nanoseconds patience = end_patience(parts_->pipeline.map().memory_bytes());
     tell_end(patience);
     parts_->recordings.stop(monotonic_now(), "the daemon ended");
@@ -70,16 +65,26 @@ ExitCode Daemon::run() {
     return static_cast<ExitCode>(outcome);
 }
 
+/// From its end on there is room for what follows.
+int Daemon::Parts::run_loop() {
+    try {
+        const int outcome = loop.run();
+        reserve = {};
+        return outcome;
+    } catch (const std::exception& error) {
+        reserve = {};
+        return tell_why_it_ends(error);
+    }
+}
+
 Status<AppError> Daemon::Parts::take_sockets() {
     auto opened = ControlSocket::open(request.control_socket, loop,
                                       [this](const std::string& line) { return answer(line); });
     if (!opened) return unexpected(opened.error());
     control = std::move(opened).value();
-    control->answer_later(
-        [this](const std::string& line, std::uint64_t ticket, uid_t user) {
-            return queries.take(line, ticket, user);
-        },
-        [this](std::uint64_t ticket) { queries.forget(ticket); });
+    control->answer_later([this](const std::string& line, std::uint64_t ticket,
+                                 uid_t user) { return queries.take(line, ticket, user); },
+                          [this](std::uint64_t ticket) { queries.forget(ticket); });
     return inputs.take_sockets(settings.host.rig);
 }
 

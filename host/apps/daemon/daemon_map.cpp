@@ -74,6 +74,12 @@ std::optional<HostTime> Daemon::Parts::maps_silent_since(HostTime now) const {
     return now - *saving > save_max ? saving : std::nullopt;
 }
 
+std::size_t Daemon::Parts::bytes_to_save(const MapConfig& map) noexcept {
+    constexpr std::size_t kShare = 50;
+    constexpr std::size_t kBesides = std::size_t{2} << 20U;
+    return kBesides + (std::size_t{map.memory_max_mib} << 20U) / kShare;
+}
+
 void Daemon::Parts::save_map() {
     // Counted if one is at work still; the next is not far.
     (void)keeper->save(pipeline.map(), [this](FusedMap& copy) { return make_ready_to_save(copy); });

@@ -2,6 +2,7 @@
 // answers), daemon_map.cpp (the map's way from and to the disk), daemon_reload.cpp (SIGHUP).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/apps/daemon/address_reserve.hpp"
 #include "host/apps/daemon/boot_clock.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/control_socket.hpp"
@@ -37,10 +39,12 @@ struct Daemon::Parts {
           request(std::move(request_in)),
           settings(std::move(settings_in)),
           pipeline(std::move(pipeline_in)),
+          reserve(bytes_to_save(settings.mapping.map)),
           inputs(request, settings.host.rig, loop, pipeline, recordings),
           queries(settings.host),
           started(monotonic_now()) {}
 
+    int run_loop();
     Status<AppError> take_sockets();
     Status<AppError> take_folder();
     void watch();
@@ -56,6 +60,8 @@ struct Daemon::Parts {
     std::uint64_t settle_pipeline();
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
     [[nodiscard]] bool is_placed_as(std::uint32_t placement_crc32) const;
+    /// What a save of such a map takes besides, as bricks that are listed.
+    [[nodiscard]] static std::size_t bytes_to_save(const MapConfig& map) noexcept;
     [[nodiscard]] bool take_limits(const MapConfig& next);
     [[nodiscard]] bool go_on_with(Next& next);
     void ask_reload();
@@ -72,6 +78,7 @@ struct Daemon::Parts {
     Settings settings;
     EventLoop loop;
     Pipeline pipeline;
+    AddressReserve reserve;     ///< for the last save
     DepthThread depth_thread;   ///< goes before the pipeline that it works for
     RecordRequests recordings;  ///< lets go of the pipeline before that goes
     Inputs inputs;

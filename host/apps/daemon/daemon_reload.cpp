@@ -93,7 +93,9 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
 /// While the pipeline goes on: what still waits must not make the map larger than the next start may load.
 bool Daemon::Parts::take_limits(const MapConfig& next) {
     try {
+        AddressReserve next_reserve(bytes_to_save(next));
         pipeline.limit_map(next);
+        reserve = std::move(next_reserve);
         return true;
     } catch (const std::bad_alloc&) {
         reload_error = "there is no memory for the map within its new limits beside the old one";

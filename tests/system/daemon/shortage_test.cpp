@@ -49,13 +49,14 @@ class Shortage : public DaemonTest {
         }
         return map;
     }
-    void save(const FusedMap& map) const {
+    void save(const FusedMap& map) {
         std::filesystem::create_directories(folder_ / "maps");
         // With its snapshot: from the .ot it would be there twice for a moment, and leave room.
         const std::string text = mapping_text(fast_mapping());
         const SnapshotOrigin origin{
             .mapping_crc32 = crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})};
         ASSERT_EQ(MapKeeper::write_map(map, origin, NamedFolder(folder_ / "maps")), "");
+        written_ = std::filesystem::last_write_time(folder_ / "maps/fused.ot");
     }
     void write_mapping(float log_odds_max) const {
         (void)folder_.write("mapping.yaml",
@@ -76,7 +77,13 @@ class Shortage : public DaemonTest {
         const rlimit limit{bytes, bytes};
         ASSERT_EQ(::prlimit(daemon_->process(), RLIMIT_AS, &limit, nullptr), 0);
     }
+    [[nodiscard]] bool is_saved_since_start() const {
+        return std::filesystem::last_write_time(folder_ / "maps/fused.ot") > written_;
+    }
     [[nodiscard]] Json reloads() const { return daemon_->status()["reloads"]; }
+
+  private:
+    std::filesystem::file_time_type written_;
 };
 
 // Other clamps: all of the map once more.
@@ -98,6 +105,19 @@ TEST_F(Shortage, leaves_everything_as_it_was_where_a_reload_needs_more) {
         << daemon_->log();
     daemon_->signal(SIGTERM);
     EXPECT_EQ(daemon_->wait(10s), 0) << daemon_->log();
+}
+
+// The thread that saves has asked for nothing before.
+TEST_F(Shortage, does_not_keep_the_last_save_from_being_done) {
+    save(noise(12'000));
+    write_mapping(fast_mapping().map.log_odds_max);
+    start_with_mapping({"--save-every", "1000"});
+    limit_addresses(0);
+    daemon_->signal(SIGTERM);
+    const auto code = daemon_->wait(10s);
+    EXPECT_TRUE(code == 0 || code == static_cast<int>(ExitCode::no_resources))
+        << code.value_or(-1) << daemon_->log();
+    EXPECT_TRUE(is_saved_since_start()) << daemon_->log();
 }
 
 }  // namespace
