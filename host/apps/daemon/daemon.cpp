@@ -11,6 +11,7 @@
 #include "common/wall_time.hpp"
 #include "host/apps/daemon/daemon_parts.hpp"
 #include "host/apps/daemon/ending.hpp"
+#include "host/apps/daemon/unwinding_room.hpp"
 #include "host/apps/querying/query_answer.hpp"
 
 namespace octoskin {
@@ -95,6 +96,7 @@ void Daemon::Parts::watch() {
         spdlog::error("the processor time that this process may use is over (ulimit -t): raise the limit");
         loop.stop(static_cast<int>(ExitCode::no_resources));
     }));
+    sources.push_back(loop.on_readable(faults.descriptor(), [this] { faults.rethrow(); }));
     sources.push_back(loop.on_signal(SIGHUP, [this] { ask_reload(); }));
     sources.push_back(loop.on_readable(reading.descriptor(), [this] { end_reload(); }));
     pipeline.work_beside(&depth_thread);
@@ -115,6 +117,7 @@ void Daemon::Parts::watch() {
 }
 
 void Daemon::Parts::attend() {
+    UnwindingRoom::keep();
     inputs.attend();
     recordings.attend(monotonic_now());
     last_used.note(pipeline, monotonic_now());

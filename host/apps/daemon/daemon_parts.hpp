@@ -28,6 +28,7 @@
 #include "host/apps/daemon/reload_pace.hpp"
 #include "host/apps/daemon/side_task.hpp"
 #include "host/apps/daemon/status.hpp"
+#include "host/apps/daemon/thread_faults.hpp"
 
 namespace octoskin {
 
@@ -77,6 +78,7 @@ struct Daemon::Parts {
     DaemonRequest request;
     Settings settings;
     EventLoop loop;
+    ThreadFaults faults;  ///< goes after all that have a thread
     Pipeline pipeline;
     AddressReserve reserve;     ///< for the last save
     DepthThread depth_thread;   ///< goes before the pipeline that it works for

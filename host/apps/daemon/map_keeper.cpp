@@ -70,6 +70,15 @@ Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& f
     return kept;
 }
 
+/// Where there may be no memory to say it, either.
+std::string why_not(const std::optional<NamedFolder>& folder, const std::exception& thrown) {
+    try {
+        return folder ? fmt::format("{}: {}", folder->shown().string(), thrown.what()) : thrown.what();
+    } catch (const std::exception&) {
+        return "no memory";  // so short that it takes none
+    }
+}
+
 }  // namespace
 
 bool finish_save(const OpenFolder& folder) {
@@ -218,14 +227,16 @@ void MapKeeper::work(Work& shared) {
         shared.changed.wait(lock, [&shared] { return shared.waiting || shared.is_ending; });
         if (shared.is_ending) return;
         std::optional<Save> save = std::exchange(shared.waiting, std::nullopt);
-        const NamedFolder folder = shared.folder;
-        lock.unlock();
+        std::optional<NamedFolder> folder;
         std::string error;
         try {
-            error = shared.writer(save->map, save->origin, folder);
+            folder = shared.folder;
+            lock.unlock();
+            error = shared.writer(save->map, save->origin, *folder);
         } catch (const std::exception& thrown) {  // no memory for the file's text
-            error = fmt::format("{}: {}", folder.shown().string(), thrown.what());
+            error = why_not(folder, thrown);
         }
+        if (lock.owns_lock()) lock.unlock();
         save.reset();
         end_save(shared, std::move(error));
         lock.lock();

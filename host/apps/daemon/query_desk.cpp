@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
 #include "host/apps/daemon/quiet_thread.hpp"
+#include "host/apps/daemon/unwinding_room.hpp"
 #include "host/apps/querying/query_answer.hpp"
 
 namespace octoskin {
@@ -97,7 +99,7 @@ void QueryDesk::run() {
     std::unique_lock lock(mutex_);
     while (true) {  // ends with the object
         wait_for_questions(lock);
-        if (is_ending_) return;
+        if (is_ending_) return UnwindingRoom::spend();
         Ground ground = std::move(*ground_);
         ground_.reset();
         if (waiting_.empty()) continue;  // forgotten meanwhile
@@ -106,6 +108,7 @@ void QueryDesk::run() {
         round_ = question.round;
         is_forgotten_ = false;
         lock.unlock();
+        UnwindingRoom::keep();
         try {
             question.answer.front().line = answer(question.line, std::move(ground));
         } catch (const std::exception&) {  // no memory to say why: it says so already
@@ -141,10 +144,14 @@ std::string QueryDesk::answer(const std::string& question, Ground ground) {
                                        std::move(ground.present), &field_, true, ground.now.wall, work_max_},
                                       [this] { return is_ending_ || is_forgotten_; })
                        : query_refused(request.error());
-    } catch (const std::exception& error) {  // no memory, most likely
+    } catch (const std::bad_alloc&) {  // nor for the words
+        throw;
+    } catch (const std::exception& error) {
         json = query_refused({ExitCode::unavailable, std::string("no answer: ") + error.what()});
     }
-    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    std::string line = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    UnwindingRoom::spend();
+    return line;
 }
 
 }  // namespace octoskin

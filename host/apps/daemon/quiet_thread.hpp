@@ -6,14 +6,17 @@
 
 #include <atomic>
 #include <csignal>
+#include <exception>
 #include <future>
 #include <thread>
 #include <utility>
 
 #include "common/time.hpp"
+#include "host/apps/daemon/thread_faults.hpp"
 
 namespace octoskin {
 
+/// What the work throws ends the daemon's loop (ThreadFaults); where there is none, the process.
 template <class Work>
 [[nodiscard]] std::thread start_without_signals(Work work) {
     sigset_t others;
@@ -26,7 +29,13 @@ template <class Work>
         const sigset_t& mask;
         ~Restored() { pthread_sigmask(SIG_SETMASK, &mask, nullptr); }
     } const restored{before};
-    return std::thread(std::move(work));
+    return std::thread([work = std::move(work)]() mutable {
+        try {
+            work();
+        } catch (const std::exception&) {
+            if (!ThreadFaults::tell()) throw;
+        }
+    });
 }
 
 /// A thread of that kind that a disk may hold in the middle of a write: whoever ends it waits so long and no

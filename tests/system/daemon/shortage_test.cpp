@@ -14,7 +14,9 @@
 #include <vector>
 
 #include "common/wire/crc.hpp"
+#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/querying/query_request.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "tests/support/evidence.hpp"
@@ -105,6 +107,24 @@ TEST_F(Shortage, leaves_everything_as_it_was_where_a_reload_needs_more) {
         << daemon_->log();
     daemon_->signal(SIGTERM);
     EXPECT_EQ(daemon_->wait(10s), 0) << daemon_->log();
+}
+
+// A question needs far more than there is.
+TEST_F(Shortage, that_a_question_finds_ends_in_an_answer_or_with_the_map_saved) {
+    save(noise(1'000));
+    write_mapping(fast_mapping().map.log_odds_max);
+    start_with_mapping();
+    limit_addresses(0);
+    QueryRequest request;
+    request.kind = QueryKind::pockets;
+    request.path = {{0.0, 0.0, 0.0, -0.1, 0.0, 1.6, 0.0}};
+    request.radius_m = 4.0;
+    for (int i = 0; i < 3; ++i) (void)ask_daemon(folder_ / "control", to_line(request), 20s);
+    daemon_->signal(SIGTERM);
+    const auto code = daemon_->wait(10s);
+    EXPECT_TRUE(code == 0 || code == static_cast<int>(ExitCode::no_resources))
+        << code.value_or(-1) << daemon_->log();
+    EXPECT_TRUE(is_saved_since_start()) << daemon_->log();
 }
 
 // The thread that saves has asked for nothing before.

@@ -1,13 +1,18 @@
 // What a recording does where there is no memory for a line of it. A program of its own: any allocation of
 // the thread that says so fails.
 #include <gtest/gtest.h>
+#include <poll.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 #include <nlohmann/json.hpp>
 
 #include "host/apps/daemon/boot_clock.hpp"
+#include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/query_desk.hpp"
 #include "host/apps/daemon/recorder.hpp"
+#include "host/apps/querying/query_request.hpp"
 #include "tests/support/allocation_hooks.hpp"
 #include "tests/support/evidence.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -16,11 +21,14 @@
 namespace {
 
 thread_local bool is_memory_gone = false;
+thread_local bool is_spared = false;
+std::atomic<bool> is_memory_of_others_gone = false;  ///< of each thread that is not spared
 
 }  // namespace
 
 static void* allocate(std::size_t bytes) {
-    void* const place = is_memory_gone ? nullptr : std::malloc(bytes);
+    const bool is_refused = is_memory_gone || (is_memory_of_others_gone && !is_spared);
+    void* const place = is_refused ? nullptr : std::malloc(bytes);
     if (place == nullptr) throw std::bad_alloc();
     return place;
 }
@@ -100,6 +108,51 @@ TEST(MapTimeWithoutMemory, is_forgotten_though_a_copy_of_the_map_has_it_too) {
     EXPECT_FALSE(map.confirmation({32768, 32768, 32768}));
     EXPECT_TRUE(map.is_stale({32768, 32768, 32768}));
     EXPECT_TRUE(shares.confirmation({32768, 32768, 32768}));
+}
+
+TEST(QueryDeskWithoutMemory, answers_and_goes_on) {
+    is_spared = true;
+    const test::Scene scene = test::good_scene();
+    Pipeline pipeline = test::make_pipeline(scene);
+    const HostSetup setup{scene.rig, test::one_joint_robot(), {}};
+    QueryDesk desk(setup);
+    const auto ask = [&](std::uint64_t ticket) {
+        QueryRequest request;
+        request.path = {{0.0}};
+        EXPECT_TRUE(desk.take(to_line(request), ticket, 0));
+        std::string line;
+        for (int i = 0; i < 2 && line.empty(); ++i) {  // its map, and its answer
+            pollfd readable{desk.descriptor(), POLLIN, 0};
+            EXPECT_EQ(::poll(&readable, 1, 20'000), 1);
+            for (const auto& answer : desk.serve(pipeline, {HostTime{1}, HostTime{1}, WallTime{1}})) {
+                EXPECT_EQ(answer.ticket, ticket);
+                line = answer.line;
+            }
+        }
+        return nlohmann::json::parse(line);
+    };
+    is_memory_of_others_gone = true;
+    const auto refused = ask(1);
+    EXPECT_FALSE(refused["ok"].get<bool>());
+    EXPECT_EQ(refused["code"], static_cast<int>(ExitCode::unavailable));
+    is_memory_of_others_gone = false;
+    EXPECT_TRUE(ask(2)["ok"].get<bool>());
+}
+
+// The next one may find some.
+TEST(MapKeeperWithoutMemory, counts_a_save_as_failed_and_goes_on) {
+    is_spared = true;
+    const testing_support::ScratchFolder folder;
+    MapKeeper keeper{NamedFolder(folder.path())};
+    const FusedMap map{MapConfig{}};
+    is_memory_of_others_gone = true;
+    EXPECT_TRUE(keeper.save(map));
+    EXPECT_TRUE(keeper.finish(Nanoseconds{10'000'000'000}));
+    EXPECT_EQ(keeper.record().failed, 1U);
+    is_memory_of_others_gone = false;
+    EXPECT_TRUE(keeper.save(map));
+    EXPECT_TRUE(keeper.finish(Nanoseconds{10'000'000'000}));
+    EXPECT_EQ(keeper.record().saved, 1U) << keeper.record().error;
 }
 
 }  // namespace
