@@ -11,7 +11,6 @@
 #include <system_error>
 #include <utility>
 
-#include "host/apps/recording/file_lock.hpp"
 #include "host/apps/recording/text_file.hpp"
 
 namespace octoskin {
@@ -74,14 +73,6 @@ Result<FolderLock, AppError> FolderLock::take(const std::filesystem::path& named
 }
 
 Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const std::filesystem::path& named) {
-    // A FileSet has all of the folder, and looks for the daemon's file when it begins: none may be about to
-    // put its files here, and none begins before ours is held.
-    const auto all = FileLock::take(folder, FileLock::Kind::shared);
-    if (!all) {
-        return cannot_create(
-            named,
-            "another octoskin is writing files there; wait until it has ended, or name another folder");
-    }
     for (int tries = 0; tries < kTries; ++tries) {
         auto file = open_or_create(folder);
         if (!file) return unexpected(cannot_save(named / kFile, file.error()));

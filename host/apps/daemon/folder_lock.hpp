@@ -18,9 +18,8 @@ class FolderLock {
     static constexpr const char* kFile = kDaemonsLock;
 
     /// Makes the folder if it is not there. Refuses, naming its process, if somebody else holds it, if
-    /// nothing can be written there, if the folder is somebody else's, if a FileSet is about to put its files
-    /// there, and if its file "lock" is a link or no file. One with several names is replaced, not written
-    /// to.
+    /// nothing can be written there, if the folder is somebody else's, and if its file "lock" is a link or no
+    /// file. One with several names is replaced, not written to.
     [[nodiscard]] static Result<FolderLock, AppError> take(const std::filesystem::path& folder);
     /// The same of a folder that is open to be written to. `named`: as a person named it.
     [[nodiscard]] static Result<FolderLock, AppError> take(const OpenFolder& folder,

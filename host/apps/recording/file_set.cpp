@@ -57,6 +57,18 @@ bool is_there(const OpenFolder& folder, const fs::path& name) {
     return folder.kind_of(name) != EntryKind::absent;
 }
 
+/// Takes the lock of daemons if there is one and `lock` is of nothing yet. Not by a lock that a daemon would
+/// have to take of the folder itself: each user that may read it could keep the daemon from it.
+Status<AppError> keep_daemons_out(const OpenFolder& folder, FileLock& lock) {
+    if (lock.is_of_nothing()) {
+        auto taken = FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive);
+        if (!taken) return busy(folder);
+        lock = std::move(*taken);
+    }
+    if (is_there(folder, kDaemonsSnapshot)) return of_a_daemon(folder);
+    return Done{};
+}
+
 /// What to do, in the order in which it is done; `put` ends with the file that vouches for all.
 struct Journal {
     std::vector<fs::path> drop;
@@ -303,9 +315,9 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
         return error;
     };
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
-    auto daemons = FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive);
-    if (!lock || !daemons) return busy(folder);
-    if (is_there(folder, kDaemonsSnapshot)) return of_a_daemon(folder);
+    if (!lock) return busy(folder);
+    Locks locks{std::move(*lock), FileLock::of_nothing()};
+    if (const auto kept = keep_daemons_out(folder, locks.daemons); !kept) return unexpected(kept.error());
     if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
     Unfinished unfinished(folder, kDraftFolder, made->is_new);
     // What is there is of a process that was killed.
@@ -315,8 +327,7 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
         return give_up(cannot_write(created.error()));
     auto draft = folder.open_folder(kDraftFolder);
     if (!draft) return give_up(cannot_write(draft.error()));
-    return FileSet(folder, std::move(*draft), made->is_new, std::move(unfinished),
-                   {std::move(*lock), std::move(*daemons)});
+    return FileSet(folder, std::move(*draft), made->is_new, std::move(unfinished), std::move(locks));
 }
 
 Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::vector<fs::path>& retired) {
@@ -325,6 +336,8 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     for (const auto& names : {files, retired}) {
         if (const auto checked = check_places(folder_, names); !checked) return checked;
     }
+    // One may have begun since.
+    if (const auto kept = keep_daemons_out(folder_, locks_.daemons); !kept) return kept;
     const Journal journal{retired, files};
     if (const auto written = write_journal(draft_, journal); !written) return written;
     for (const fs::path& file : files) {

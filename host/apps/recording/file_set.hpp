@@ -43,7 +43,8 @@ class FileSet {
     /// Puts `files`, names in the draft, in their places and removes `retired`, paths relative to the folder
     /// that may lead to nothing. The last of `files` vouches for all: where it is, the others are whole and
     /// belong to it; it is the first to go and the last to come. On an error (cannot_create; what is no file
-    /// lies in a place) the folder is as it was. Asserts at least one file, and is_file_of_set() of each.
+    /// lies in a place, or a daemon has begun to keep its maps there) the folder is as it was. Asserts at
+    /// least one file, and is_file_of_set() of each.
     [[nodiscard]] Status<AppError> commit(const std::vector<std::filesystem::path>& files,
                                           const std::vector<std::filesystem::path>& retired);
 

@@ -1,12 +1,15 @@
 #include "host/apps/daemon/folder_lock.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <optional>
 
 #include "host/apps/recording/file_set.hpp"
+#include "host/io/folder/descriptor.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -31,20 +34,26 @@ TEST(FolderLock, is_held_by_one_at_a_time_whose_process_is_named) {
     EXPECT_TRUE(FolderLock::take(folder));
 }
 
-/// As of a replay, whose maps would replace the daemon's own at its end.
-TEST(FolderLock, is_not_taken_where_files_are_about_to_be_put) {
+/// A replay that began before the daemon does not replace the daemon's maps at its end.
+TEST(FolderLock, is_taken_where_files_are_about_to_be_put_and_keeps_them_out) {
     const testing_support::ScratchFolder scratch;
-    {
-        const auto files = FileSet::begin(FilePlace(scratch.path()));
-        ASSERT_TRUE(files) << files.error().message;
-        const auto refused = FolderLock::take(scratch.path());
-        ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
-        EXPECT_FALSE(std::filesystem::exists(scratch / FolderLock::kFile));
-    }
+    auto files = FileSet::begin(FilePlace(scratch.path()));
+    ASSERT_TRUE(files) << files.error().message;
+    ASSERT_TRUE(files->draft().create_new("fused.ot"));
     const auto taken = FolderLock::take(scratch.path());
     ASSERT_TRUE(taken) << taken.error().message;
-    EXPECT_FALSE(FileSet::begin(FilePlace(scratch.path())));
+    const auto refused = files->commit({"fused.ot"}, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+    EXPECT_FALSE(std::filesystem::exists(scratch / "fused.ot"));
+}
+
+/// What any user can take that may read the folder.
+TEST(FolderLock, is_taken_where_another_process_has_a_lock_of_the_folder_itself) {
+    const testing_support::ScratchFolder scratch;
+    const Descriptor foreign(::open(scratch.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    ASSERT_EQ(::flock(foreign.get(), LOCK_EX | LOCK_NB), 0);
+    EXPECT_TRUE(FolderLock::take(scratch.path()));
 }
 
 /// Of what others can open they can keep the lock.
