@@ -61,7 +61,11 @@ bool Daemon::Parts::take_next(NextResult next) {
 /// False, and as before: there is no memory for that. What follows the limits has no way back: where that
 /// needs memory that is not there the daemon ends, with the map still the pipeline's.
 bool Daemon::Parts::go_on_with(Next& next) {
-    if (!take_limits(next.settings.mapping.map)) return false;
+    recordings.hold_map();  // what the limits change is not the recording's
+    if (!take_limits(next.settings.mapping.map)) {
+        recordings.release_map();
+        return false;
+    }
     recordings.stop(monotonic_now(), "the daemon read its files anew (SIGHUP)");  // whole with the old ones
     inputs.prepare_for(next.settings.host.rig);
     const std::uint64_t dropped = settle_pipeline();

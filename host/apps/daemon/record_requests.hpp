@@ -56,6 +56,13 @@ class RecordRequests {
     void stop(HostTime now, std::string early = {}) {
         if (recorder_) recorder_->stop(now, std::move(early));
     }
+    /// Recorder::hold_map, and Recorder::release_map.
+    void hold_map() {
+        if (recorder_) recorder_->hold_map();
+    }
+    void release_map() {
+        if (recorder_) recorder_->release_map();
+    }
     /// Until a recording that was stopped is whole; says in the log what came of it.
     void finish(Nanoseconds patience);
     /// The one at work or, until there is another, the last; null if there was none.

@@ -130,11 +130,22 @@ void Recorder::stop(HostTime now, std::string early) {
                               .can_frames = can_frames_,
                               .depth_frames = depth_frames_,
                               .duration_s = seconds_of(now - begun_)},
-                     .last_map = last_map()};
+                     .last_map = is_map_held_ ? std::move(held_map_) : last_map()};
     pipeline_->tell(nullptr);
     pipeline_ = nullptr;
     writer_.finish(std::move(end));
     tell_end();
+}
+
+void Recorder::hold_map() {
+    if (stopped_) return;
+    held_map_ = last_map();
+    is_map_held_ = true;
+}
+
+void Recorder::release_map() {
+    held_map_.reset();
+    is_map_held_ = false;
 }
 
 void Recorder::tell_end() {

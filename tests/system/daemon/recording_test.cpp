@@ -252,6 +252,25 @@ TEST_F(DaemonRecording, ends_whole_when_another_rig_is_read_and_goes_on_while_it
     expect_own_map();
 }
 
+/// Its last map is of what it was recorded with.
+TEST_F(DaemonRecording, ends_with_the_map_of_before_when_other_clamps_are_read) {
+    const std::string fast = ScratchFolder::read(OCTOSKIN_SOURCE_DIR "/host/config/fast.yaml");
+    const auto mapping = folder_.write("mapping.yaml", fast);
+    start({"--no-camera", "--configuration", mapping.string()});
+    ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
+    ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
+    std::this_thread::sleep_for(1s);
+    const std::string key = "log_odds_min: ";
+    const auto at = fast.find(key);
+    ASSERT_NE(at, std::string::npos);
+    folder_.write("mapping.yaml", fast.substr(0, at) + key + "-0.6" + fast.substr(fast.find('\n', at)));
+    daemon_->signal(SIGHUP);
+    ASSERT_TRUE(
+        daemon_->wait_until([](const Json& status) { return state_of_recording(status) == "ended"; }, 5s))
+        << daemon_->log();
+    expect_own_map();
+}
+
 /// The recorder of OpenNI2 has them all in its memory until the end: it outlives the daemon for as long as
 /// that takes.
 TEST_F(DaemonRecording, of_a_killed_daemon_has_its_depth_frames) {
