@@ -69,7 +69,7 @@ bool QueryDesk::take(const std::string& line, std::uint64_t ticket, uid_t user) 
 /// With the lock. A user has one question in a round: what it asks beyond waits until others had theirs.
 std::uint64_t QueryDesk::round_of_next(uid_t user) const {
     std::uint64_t round = round_;
-    for (const Questions* questions : {&at_work_, &waiting_})
+    for (const Questions* questions : {&served_, &at_work_, &waiting_})
         for (const Question& question : *questions)
             if (question.user == user) round = std::max(round, question.round + 1);
     return round;
@@ -105,6 +105,7 @@ void QueryDesk::run() {
         if (waiting_.empty()) continue;  // forgotten meanwhile
         at_work_.splice(at_work_.end(), waiting_, std::ranges::min_element(waiting_, {}, &Question::round));
         Question& question = at_work_.front();
+        if (question.round != round_) served_.clear();
         round_ = question.round;
         is_forgotten_ = false;
         lock.unlock();
@@ -115,7 +116,8 @@ void QueryDesk::run() {
         }
         lock.lock();
         answers_.splice(answers_.end(), question.answer);
-        at_work_.clear();
+        question.line.clear();
+        served_.splice(served_.end(), at_work_);
         event_.wake();
     }
 }

@@ -98,6 +98,7 @@ class QueryDesk {
     std::condition_variable changed_;
     Questions waiting_;          ///< in the order they came
     Questions at_work_;          ///< one, or none
+    Questions served_;           ///< of this round, one of each user's
     std::uint64_t round_ = 0;    ///< of the one that is at work, or was the last
     bool wants_ground_ = false;  ///< a question's turn has come
     std::optional<Ground> ground_;

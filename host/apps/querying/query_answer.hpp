@@ -33,7 +33,7 @@ struct QueryGround {
     bool is_live = false;
     /// When the map was as it is, by this machine's clock; empty: of a file, which does not say.
     std::optional<WallTime> map_time = std::nullopt;
-    /// Longer nobody works on one question: others wait. Empty: as long as it takes.
+    /// The most processor time for one question: others wait. Empty: as much as it takes.
     std::optional<std::chrono::milliseconds> work_max = std::nullopt;
 };
 

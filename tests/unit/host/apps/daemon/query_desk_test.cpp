@@ -193,6 +193,24 @@ TEST_F(QueryDeskTest, answers_users_by_turns) {
     EXPECT_EQ(answers(1).count(15), 1U);
 }
 
+TEST_F(QueryDeskTest, answers_the_second_question_of_one_user_though_others_ask_again_and_again) {
+    ask(desk_, path({{0.0}}), 11, kUser);
+    ask(desk_, path({{0.0}}), 12, kUser);
+    ask(desk_, path({{0.0}}), 21, kUser + 1);
+    ask(desk_, path({{0.0}}), 31, kUser + 2);
+    std::vector<std::uint64_t> order;
+    while (order.size() < 6) {
+        pollfd readable{desk_.descriptor(), POLLIN, 0};
+        ASSERT_EQ(::poll(&readable, 1, 20'000), 1);
+        for (const auto& [ticket, line] : desk_.serve(pipeline_, {kNow, kNow, kWall})) {
+            order.push_back(ticket);
+            if (ticket == 21) ask(desk_, path({{0.0}}), 22, kUser + 1);
+            if (ticket == 31) ask(desk_, path({{0.0}}), 32, kUser + 2);
+        }
+    }
+    EXPECT_EQ(order, (std::vector<std::uint64_t>{11, 21, 31, 12, 22, 32}));
+}
+
 TEST_F(QueryDeskTest, ends_a_question_that_takes_too_long) {
     QueryDesk hasty(setup_, QueryDesk::kFieldIdleMax, std::chrono::milliseconds(1));
     ask(hasty, long_one(), 1);
