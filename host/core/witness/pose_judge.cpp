@@ -50,6 +50,9 @@ void PoseJudge::decide(HostTime now) {
     fault_.reset();
     if (!is_error) return;
     const bool is_alone = leader != Leader::none && now - leads_since_ >= kLeadTime;
+    const bool is_camera_likely = camera_.error() || camera_.is_suspect();
+    const bool is_joint_likely = joints_.error() || joints_.is_suspect();
+    if (!is_alone && !(is_camera_likely && is_joint_likely)) return;  // one of them, when it has led for long
     PoseFault fault;
     if (!is_alone || leader == Leader::camera) fault.camera = camera_.likeliest();
     if (!is_alone || leader == Leader::joint) fault.joint = joints_.likeliest();
