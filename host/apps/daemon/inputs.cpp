@@ -157,6 +157,7 @@ void Inputs::exchange_alone() {
     feed(local_joints_.report(sync->sequence, *at), stamp);
     const wire::FollowUp follow_up{sync->sequence, static_cast<std::uint64_t>(at->ns / 1000)};
     feed(wire::encode(follow_up, wire::kHostId), stamp);
+    newest_stamp_ = stamp;
 }
 
 std::uint64_t Inputs::joints_displaced() const {

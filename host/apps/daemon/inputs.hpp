@@ -126,7 +126,7 @@ class Inputs {
     std::optional<WallTime> rig_changed_;  ///< by a reload
     std::uint64_t displaced_noted_ = 0;
     std::optional<HostTime> displaced_at_;  ///< when it was noted last that some were too many
-    std::optional<WallTime> newest_stamp_;  ///< of the bus's frames in the pipeline
+    std::optional<WallTime> newest_stamp_;  ///< of frames in the pipeline that are no joint samples
     std::unique_ptr<CameraFeed> camera_;
     std::optional<openni2::CameraMode> camera_mode_;  ///< wanted; empty: no camera is
     std::unique_ptr<CameraFeed> camera_leaving_;      ///< of another mode; has the device a little longer

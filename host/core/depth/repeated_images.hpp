@@ -54,7 +54,7 @@ class RepeatedImages {
     [[nodiscard]] bool has_value() const noexcept { return has_value_; }
 
   private:
-    /// Of images that differ in at most four pixels beside each other it always differs; of others nearly so.
+    /// Of images that differ in one aligned group of four pixels it always differs; of others nearly so.
     static std::uint64_t checksum(std::span<const std::uint16_t> pixels) noexcept {
         constexpr std::size_t kAtOnce = sizeof(std::uint64_t) / sizeof(std::uint16_t);
         std::uint64_t sum = pixels.size();
