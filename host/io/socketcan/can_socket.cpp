@@ -209,9 +209,10 @@ Result<std::optional<CanSocket::Taken>, SocketFault> CanSocket::take_one() {
 Result<bool, SocketFault> CanSocket::send(const wire::CanFrame& frame) {
     const wire::SocketCanBytes raw = wire::to_socketcan(frame);
     if (has_echo_) take_what_came();
+    const WallTime handed_over = wall_now();  // not behind it: it wakes its receiver, which may run first
     const ssize_t count = ::send(descriptor_, raw.bytes().data(), raw.size, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (count == static_cast<ssize_t>(raw.size)) {
-        if (has_echo_) waiting_.push_back({.entry = {wall_now(), frame}, .is_own = true});
+        if (has_echo_) waiting_.push_back({.entry = {handed_over, frame}, .is_own = true});
         return true;
     }
     // ENOBUFS: the interface's queue is full, as when nobody acknowledges.
