@@ -50,12 +50,11 @@ void PoseJudge::decide(HostTime now) {
     fault_.reset();
     if (!is_error) return;
     const bool is_alone = leader != Leader::none && now - leads_since_ >= kLeadTime;
-    const bool is_camera_likely = camera_.error() || camera_.is_suspect();
-    const bool is_joint_likely = joints_.error() || joints_.is_suspect();
-    if (!is_alone && !(is_camera_likely && is_joint_likely)) return;  // one of them, when it has led for long
     PoseFault fault;
     if (!is_alone || leader == Leader::camera) fault.camera = camera_.likeliest();
-    if (!is_alone || leader == Leader::joint) fault.joint = joints_.likeliest();
+    // No sensor speaks for a joint where none is behind one that moves it: there is nothing to weigh.
+    const bool is_any_joint = joints_.evidence().explained > 0;
+    if (is_any_joint && (!is_alone || leader == Leader::joint)) fault.joint = joints_.likeliest();
     fault.explained = std::max(fault.camera ? camera_.evidence().explained : 0,
                                fault.joint ? joints_.evidence().explained : 0);
     fault_ = fault;
