@@ -131,9 +131,11 @@ class WallStream final : public oni::driver::StreamBase {
             std::fill_n(first, half, is_mirrored_ ? seen.right_mm : seen.left_mm);
             std::fill_n(first + half, half, is_mirrored_ ? seen.left_mm : seen.right_mm);
         }
-        // Noise: a camera whose images are equal to the last bit hangs.
-        OniDepthPixel& last = pixels[mode_.resolutionX * mode_.resolutionY - 1];
-        if (last > 0) last = static_cast<OniDepthPixel>(last + index % 2);
+        // Noise: a camera whose images are equal to the last bit hangs, also if it shows a few by turns.
+        OniDepthPixel* const last = pixels + mode_.resolutionX * mode_.resolutionY - 1;
+        for (int bit = 0; bit < 4; ++bit) {
+            if (last[-bit] > 0) last[-bit] = static_cast<OniDepthPixel>(last[-bit] + ((index >> bit) & 1));
+        }
         raiseNewFrame(frame);
         getServices().releaseFrame(frame);
     }
