@@ -3,6 +3,7 @@
 #include <systemd/sd-daemon.h>
 
 #include <new>
+#include <optional>
 #include <utility>
 
 #include "host/apps/daemon/daemon_parts.hpp"
@@ -61,12 +62,10 @@ bool Daemon::Parts::take_next(NextResult next) {
 /// False, and as before: there is no memory for that. What follows the limits has no way back: where that
 /// needs memory that is not there the daemon ends, with the map still the pipeline's.
 bool Daemon::Parts::go_on_with(Next& next) {
-    recordings.hold_map();  // what the limits change is not the recording's
-    if (!take_limits(next.settings.mapping.map)) {
-        recordings.release_map();
-        return false;
-    }
-    recordings.stop(monotonic_now(), "the daemon read its files anew (SIGHUP)");  // whole with the old ones
+    std::optional<FusedMap> recorded =
+        recordings.last_map();  // what the limits change is not the recording's
+    if (!take_limits(next.settings.mapping.map)) return false;
+    recordings.stop(monotonic_now(), "the daemon read its files anew (SIGHUP)", std::move(recorded));
     inputs.prepare_for(next.settings.host.rig);
     const std::uint64_t dropped = settle_pipeline();
     if (!is_placed_as(next.settings.recorded.placement_crc32)) pipeline.forget_times();

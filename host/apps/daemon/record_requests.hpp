@@ -56,12 +56,13 @@ class RecordRequests {
     void stop(HostTime now, std::string early = {}) {
         if (recorder_) recorder_->stop(now, std::move(early));
     }
-    /// Recorder::hold_map, and Recorder::release_map.
-    void hold_map() {
-        if (recorder_) recorder_->hold_map();
+    /// The same with a `last_map` of before something changed the map.
+    void stop(HostTime now, std::string early, std::optional<FusedMap> last_map) {
+        if (recorder_) recorder_->stop(now, std::move(early), std::move(last_map));
     }
-    void release_map() {
-        if (recorder_) recorder_->release_map();
+    /// Recorder::last_map; empty, too, where nothing is recorded.
+    [[nodiscard]] std::optional<FusedMap> last_map() const {
+        return recorder_ ? recorder_->last_map() : std::nullopt;
     }
     /// Until a recording that was stopped is whole; says in the log what came of it.
     void finish(Nanoseconds patience);

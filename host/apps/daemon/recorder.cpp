@@ -115,6 +115,10 @@ void Recorder::attend(HostTime now) {
 }
 
 void Recorder::stop(HostTime now, std::string early) {
+    if (!stopped_) stop(now, std::move(early), last_map());
+}
+
+void Recorder::stop(HostTime now, std::string early, std::optional<FusedMap> last_map) {
     if (stopped_) return;
     stopped_ = now;
     early_ = std::move(early);
@@ -130,22 +134,11 @@ void Recorder::stop(HostTime now, std::string early) {
                               .can_frames = can_frames_,
                               .depth_frames = depth_frames_,
                               .duration_s = seconds_of(now - begun_)},
-                     .last_map = is_map_held_ ? std::move(held_map_) : last_map()};
+                     .last_map = std::move(last_map)};
     pipeline_->tell(nullptr);
     pipeline_ = nullptr;
     writer_.finish(std::move(end));
     tell_end();
-}
-
-void Recorder::hold_map() {
-    if (stopped_) return;
-    held_map_ = last_map();
-    is_map_held_ = true;
-}
-
-void Recorder::release_map() {
-    held_map_.reset();
-    is_map_held_ = false;
 }
 
 void Recorder::tell_end() {
@@ -163,6 +156,7 @@ void Recorder::tell_end() {
 }
 
 std::optional<FusedMap> Recorder::last_map() const {
+    if (stopped_) return std::nullopt;
     try {
         return copier_(pipeline_->map());
     } catch (const std::bad_alloc&) {

@@ -58,10 +58,10 @@ class Recorder final : public CommitListener {
     /// copy of the map it has failed, and `error` says so. `early`: why it ends though nobody asked for that
     /// and its time is not over; for a person.
     void stop(HostTime now, std::string early = {});
-    /// The map as it is now is the recording's last one, whatever changes it before `stop`.
-    void hold_map();
-    /// It is the one of `stop` again.
-    void release_map();
+    /// The same with a `last_map` of before something changed the map.
+    void stop(HostTime now, std::string early, std::optional<FusedMap> last_map);
+    /// The map as it is now; empty if there is no memory for it, or what is recorded is complete already.
+    [[nodiscard]] std::optional<FusedMap> last_map() const;
     /// Until the files are whole, after `stop`; false if `patience` was too short.
     [[nodiscard]] bool wait(Nanoseconds patience) { return writer_.wait(patience); }
 
@@ -91,8 +91,6 @@ class Recorder final : public CommitListener {
 
   private:
     void put(const Commit& commit);
-    /// Empty if there is no memory for it.
-    [[nodiscard]] std::optional<FusedMap> last_map() const;
     /// What was rejected since the begin, by name.
     [[nodiscard]] std::string remarks() const;
     /// Once it has: how it ended.
@@ -107,8 +105,6 @@ class Recorder final : public CommitListener {
     std::optional<HostTime> stopped_;
     std::string early_;  ///< why it ended before it was to; empty: it did not
     bool is_end_told_ = false;
-    bool is_map_held_ = false;
-    std::optional<FusedMap> held_map_;  ///< empty, too: there was no memory for it
     Pipeline* pipeline_;
     std::vector<AccountTable> accounts_at_begin_;
     candump::LogEntry entry_;
