@@ -217,7 +217,7 @@ constexpr std::array kStatusMeanings = {
     Meaning{"joint_states", "off_by",
             "by about how much it is further, radians, metres of a prismatic joint; null: none is off"},
     Meaning{"joint_states", "or_camera",
-            "an error of the camera explains about as much: it cannot be told which of the two is off"},
+            "an error of the camera explains about as much: which of the two is off is not known"},
     Meaning{"joints_socket", "samples", "samples that came, of the right form"},
     Meaning{"joints_socket", "displaced",
             "datagrams that gave way to newer ones: the daemon was held up while 1024 waited, or they come "

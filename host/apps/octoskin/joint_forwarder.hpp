@@ -31,7 +31,8 @@ class JointOutput {
     [[nodiscard]] virtual std::string why() const = 0;
 };
 
-/// What a line must keep to. The daemon drops what is beyond it, where whoever sends the lines does not see.
+/// What a line must keep to. The daemon drops what is beyond it, and the sender of the lines does not see
+/// that.
 struct RigJoints {
     std::vector<std::string> names;
     std::vector<JointLimits> limits;

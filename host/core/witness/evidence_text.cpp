@@ -113,7 +113,7 @@ std::string describe(const PoseFault& fault, std::span<const std::string> joints
     if (!fault.camera)
         return joint + ": not where its joint states say" + explains + describe_error(*fault.joint) +
                "): compare the arm's posture with its joint states, and set the joint's zero anew" + see;
-    return "camera or " + joint + ": one of them is not where it is said to be, and it cannot be told which" +
+    return "camera or " + joint + ": one of them is not where it is said to be; which of them is not known" +
            explains + describe_error(*fault.joint) + ", or the camera " + describe_error(*fault.camera) +
            "). Compare the arm's posture with its joint states first; else measure the camera's pose anew" +
            see;

@@ -12,7 +12,7 @@
 
 namespace octoskin {
 
-/// With both one of them is off, and it cannot be told which.
+/// With both one of them is off; which is not known.
 struct PoseFault {
     std::optional<CameraError> camera;
     std::optional<JointError> joint;
