@@ -159,6 +159,13 @@ DaemonView Daemon::Parts::view() const {
 }
 
 std::string Daemon::Parts::answer(const std::string& line) {
+    constexpr std::size_t kRoomBytes = std::size_t{1} << 20U;
+    std::optional<AnswerRoom> room;
+    try {
+        room.emplace(kRoomBytes);
+    } catch (const std::bad_alloc&) {  // so little is left that the answer might not even be taken apart
+        return R"({"ok":false,"error":"no memory for an answer","code":69})";
+    }
     if (line == "status") {
         inputs.catch_up();  // the loop may have been busy with an image: what came meanwhile counts
         return status_json(view()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

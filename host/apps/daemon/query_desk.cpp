@@ -137,6 +137,8 @@ void QueryDesk::wait_for_questions(std::unique_lock<std::mutex>& lock) {
 }
 
 std::string QueryDesk::answer(const std::string& question, Ground ground) {
+    constexpr std::size_t kRoomBytes = std::size_t{4} << 20U;
+    const AnswerRoom room(kRoomBytes);
     nlohmann::ordered_json json;
     try {
         ground.map.go_on(ground.now.reckoned);  // nothing may have been measured for long, or ever

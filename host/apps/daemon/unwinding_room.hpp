@@ -7,7 +7,31 @@
 #include <new>
 #include <utility>
 
+#include "host/apps/daemon/address_reserve.hpp"
+
 namespace octoskin {
+
+/// Addresses for one answer in JSON, of the thread that makes it, for as long as this lives. The first
+/// allocation of it that fails gets them: then there is room for all that follows, destructors included.
+class AnswerRoom {
+  public:
+    /// Throws std::bad_alloc where there are not as many. At most one at a time in a thread.
+    explicit AnswerRoom(std::size_t bytes) : reserve_(bytes) { of_thread_ = this; }
+    ~AnswerRoom() { of_thread_ = nullptr; }
+    AnswerRoom(const AnswerRoom&) = delete;
+    AnswerRoom& operator=(const AnswerRoom&) = delete;
+
+    /// False if the thread has none, or none any more.
+    static bool give() noexcept {
+        if (of_thread_ == nullptr) return false;
+        std::exchange(of_thread_, nullptr)->reserve_ = AddressReserve();
+        return true;
+    }
+
+  private:
+    AddressReserve reserve_;
+    static inline thread_local AnswerRoom* of_thread_ = nullptr;
+};
 
 /// Of the thread that calls, which spends it before it ends: to have that done for it takes memory. While an
 /// exception is on its way, what there is no memory for gets this room.
@@ -24,6 +48,7 @@ class UnwindingRoom {
 
   private:
     static void give() {
+        if (AnswerRoom::give()) return;
         if (std::uncaught_exceptions() == 0 || room_ == nullptr) throw std::bad_alloc();
         spend();
     }
