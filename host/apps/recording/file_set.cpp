@@ -387,6 +387,13 @@ Result<bool, AppError> settle_file_set(const OpenFolder& folder) {
     if (!is_there(folder, kReady)) return false;
     const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
+    FileLock daemons = FileLock::of_nothing();
+    if (const auto kept = keep_daemons_out(folder, daemons); !kept) {
+        return fail(kept.error().code,
+                    kept.error().message +
+                        "; the files of a run that was killed before the daemon began wait in " +
+                        folder.shown(kReady).string() + ": remove them");
+    }
     return finish_interrupted(folder);
 }
 

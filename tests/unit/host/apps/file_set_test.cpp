@@ -171,6 +171,23 @@ TEST(FileSetTest, what_was_killed_after_any_step_is_brought_to_its_end_by_the_ne
     }
 }
 
+TEST(FileSetTest, what_was_killed_is_not_brought_to_its_end_where_a_daemon_has_begun_since) {
+    for (const char* const of_daemon : {kDaemonsLock, kDaemonsSnapshot}) {
+        const ScratchFolder folder;
+        lay_out_half_done(folder.path(), 0, false);
+        write(folder / of_daemon, "");
+        const int lock = ::open((folder / of_daemon).c_str(), O_RDONLY | O_CLOEXEC);
+        ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
+        const std::string before = told(folder.path());
+        const auto settled = settle(folder.path());
+        ASSERT_FALSE(settled) << of_daemon;
+        EXPECT_EQ(settled.error().code, ExitCode::cannot_create);
+        EXPECT_THAT(settled.error().message, HasSubstr("wait in " + (folder / ".octoskin-ready").string()));
+        EXPECT_EQ(told(folder.path()), before);
+        ::close(lock);
+    }
+}
+
 TEST(FileSetTest, an_error_while_it_moves_takes_all_of_it_back_until_it_can_be_done) {
     const std::pair<const char*, const char*> obstacles[] = {
         {"robot.urdf", ".octoskin-ready can.log=old meta.yaml=old robot.urdf"},
