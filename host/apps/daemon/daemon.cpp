@@ -53,7 +53,7 @@ ExitCode Daemon::run() {
     const int outcome = parts_->run_loop();
     const Nanoseconds patience = end_patience(parts_->pipeline.map().memory_bytes());
     tell_end(patience);
-    parts_->recordings.stop(monotonic_now(), "the daemon ended");
+    parts_->stop_recording();
     const HostTime end = monotonic_now() + patience;
     parts_->control->close_clients();
     const std::string error = parts_->save_last_map(end);
@@ -64,6 +64,15 @@ ExitCode Daemon::run() {
     }
     spdlog::info("stopped; the map is saved in {}", parts_->home->where());
     return static_cast<ExitCode>(outcome);
+}
+
+/// What keeps a recording from its end keeps no map from being saved.
+void Daemon::Parts::stop_recording() {
+    try {
+        recordings.stop(monotonic_now(), "the daemon ended");
+    } catch (const std::exception& error) {
+        spdlog::error("the recording has no end: {}", error.what());
+    }
 }
 
 /// From its end on there is room for what follows.

@@ -46,6 +46,7 @@ struct Daemon::Parts {
           started(monotonic_now()) {}
 
     int run_loop();
+    void stop_recording();
     Status<AppError> take_sockets();
     Status<AppError> take_folder();
     void watch();

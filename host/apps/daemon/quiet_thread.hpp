@@ -47,7 +47,12 @@ class LeavableThread {
         std::promise<void> ended;
         ended_ = ended.get_future();
         thread_ = start_without_signals([work = std::move(work), ended = std::move(ended)]() mutable {
-            work();
+            try {
+                work();
+            } catch (...) {  // a promise that is broken asks for memory to say so
+                ended.set_value();
+                throw;
+            }
             ended.set_value();
         });
     }
@@ -60,6 +65,7 @@ class LeavableThread {
         if (!thread_.joinable()) return true;
         const bool has_ended = ended_.wait_for(patience) == std::future_status::ready;
         if (has_ended) {
+            ended_.get();
             thread_.join();
         } else {
             thread_.detach();

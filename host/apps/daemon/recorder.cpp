@@ -164,7 +164,7 @@ std::optional<FusedMap> Recorder::last_map() const {
     }
 }
 
-std::string Recorder::remarks() const {
+std::string Recorder::remarks() const try {
     std::string text = "# rejected while this was recorded:\n";
     const auto now = pipeline_->account_tables();
     for (std::size_t unit = 0; unit < now.size(); ++unit) {
@@ -175,6 +175,8 @@ std::string Recorder::remarks() const {
         }
     }
     return text;
+} catch (const std::bad_alloc&) {  // they are for a reader alone; the recording is whole without
+    return {};
 }
 
 nlohmann::ordered_json Recorder::to_json(HostTime now) const {
