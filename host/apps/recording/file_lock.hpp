@@ -23,7 +23,6 @@ class FileLock {
     /// also where another removed or replaced it before it was locked.
     [[nodiscard]] static std::optional<FileLock> take(OpenFile opened, const FilePlace& file);
     [[nodiscard]] static FileLock of_nothing() { return FileLock(Descriptor()); }
-    [[nodiscard]] bool is_of_nothing() const noexcept { return !descriptor_; }
 
   private:
     explicit FileLock(Descriptor descriptor) : descriptor_(std::move(descriptor)) {}

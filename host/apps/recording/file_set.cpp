@@ -57,15 +57,19 @@ bool is_there(const OpenFolder& folder, const fs::path& name) {
     return folder.kind_of(name) != EntryKind::absent;
 }
 
-/// Takes the lock of daemons if there is one and `lock` is of nothing yet. Not by a lock that a daemon would
-/// have to take of the folder itself: each user that may read it could keep the daemon from it.
-Status<AppError> keep_daemons_out(const OpenFolder& folder, FileLock& lock) {
-    if (lock.is_of_nothing()) {
-        auto taken = FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive);
-        if (!taken) return busy(folder);
-        lock = std::move(*taken);
-    }
+/// Takes the lock of daemons if there is one: none begins as long as it is held. Not by a lock that a daemon
+/// would have to take of the folder itself: each user that may read it could keep the daemon from it.
+Result<FileLock, AppError> keep_daemons_out(const OpenFolder& folder) {
+    auto taken = FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive);
+    if (!taken) return busy(folder);
     if (is_there(folder, kDaemonsSnapshot)) return of_a_daemon(folder);
+    return std::move(*taken);
+}
+
+/// Whether a daemon has the folder now. One may begin in it while the set is made.
+Status<AppError> look_for_daemon(const OpenFolder& folder) {
+    const auto none = keep_daemons_out(folder);
+    if (!none) return unexpected(none.error());
     return Done{};
 }
 
@@ -285,12 +289,12 @@ Result<bool, AppError> finish_interrupted(const OpenFolder& folder) {
 
 }  // namespace
 
-FileSet::FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, Locks locks)
+FileSet::FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, FileLock lock)
     : folder_(std::move(folder)),
       draft_(std::move(draft)),
       is_new_(is_new),
       unfinished_(std::move(unfinished)),
-      locks_(std::move(locks)) {}
+      lock_(std::move(lock)) {}
 
 FileSet::FileSet(FileSet&& other) noexcept
     : folder_(other.folder_),
@@ -298,7 +302,7 @@ FileSet::FileSet(FileSet&& other) noexcept
       is_new_(other.is_new_),
       is_open_(std::exchange(other.is_open_, false)),
       unfinished_(std::move(other.unfinished_)),
-      locks_(std::move(other.locks_)) {}
+      lock_(std::move(other.lock_)) {}
 
 FileSet::~FileSet() {
     if (!is_open_) return;
@@ -316,8 +320,7 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
     };
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
-    Locks locks{std::move(*lock), FileLock::of_nothing()};
-    if (const auto kept = keep_daemons_out(folder, locks.daemons); !kept) return unexpected(kept.error());
+    if (const auto free = look_for_daemon(folder); !free) return unexpected(free.error());
     if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
     Unfinished unfinished(folder, kDraftFolder, made->is_new);
     // What is there is of a process that was killed.
@@ -327,7 +330,7 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
         return give_up(cannot_write(created.error()));
     auto draft = folder.open_folder(kDraftFolder);
     if (!draft) return give_up(cannot_write(draft.error()));
-    return FileSet(folder, std::move(*draft), made->is_new, std::move(unfinished), std::move(locks));
+    return FileSet(folder, std::move(*draft), made->is_new, std::move(unfinished), std::move(*lock));
 }
 
 Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::vector<fs::path>& retired) {
@@ -336,8 +339,7 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     for (const auto& names : {files, retired}) {
         if (const auto checked = check_places(folder_, names); !checked) return checked;
     }
-    // One may have begun since.
-    if (const auto kept = keep_daemons_out(folder_, locks_.daemons); !kept) return kept;
+    if (const auto free = look_for_daemon(folder_); !free) return free;
     const Journal journal{retired, files};
     if (const auto written = write_journal(draft_, journal); !written) return written;
     for (const fs::path& file : files) {
@@ -345,6 +347,9 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     }
     if (const auto flushed = flush(draft_, kJournal); !flushed) return flushed;
     if (const auto flushed = flush(draft_); !flushed) return flushed;
+    // One may have begun since.
+    const auto daemons = keep_daemons_out(folder_);
+    if (!daemons) return unexpected(daemons.error());
     const auto whole = unfinished_.finish();
     if (const auto decided = move(folder_, kDraftFolder, kReady); !decided) return decided;
     is_open_ = false;
@@ -387,10 +392,10 @@ Result<bool, AppError> settle_file_set(const OpenFolder& folder) {
     if (!is_there(folder, kReady)) return false;
     const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
-    FileLock daemons = FileLock::of_nothing();
-    if (const auto kept = keep_daemons_out(folder, daemons); !kept) {
-        return fail(kept.error().code,
-                    kept.error().message +
+    const auto daemons = keep_daemons_out(folder);
+    if (!daemons) {
+        return fail(daemons.error().code,
+                    daemons.error().message +
                         "; the files of a run that was killed before the daemon began wait in " +
                         folder.shown(kReady).string() + ": remove them");
     }

@@ -59,18 +59,14 @@ class FileSet {
     static constexpr const char* kReadyFolder = ".octoskin-ready";
 
   private:
-    struct Locks {
-        FileLock folder;
-        FileLock daemons;
-    };
-    FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, Locks locks);
+    FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, FileLock lock);
 
     OpenFolder folder_;
     OpenFolder draft_;
     bool is_new_;
     bool is_open_ = true;
     Unfinished unfinished_;
-    Locks locks_;
+    FileLock lock_;  ///< of the folder
 };
 
 /// Whether a recording names a mesh of its world so: mesh_01.stl.

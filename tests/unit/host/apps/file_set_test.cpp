@@ -119,6 +119,20 @@ TEST(FileSetTest, of_a_folder_that_a_daemon_keeps_its_map_in_nothing_is_replaced
     EXPECT_EQ(told(scratch.path()), "fused.ot=the daemon's fused.snapshot= lock=");
 }
 
+TEST(FileSetTest, keeps_no_daemon_from_beginning_until_its_files_come) {
+    const ScratchFolder scratch;
+    write(scratch / kDaemonsLock, "");
+    auto set = FileSet::begin(scratch.path());
+    ASSERT_TRUE(set);
+    for (const fs::path& file : kFiles) write(set->draft().shown() / file, "new");
+    const int lock = ::open((scratch / kDaemonsLock).c_str(), O_RDONLY | O_CLOEXEC);
+    EXPECT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0) << "that of a daemon that begins meanwhile";
+    const auto refused = set->commit(kFiles, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+    ::close(lock);
+}
+
 TEST(FileSetTest, the_lock_goes_with_its_process) {
     const ScratchFolder folder;
     const pid_t child = ::fork();
