@@ -75,14 +75,10 @@ void Daemon::Parts::stop_recording() {
     }
 }
 
-/// From its end on there is room for what follows.
 int Daemon::Parts::run_loop() {
     try {
-        const int outcome = loop.run();
-        reserve = {};
-        return outcome;
+        return loop.run();
     } catch (const std::exception& error) {
-        reserve = {};
         return tell_why_it_ends(error);
     }
 }

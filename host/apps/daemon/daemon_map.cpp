@@ -88,6 +88,7 @@ void Daemon::Parts::save_map() {
 /// Why it could not be saved by `end`; empty: it is saved.
 std::string Daemon::Parts::save_last_map(HostTime end) {
     constexpr Nanoseconds kLookMax{500'000'000};
+    reserve = {};  // no sooner: the end of a recording would take it
     go_where_home_is(home->look_again(std::min(kLookMax, end - monotonic_now())));
     const auto too_long = [this](const char* what) {
         const auto silent = home->looking_since();
@@ -97,7 +98,13 @@ std::string Daemon::Parts::save_last_map(HostTime end) {
     };
     if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long for the save before");
     FusedMap last = pipeline.take_map();
-    const SnapshotOrigin origin = make_ready_to_save(last);
+    SnapshotOrigin origin;
+    try {
+        origin = make_ready_to_save(last);
+    } catch (const std::bad_alloc&) {  // how old it is is not known to the next daemon: all of it is stale
+        origin = {.mapping_crc32 = settings.recorded.mapping_crc32(),
+                  .placement_crc32 = settings.recorded.placement_crc32};
+    }
     keeper->save_last(std::move(last), origin);
     if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long");
     return keeper->record().error;
