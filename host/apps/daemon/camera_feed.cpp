@@ -171,6 +171,7 @@ void CameraFeed::note_repeated() {
     const std::lock_guard lock(mutex_);
     ++record_.frames;
     ++record_.repeated;
+    record_.repeats_often = images_.are_many();
     record_.newest_repeated = monotonic_now();
 }
 
@@ -179,6 +180,7 @@ void CameraFeed::put(DepthFrame frame) {
     const std::lock_guard lock(mutex_);
     if (is_ending_) return;
     ++record_.frames;
+    record_.repeats_often = images_.are_many();
     record_.newest = monotonic_now();
     waiting_.push_back(std::move(frame));
     if (waiting_.size() > kWaitingMax) {

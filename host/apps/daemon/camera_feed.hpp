@@ -23,7 +23,8 @@ struct CameraRecord {
     std::uint64_t frames = 0;        ///< that came
     std::uint64_t displaced = 0;     ///< newer ones came before these were taken
     std::uint64_t untimed = 0;       ///< whose time of capture could not be told: late, or the first ones
-    std::uint64_t repeated = 0;      ///< equal to the last ones bit by bit (RepeatedImages): not used
+    std::uint64_t repeated = 0;      ///< equal to earlier ones bit by bit (RepeatedImages): not used
+    bool repeats_often = false;      ///< of the newest images more than a third did
     std::uint64_t opened = 0;        ///< times
     double rate_hz = 0.0;            ///< of the mode that it was put into; 0: not told, as of a file
     HostTime begun;                  ///< looked for since then
@@ -43,10 +44,10 @@ class CameraFeed {
     /// `uri`: an OpenNI2 device, or the path of an .oni file that is played at its own speed, again and
     /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
     /// opened anew, and so is one whose frames all come late (openni2::CaptureClock::is_lost), and a device
-    /// that shows none but its last images, with values, for so long: a film may. In the next opening these
-    /// are repetitions from the first on. `helper`: the program that reads the camera, in place of
-    /// octoskin-camera. `mode`: what a device is put into, if it has such a mode. Throws std::system_error if
-    /// there is no thread or descriptor to be had.
+    /// that shows its last images, with values, for so long, and new ones at most now and then: a film may.
+    /// In the next opening these are repetitions from the first on. `helper`: the program that reads the
+    /// camera, in place of octoskin-camera. `mode`: what a device is put into, if it has such a mode. Throws
+    /// std::system_error if there is no thread or descriptor to be had.
     CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
                std::optional<std::filesystem::path> helper = {},
                std::optional<openni2::CameraMode> mode = {});

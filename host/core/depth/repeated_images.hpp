@@ -15,45 +15,94 @@
 namespace octoskin {
 
 /// The images of one camera in the order in which they come. Two images of a real camera are never equal bit
-/// by bit for long: they have noise. A driver that hangs may give the images of its ring of buffers by turns:
-/// so an image is known if it equals any of the last kKnownMax different ones.
+/// by bit for long: they have noise. A driver that hangs may give the images of its ring of buffers by turns,
+/// and now and then one that differs: so each of the last kKnownMax different images is known, with when it
+/// first came, and each of the last kKnownMax that were repetitions, whatever comes between.
 class RepeatedImages {
   public:
-    /// So many known images in a row may be chance, or of a device that gives each one twice.
+    /// So many images that were known may be chance, or of a device that gives each one twice.
     static constexpr unsigned kEqualMax = 5;
     static constexpr Nanoseconds kTimeMax{500'000'000};
-    static constexpr std::size_t kKnownMax = 8;
+    static constexpr std::size_t kKnownMax = 16;
 
-    /// True if this image is a repetition: it is one of more than kEqualMax known ones in a row, and the
-    /// image before that row was captured over kTimeMax ago. O(pixels); keeps checksums alone.
+    /// True if this image is a repetition: it is known, was first captured over kTimeMax ago, and with it
+    /// more than kEqualMax known ones came since. One without any value comes again and again from a lens
+    /// that is covered now and then: it is a repetition only as one of more than kEqualMax known ones in a
+    /// row, with the image before that row captured over kTimeMax ago. O(pixels); keeps checksums alone.
     bool take(const DepthFrame& frame) noexcept {
-        const std::uint64_t sum = checksum(frame.depth_mm);
-        has_value_ = std::ranges::any_of(frame.depth_mm, [](std::uint16_t mm) { return mm != 0; });
         newest_ = frame.captured;
-        const auto end = known_.begin() + static_cast<std::ptrdiff_t>(std::min(different_, kKnownMax));
-        const bool is_known = std::find(known_.begin(), end, sum) != end;
-        if (!is_known) {
-            known_[different_++ % kKnownMax] = sum;
-            since_ = newest_;
-            opening_since_ = newest_;
-            equal_ = 0;
-            return false;
+        has_value_ = std::ranges::any_of(frame.depth_mm, [](std::uint16_t mm) { return mm != 0; });
+        const std::uint64_t sum = checksum(frame.depth_mm);
+        const Image* const repeated = repeated_.find(sum);
+        const Image* const image = repeated != nullptr ? repeated : recent_.find(sum);
+        const bool is_new = image == nullptr;
+        if (is_new) {
+            row_ = {newest_, again_};
+            recent_.add({sum, row_});
+        } else {
+            ++again_;
         }
-        if (!opening_since_) opening_since_ = newest_;
-        ++equal_;
-        return equal_ > kEqualMax && newest_ - since_ > kTimeMax;
+        const Begin& begin = is_new || !has_value_ ? row_ : image->begin;
+        const bool is_repetition = newest_ - begin.at > kTimeMax && again_ - begin.again > kEqualMax;
+        if (is_repetition && has_value_ && repeated == nullptr) repeated_.add(*image);
+        weigh(is_new, is_repetition);
+        return is_repetition;
     }
     /// The camera is opened anew: what it showed before is known still, as one that hangs may go on with it.
     void begin_opening() noexcept { opening_since_.reset(); }
 
-    /// How long this opening has shown none but known images, up to the newest.
+    /// How long this opening has shown known images, with new ones among them at most now and then, up to
+    /// the newest, which is known; else 0.
     [[nodiscard]] Nanoseconds lasted() const noexcept {
-        return opening_since_ ? newest_ - *opening_since_ : Nanoseconds{0};
+        return opening_since_ && again_ > row_.again ? newest_ - *opening_since_ : Nanoseconds{0};
     }
+    /// Of the newest images more than a third are repetitions.
+    [[nodiscard]] bool are_many() const noexcept { return weight_ >= kMany; }
     /// The last image has a pixel with a value: what is in front of a covered lens has none.
     [[nodiscard]] bool has_value() const noexcept { return has_value_; }
 
   private:
+    static constexpr int kMany = 6;
+    static constexpr int kWeightMax = 12;
+    struct Begin {
+        HostTime at{0};
+        std::uint64_t again = 0;  ///< known images that had come by then
+    };
+    struct Image {
+        std::uint64_t sum = 0;
+        Begin begin;
+    };
+    /// kKnownMax images, the one that came last first.
+    class Images {
+      public:
+        /// Null if it is not there.
+        const Image* find(std::uint64_t sum) noexcept {
+            const auto end = images_.begin() + static_cast<std::ptrdiff_t>(count_);
+            const auto at =
+                std::find_if(images_.begin(), end, [&](const Image& one) { return one.sum == sum; });
+            if (at == end) return nullptr;
+            std::rotate(images_.begin(), at, at + 1);
+            return images_.data();
+        }
+        /// In place of the one that came least recently.
+        void add(const Image& image) noexcept {
+            std::shift_right(images_.begin(), images_.end(), 1);
+            images_.front() = image;
+            count_ = std::min(count_ + 1, kKnownMax);
+        }
+
+      private:
+        std::array<Image, kKnownMax> images_{};
+        std::size_t count_ = 0;
+    };
+
+    /// A repetition outweighs two new images: of those there are none while a camera hangs, or a few.
+    void weigh(bool is_new, bool is_repetition) noexcept {
+        if (!opening_since_ || (is_new && weight_ == 0)) opening_since_ = newest_;
+        if (is_repetition) weight_ = std::min(weight_ + 2, kWeightMax);
+        if (is_new) weight_ = std::max(weight_ - 1, 0);
+    }
+
     /// Of images that differ in one aligned group of four pixels it always differs; of others nearly so.
     static std::uint64_t checksum(std::span<const std::uint16_t> pixels) noexcept {
         constexpr std::size_t kAtOnce = sizeof(std::uint64_t) / sizeof(std::uint16_t);
@@ -69,11 +118,12 @@ class RepeatedImages {
         return sum;
     }
 
-    std::array<std::uint64_t, kKnownMax> known_{};  ///< the newest of them, in no order
-    std::size_t different_ = 0;                     ///< images that were not known
-    std::uint64_t equal_ = 0;                       ///< known ones in a row
-    HostTime since_{0};                             ///< the image before that row
-    std::optional<HostTime> opening_since_;         ///< that image, or the first of this opening
+    Images recent_;
+    Images repeated_;                        ///< those with a value
+    std::uint64_t again_ = 0;                ///< images that were known as they came
+    Begin row_;                              ///< of the row of known ones: the image before it
+    std::optional<HostTime> opening_since_;  ///< the last new image before those that repeat, or the first
+    int weight_ = 0;                         ///< of repetitions less that of new ones, 0 to kWeightMax
     HostTime newest_{0};
     bool has_value_ = false;
 };

@@ -133,7 +133,7 @@ class WallStream final : public oni::driver::StreamBase {
         }
         // Noise: a camera whose images are equal to the last bit hangs, also if it shows a few by turns.
         OniDepthPixel* const last = pixels + mode_.resolutionX * mode_.resolutionY - 1;
-        for (int bit = 0; bit < 4; ++bit) {
+        for (int bit = 0; bit < 16; ++bit) {
             if (last[-bit] > 0) last[-bit] = static_cast<OniDepthPixel>(last[-bit] + ((index >> bit) & 1));
         }
         raiseNewFrame(frame);

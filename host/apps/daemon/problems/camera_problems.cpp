@@ -38,20 +38,21 @@ std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz
     if (!camera.is_open) return Problem{"camera: " + camera.why, "camera: " + camera.why};
     const double true_rate_hz = camera.rate_hz > 0.0 ? camera.rate_hz : rate_hz;
     const Nanoseconds period{static_cast<std::int64_t>(1e9 / true_rate_hz)};
-    if (camera.newest && now - *camera.newest > 3 * period) {
-        if (camera.newest_untimed && now - *camera.newest_untimed <= 3 * period) {
-            return Problem{
-                "camera untimed",
-                "camera: frames come, none for three periods with a time that could be told: they come "
-                "late; is this machine too busy?"};
-        }
-        if (camera.newest_repeated && now - *camera.newest_repeated <= 3 * period) {
-            return Problem{"camera repeats",
-                           "camera: its images are equal to the last bit (repeated) and not used: it hangs, "
-                           "or its lens is covered"};
-        }
-        return Problem{"camera silent", "camera: no frame for three periods"};
+    const auto is_near = [&](const std::optional<HostTime>& at) { return at && now - *at <= 3 * period; };
+    const bool is_silent = camera.newest && !is_near(camera.newest);
+    if (is_silent && is_near(camera.newest_untimed)) {
+        return Problem{
+            "camera untimed",
+            "camera: frames come, none for three periods with a time that could be told: they come "
+            "late; is this machine too busy?"};
     }
+    if ((is_silent || camera.repeats_often) && is_near(camera.newest_repeated)) {
+        return Problem{
+            "camera repeats",
+            "camera: its images equal earlier ones to the last bit (repeated) and are not used: it "
+            "hangs, or its lens is covered"};
+    }
+    if (is_silent) return Problem{"camera silent", "camera: no frame for three periods"};
     return std::nullopt;
 }
 

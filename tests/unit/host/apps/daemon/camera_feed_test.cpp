@@ -188,6 +188,36 @@ TEST_F(CameraFeedTest, hands_over_nothing_of_a_camera_that_hangs_though_it_is_op
     EXPECT_EQ(taken.size() + feed.record().displaced, 6 + 1U);
 }
 
+// Each opening begins with an image of its own.
+TEST_F(CameraFeedTest, hands_over_but_the_first_image_of_each_opening_of_a_camera_that_hangs) {
+    const std::string times = (scratch_ / "times").string();
+    std::string script = "echo >> " + times + "\ncase $(wc -l < " + times + ") in\n";
+    for (int opening = 1; opening <= 2; ++opening) {
+        script +=
+            fmt::format("{})\n{}", opening, kHeader + frame_at(500 * opening, static_cast<char>(opening)));
+        for (int i = 1; i < 30; ++i) script += frame_at(500 * opening + 10 * i, 'a');
+        script += ";;\n";
+    }
+    script += std::string("*)\n") + kHeader + frame_at(2000, 'b') + ";;\nesac\nexec sleep 100";
+    CameraFeed feed("", 2s, camera(script));
+    std::vector<HostTime> taken;
+    ASSERT_TRUE(wait_until([&] {
+        while (const auto frame = feed.take()) taken.push_back(frame->captured);
+        return !taken.empty() && taken.back() == HostTime{20'000'000'000};
+    }));
+    EXPECT_EQ(feed.record().opened, 3U);
+    EXPECT_EQ(taken.size() + feed.record().displaced, 1 + 6 + 1 + 1U);
+    EXPECT_TRUE(feed.record().repeats_often);
+}
+
+TEST_F(CameraFeedTest, opens_a_camera_anew_that_repeats_an_image_though_one_in_ten_differs) {
+    std::string script = kHeader;
+    for (int i = 0; i < 40; ++i) script += frame_at(10 * i, static_cast<char>(i % 10 == 9 ? i : 'a'));
+    CameraFeed feed("", 2s, camera(script + "exec sleep 100"));
+    EXPECT_TRUE(wait_until([&] { return feed.record().opened > 1; }));
+    EXPECT_TRUE(feed.record().repeats_often);
+}
+
 TEST_F(CameraFeedTest, tells_the_helper_which_camera_and_which_mode) {
     const std::string told = (scratch_ / "told").string();
     const auto program = camera("echo \"$# $1 $2\" > " + told + ".new; mv " + told + ".new " + told);

@@ -72,6 +72,12 @@ TEST(CameraProblem, is_that_it_shows_one_image_again_and_again) {
     EXPECT_EQ(problem->about, "camera repeats");
     camera.newest = kBegun + 9 * kSecond;
     EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");
+    camera.repeats_often = true;
+    const auto still = camera_problem(camera, kRateHz, kBegun + 9 * kSecond + 3 * kPeriod);
+    ASSERT_TRUE(still) << "one that differs now and then ends nothing";
+    EXPECT_EQ(still->about, problem->about);
+    camera.newest = kBegun + 11 * kSecond;
+    EXPECT_EQ(told(camera, 11 * kSecond), "") << "none for long";
 }
 
 TEST(CameraProblem, is_that_it_fell_silent_and_nothing_while_it_is_well) {

@@ -33,8 +33,8 @@ TEST(RepeatedImages, are_none_while_a_single_value_changes) {
 }
 
 // A driver's ring of buffers.
-TEST(RepeatedImages, are_those_of_a_ring_of_up_to_eight_by_turns) {
-    for (const int ring : {2, 3, 4, 8}) {
+TEST(RepeatedImages, are_those_of_a_ring_of_up_to_sixteen_by_turns) {
+    for (const int ring : {2, 3, 4, 8, 16}) {
         RepeatedImages images;
         for (int i = 0; i < 100; ++i) {
             const auto mm = static_cast<std::uint16_t>(900 + i % ring);
@@ -76,6 +76,66 @@ TEST(RepeatedImages, go_on_where_a_camera_is_opened_anew_and_last_from_there) {
     EXPECT_EQ(images.lasted(), 1s);
     images.begin_opening();
     EXPECT_FALSE(images.take(frame(8s, 901))) << "it is well again";
+}
+
+// Each opening begins with an image of its own, as a sensor that starts gives noise.
+TEST(RepeatedImages, are_those_known_from_earlier_openings_whatever_comes_first_in_this_one) {
+    RepeatedImages images;
+    for (int i = 0; i <= 20; ++i) (void)images.take(frame(i * 100ms, 900));
+    int other = 900;
+    for (int opening = 1; opening <= 50; ++opening) {
+        images.begin_opening();
+        for (int i = 0; i < opening; ++i)
+            EXPECT_FALSE(images.take(frame(opening * 10s + i * 100ms, static_cast<std::uint16_t>(++other))));
+        for (int i = 0; i < 10; ++i)
+            EXPECT_TRUE(images.take(frame(opening * 10s + 5s + i * 100ms, 900))) << opening << ' ' << i;
+        EXPECT_GE(images.lasted(), 900ms) << opening;
+    }
+}
+
+TEST(RepeatedImages, are_those_of_a_ring_though_one_in_ten_differs) {
+    for (const int ring : {1, 2, 8}) {
+        RepeatedImages images;
+        int known_used = 0;
+        for (int i = 0; i < 1000; ++i) {
+            const bool is_new = i % 10 == 9;
+            const int mm = is_new ? 2000 + i : 900 + i % ring;
+            const bool is_repeated = images.take(frame(i * 33ms, static_cast<std::uint16_t>(mm)));
+            EXPECT_FALSE(is_new && is_repeated) << ring << ' ' << i;
+            if (!is_new && !is_repeated) ++known_used;
+            EXPECT_TRUE(i < 60 || images.are_many()) << ring << ' ' << i;
+        }
+        EXPECT_LE(known_used, 16) << ring << ": of 0.5 s";
+        EXPECT_EQ(images.lasted(), 0ms) << "the last one is new";
+        (void)images.take(frame(33s, 900));
+        EXPECT_GT(images.lasted(), 30s);
+    }
+}
+
+TEST(RepeatedImages, are_many_until_as_many_new_ones_came) {
+    RepeatedImages images;
+    for (int i = 0; i <= 30; ++i) (void)images.take(frame(i * 100ms, 900));
+    EXPECT_TRUE(images.are_many());
+    for (int i = 1; i <= 12; ++i)
+        EXPECT_FALSE(images.take(frame(3s + i * 100ms, static_cast<std::uint16_t>(900 + i))));
+    EXPECT_FALSE(images.are_many());
+}
+
+TEST(RepeatedImages, are_none_of_a_device_that_gives_each_one_twice) {
+    RepeatedImages images;
+    for (int i = 0; i < 300; ++i) {
+        EXPECT_FALSE(images.take(frame(i * 100ms, static_cast<std::uint16_t>(900 + i / 2)))) << i;
+        EXPECT_FALSE(images.are_many()) << i;
+        EXPECT_LE(images.lasted(), 100ms) << i;
+    }
+}
+
+TEST(RepeatedImages, are_none_where_one_in_thirty_equals_one_of_a_second_ago) {
+    RepeatedImages images;
+    for (int i = 0; i < 600; ++i) {
+        const auto mm = static_cast<std::uint16_t>(900 + i - (i % 30 == 29 ? 10 : 0));
+        EXPECT_FALSE(images.take(frame(i * 100ms, mm))) << i;
+    }
 }
 
 TEST(RepeatedImages, may_be_without_any_value) {
