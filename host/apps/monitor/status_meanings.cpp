@@ -283,10 +283,12 @@ constexpr std::array kStatusMeanings = {
     Meaning{"camera", "untimed",
             "frames whose time of capture could not be told: over 0.5 s late, or the first ones, until five "
             "agree on its clock, for 5 s at most"},
-    Meaning{
-        "camera", "repeated",
-        "frames that were not used, as each equals one to the last bit that came over 0.5 s before it, and "
-        "more than five have equalled earlier ones since: the camera hangs, or its lens is covered"},
+    Meaning{"camera", "repeated",
+            "frames that were not used, as each, or at least half of it, equals one to the last bit that "
+            "came over "
+            "0.5 s before it, and more than five have equalled earlier ones since: the camera hangs, or its "
+            "lens is "
+            "covered"},
     Meaning{
         "camera", "opened",
         "how often it was opened; over once: it was gone, fell silent, showed one image again and again, or "

@@ -17,7 +17,8 @@ namespace octoskin {
 /// The images of one camera in the order in which they come. Two images of a real camera are never equal bit
 /// by bit for long: they have noise. A driver that hangs may give the images of its ring of buffers by turns,
 /// and now and then one that differs: so each of the last kKnownMax different images is known, with when it
-/// first came, and each of the last kKnownMax that were repetitions, whatever comes between.
+/// first came, and each of the last kKnownMax that were repetitions, whatever comes between. One that differs
+/// in a few places, or is torn, is known, too: in a real one noise is everywhere.
 class RepeatedImages {
   public:
     /// So many images that were known may be chance, or of a device that gives each one twice.
@@ -32,13 +33,13 @@ class RepeatedImages {
     bool take(const DepthFrame& frame) noexcept {
         newest_ = frame.captured;
         has_value_ = std::ranges::any_of(frame.depth_mm, [](std::uint16_t mm) { return mm != 0; });
-        const std::uint64_t sum = checksum(frame.depth_mm);
-        const Image* const repeated = repeated_.find(sum);
-        const Image* const image = repeated != nullptr ? repeated : recent_.find(sum);
+        const Print print = print_of(frame.depth_mm);
+        const Image* const repeated = repeated_.find(print);
+        const Image* const image = repeated != nullptr ? repeated : recent_.find(print);
         const bool is_new = image == nullptr;
         if (is_new) {
             row_ = {newest_, again_};
-            recent_.add({sum, row_});
+            recent_.add({print, row_});
         } else {
             ++again_;
         }
@@ -62,24 +63,33 @@ class RepeatedImages {
     [[nodiscard]] bool has_value() const noexcept { return has_value_; }
 
   private:
+    static constexpr std::size_t kAtOnce = sizeof(std::uint64_t) / sizeof(std::uint16_t);
+    static constexpr std::size_t kParts = 16;
+    static constexpr std::size_t kRoughPartsMin = 4;
+    static constexpr unsigned kRoughMin = 64;  ///< noise hardly leaves so many as they were
     static constexpr int kMany = 6;
     static constexpr int kWeightMax = 12;
     struct Begin {
         HostTime at{0};
         std::uint64_t again = 0;  ///< known images that had come by then
     };
+    /// What is kept of an image: of each of its parts a checksum, and whether it is rough.
+    struct Print {
+        std::array<std::uint64_t, kParts> sums{};
+        std::array<bool, kParts> is_rough{};
+    };
     struct Image {
-        std::uint64_t sum = 0;
+        Print print;
         Begin begin;
     };
     /// kKnownMax images, the one that came last first.
     class Images {
       public:
         /// Null if it is not there.
-        const Image* find(std::uint64_t sum) noexcept {
+        const Image* find(const Print& print) noexcept {
             const auto end = images_.begin() + static_cast<std::ptrdiff_t>(count_);
-            const auto at =
-                std::find_if(images_.begin(), end, [&](const Image& one) { return one.sum == sum; });
+            const auto at = std::find_if(images_.begin(), end,
+                                         [&](const Image& one) { return are_one(one.print, print); });
             if (at == end) return nullptr;
             std::rotate(images_.begin(), at, at + 1);
             return images_.data();
@@ -103,9 +113,45 @@ class RepeatedImages {
         if (is_new) weight_ = std::max(weight_ - 1, 0);
     }
 
-    /// Of images that differ in one aligned group of four pixels it always differs; of others nearly so.
+    /// To the last bit, or in at least half of the parts that are rough in one of them.
+    static bool are_one(const Print& a, const Print& b) noexcept {
+        std::size_t equal = 0;
+        std::size_t rough = 0;
+        std::size_t rough_equal = 0;
+        for (std::size_t part = 0; part < kParts; ++part) {
+            const bool is_equal = a.sums[part] == b.sums[part];
+            const bool is_rough = a.is_rough[part] || b.is_rough[part];
+            equal += is_equal ? 1 : 0;
+            rough += is_rough ? 1 : 0;
+            rough_equal += is_rough && is_equal ? 1 : 0;
+        }
+        return equal == kParts || (rough >= kRoughPartsMin && 2 * rough_equal >= rough);
+    }
+    static Print print_of(std::span<const std::uint16_t> pixels) noexcept {
+        Print print;
+        const std::size_t size = (pixels.size() / kParts + kAtOnce) / kAtOnce * kAtOnce;  // of a part
+        for (std::size_t part = 0; part < kParts; ++part) {
+            const auto some = pixels.first(std::min(size, pixels.size()));
+            print.sums[part] = checksum(some);
+            print.is_rough[part] = is_rough(some);
+            pixels = pixels.subspan(some.size());
+        }
+        return print;
+    }
+    /// kRoughMin pixels differ from the one before; neither lacks a value. So what a camera may fill in for
+    /// no return, and a wall without noise, is not rough.
+    static bool is_rough(std::span<const std::uint16_t> pixels) noexcept {
+        unsigned changes = 0;
+        for (std::size_t i = 1; i < pixels.size(); ++i) {
+            const unsigned before = pixels[i - 1];
+            const unsigned here = pixels[i];
+            changes += static_cast<unsigned>(before != here) & static_cast<unsigned>(before != 0) &
+                       static_cast<unsigned>(here != 0);
+        }
+        return changes >= kRoughMin;
+    }
+    /// Of parts that differ in one aligned group of kAtOnce pixels it always differs; of others nearly so.
     static std::uint64_t checksum(std::span<const std::uint16_t> pixels) noexcept {
-        constexpr std::size_t kAtOnce = sizeof(std::uint64_t) / sizeof(std::uint16_t);
         std::uint64_t sum = pixels.size();
         while (!pixels.empty()) {
             const auto some = pixels.first(std::min(kAtOnce, pixels.size()));

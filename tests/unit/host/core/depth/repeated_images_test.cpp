@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <random>
+#include <utility>
 #include <vector>
 
 namespace octoskin {
@@ -135,6 +138,56 @@ TEST(RepeatedImages, are_none_where_one_in_thirty_equals_one_of_a_second_ago) {
     for (int i = 0; i < 600; ++i) {
         const auto mm = static_cast<std::uint16_t>(900 + i - (i % 30 == 29 ? 10 : 0));
         EXPECT_FALSE(images.take(frame(i * 100ms, mm))) << i;
+    }
+}
+
+// A scene with noise in one pixel of ten: of 64 x 64 pixels.
+class Noisy {
+  public:
+    static constexpr std::size_t kPixels = std::size_t{64} * 64;
+    std::vector<std::uint16_t> next() {
+        std::vector<std::uint16_t> pixels(kPixels);
+        for (std::size_t i = 0; i < kPixels; ++i)
+            pixels[i] = static_cast<std::uint16_t>(900 + i % 64 + (random_() % 10 == 0 ? 1 : 0));
+        return pixels;
+    }
+
+  private:
+    std::mt19937 random_{7};
+};
+
+bool is_repeated(RepeatedImages& images, Nanoseconds captured, std::vector<std::uint16_t> pixels) {
+    return images.take({HostTime{captured.count()}, 64, 64, std::move(pixels)});
+}
+
+TEST(RepeatedImages, are_those_of_which_some_pixels_or_half_of_them_differ) {
+    Noisy noisy;
+    const auto hung = noisy.next();
+    RepeatedImages images;
+    for (int i = 0; i <= 20; ++i) (void)is_repeated(images, i * 100ms, hung);
+    images.begin_opening();
+    for (std::size_t i = 0; i < 100; ++i) {
+        auto spotted = hung;
+        for (std::size_t k = 0; k < 4; ++k)
+            spotted[(i * 40 + k) % spotted.size()] = static_cast<std::uint16_t>(i);
+        EXPECT_TRUE(is_repeated(images, 5s + i * 100ms, spotted)) << i;
+    }
+    auto torn = noisy.next();
+    std::copy_n(hung.begin(), hung.size() / 2 + 64, torn.begin());
+    EXPECT_TRUE(is_repeated(images, 20s, torn));
+    std::fill(torn.begin() + static_cast<std::ptrdiff_t>(hung.size() / 2 + 64), torn.end(), std::uint16_t{0});
+    EXPECT_TRUE(is_repeated(images, 21s, torn));
+    EXPECT_FALSE(is_repeated(images, 22s, noisy.next())) << "it is well again";
+}
+
+TEST(RepeatedImages, are_none_of_a_scene_with_noise_whatever_does_not_change) {
+    Noisy noisy;
+    RepeatedImages images;
+    for (int i = 0; i < 300; ++i) {
+        auto pixels = noisy.next();  // a sky, filled in, over three quarters, and what gives no return
+        std::fill_n(pixels.begin(), Noisy::kPixels / 2, std::uint16_t{10'000});
+        std::fill_n(pixels.begin() + Noisy::kPixels / 2, Noisy::kPixels / 4, std::uint16_t{0});
+        EXPECT_FALSE(is_repeated(images, i * 100ms, std::move(pixels))) << i;
     }
 }
 
