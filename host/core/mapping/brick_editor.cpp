@@ -123,14 +123,29 @@ bool BrickEditor::is_seen_by_camera(std::uint16_t stamp) const noexcept {
 }
 
 void BrickEditor::date_all() {
-    layers_.log_odds.for_each([&](MortonCode brick, const BrickView&) {
-        if (!layers_.ages.find(brick).is_unknown()) return;  // an earlier second came so far
-        if (has_room_to_date(brick)) {
-            layers_.ages.take_from_before(brick);
+    const auto date = [&](MortonCode brick) {
+        if (!layers_.ages.find(brick).is_unknown() || has_room_to_date(brick)) {
+            layers_.ages.take_from_before(brick, measured_in(brick));
         } else {
             counters_.undated += kBrickVoxels;
         }
+    };
+    layers_.log_odds.for_each([&](MortonCode brick, const BrickView&) { date(brick); });
+    if (config_.age.unknown_after_s == 0) return;  // what is counted alone has a time to expire by
+    layers_.counts.hits.for_each([&](MortonCode brick, const BrickView&) {
+        if (layers_.log_odds.find(brick).is_unknown()) date(brick);
     });
+}
+
+BrickMask BrickEditor::measured_in(MortonCode brick) const noexcept {
+    const BrickView log_odds = layers_.log_odds.find(brick);
+    BrickMask measured = log_odds.is_unknown() ? BrickMask{} : known_in(log_odds);
+    if (!has_counts(brick)) return measured;
+    const BrickView hits = layers_.counts.hits.find(brick);
+    const BrickView misses = layers_.counts.misses.find(brick);
+    for (std::size_t cell = 0; cell < kBrickVoxels; ++cell)
+        if (hits.at(cell) > 0.0F || misses.at(cell) > 0.0F) put_in(measured, cell);
+    return measured;
 }
 
 void BrickEditor::expire() {

@@ -66,7 +66,8 @@ class BrickEditor {
     /// In this second or the one before, by its stamp.
     [[nodiscard]] bool is_seen_by_camera(std::uint16_t stamp) const noexcept;
 
-    /// What was there when the clock begins has no time of its own. Throws std::bad_alloc.
+    /// What is known or, if that can expire, counted and has no time: it was there when the clock began, for
+    /// all that is known. Throws std::bad_alloc.
     void date_all();
     /// Makes unknown what was last seen before AgeModel::unknown_after_s. Throws std::bad_alloc: what is left
     /// then is found the next time.
@@ -87,6 +88,8 @@ class BrickEditor {
     [[nodiscard]] bool has_room_to_count(MortonCode brick) const noexcept;
     [[nodiscard]] bool has_room_to_date(MortonCode brick) const noexcept;
     void fuse(MortonCode brick);
+    /// Voxels that are known, or counted.
+    [[nodiscard]] BrickMask measured_in(MortonCode brick) const noexcept;
     void expire_log_odds(MortonCode brick, const BrickMask& voxels);
 
     MapLayers& layers_;

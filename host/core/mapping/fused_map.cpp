@@ -60,6 +60,11 @@ void FusedMap::date_and_expire() {
     if (config_.age.unknown_after_s > 0) editor.expire();
 }
 
+void FusedMap::begin_to_wait() noexcept {
+    layers_.ages.begin_to_wait();
+    has_undated_ = true;  // it may be of a configuration by which nothing expired
+}
+
 void FusedMap::forget_times() noexcept {
     layers_.ages = {};
 }
@@ -74,6 +79,8 @@ void FusedMap::limit(const MapConfig& config) {
     next.config_ = config;
     next.rules_ = VoxelRules(config);
     next.counters_ = {};
+    // Counts alone have no times where nothing expires.
+    next.has_undated_ = has_undated_ || (config_.age.unknown_after_s == 0 && config.age.unknown_after_s > 0);
     BrickEditor editor = next.editor();
     if (clamps_change) editor.clamp_all();
     if (rules_change) editor.fuse_all();

@@ -60,8 +60,9 @@ class FusedMap {
     /// nothing has become older.
     void leap(Nanoseconds by) noexcept { layers_.ages.leap(by); }
     /// A map that was saved, or that is of before the machine slept: what comes next has times of another
-    /// scale, and until then `wait` says what has passed. O(1).
-    void begin_to_wait() noexcept { layers_.ages.begin_to_wait(); }
+    /// scale, and until then `wait` says what has passed. What has no time is
+    /// dated when time goes on. O(1).
+    void begin_to_wait() noexcept;
     /// So many seconds have passed since `begin_to_wait`, in all: every age grows by what was not added yet,
     /// and what is too old expires. True if ages grew; false if the map does not wait, and if there is no
     /// memory for that: a later call adds it. Costs as `go_on`.
@@ -70,9 +71,10 @@ class FusedMap {
     /// begins anew, and stale until a sensor sees it. O(stamps).
     void forget_times() noexcept;
     /// From now on other limits hold, at the same resolution (asserted): what lies beyond new clamps is
-    /// clamped; bricks beyond a smaller memory stay. The counters begin anew. O(voxels) if the clamps change.
-    /// Throws std::bad_alloc if there is no memory for as many voxels once more, if the clamps or the counts'
-    /// model change; then nothing is changed.
+    /// clamped; bricks beyond a smaller memory stay. Where voxels are to expire from now on, counts that have
+    /// no time are as of before the map's time. The counters begin anew. O(voxels) if the
+    /// clamps change. Throws std::bad_alloc if there is no memory for as many voxels once more, if the clamps
+    /// or the counts' model change; then nothing is changed.
     void limit(const MapConfig& config);
     /// What range sensors counted in the voxels of `terms` is forgotten. Throws std::bad_alloc.
     void forget_counts_of(const Evidence& terms);

@@ -130,8 +130,16 @@ std::uint16_t VoxelAges::oldest_in(MortonCode brick) const noexcept {
     return oldest_of(stamps_.find(brick));
 }
 
-void VoxelAges::take_from_before(MortonCode brick) {
-    stamp_first(brick, kOfBefore, [&] { stamps_.set_all(brick, kOfBefore); });
+void VoxelAges::take_from_before(MortonCode brick, const BrickMask& voxels) {
+    const StampView before = stamps_.find(brick);
+    if (before.is_unknown()) return stamp_first(brick, kOfBefore, [&] { stamps_.set_all(brick, kOfBefore); });
+    if (before.values == nullptr) return;
+    BrickMask undated{};
+    for (std::size_t word = 0; word < voxels.size(); ++word)
+        undated[word] = voxels[word] & stamps_below(*before.values, word, 1);
+    if (undated == BrickMask{}) return;
+    put_stamp(stamps_.open(brick), undated, kOfBefore);
+    agenda_ = ExpiryAgenda();  // it has the brick with a later stamp: the next look begins anew
 }
 
 std::optional<Confirmation> VoxelAges::confirmation_of(std::uint16_t stamp) const noexcept {

@@ -91,9 +91,9 @@ class VoxelAges {
     /// Bricks whose stamps have a place each, for a caller that gives them `stamp(kind)` itself; until a
     /// brick is confirmed otherwise.
     [[nodiscard]] StampTree::OwnBricks own_bricks() noexcept { return StampTree::OwnBricks(stamps_); }
-    /// All of a brick, which has no stamps yet, was there when the clock began. Throws std::bad_alloc, and
-    /// then nothing is changed.
-    void take_from_before(MortonCode brick);
+    /// These voxels of a brick were there when the clock began, if they have no stamp: all of the brick if it
+    /// has none, which takes less. Throws std::bad_alloc, and then nothing is changed.
+    void take_from_before(MortonCode brick, const BrickMask& voxels);
     /// Makes some voxels of a brick unconfirmed. Throws std::bad_alloc, and then nothing is changed.
     void forget(MortonCode brick, const BrickMask& voxels);
 

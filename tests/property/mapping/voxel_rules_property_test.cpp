@@ -22,6 +22,7 @@ struct DatedVoxel {
     std::int64_t seen_s = 0;
     SensorKind seen_by = SensorKind::none;
     bool is_seen = false;
+    bool is_time_known = false;  ///< else it was seen at `seen_s` or before, and by what is not known
 };
 
 /// The rules, voxel by voxel, with nothing of the map's ways of storing.
@@ -36,6 +37,11 @@ class VoxelByVoxel {
             const DatedVoxel& voxel = entry.second;
             return voxel.is_seen && now_s_ - voxel.seen_s >= std::int64_t{config_.age.unknown_after_s};
         });
+    }
+
+    /// When anything was seen is not known any more: it is as old as this.
+    void forget_times() {
+        for (auto& [code, voxel] : voxels_) voxel = {voxel.state, now_s_, SensorKind::none, true, false};
     }
 
     void apply(const Evidence& evidence, const std::function<bool(VoxelKey)>& spares) {
@@ -85,6 +91,7 @@ class VoxelByVoxel {
         voxel.seen_s = now_s_;
         voxel.seen_by = sensor;
         voxel.is_seen = true;
+        voxel.is_time_known = true;
     }
     void add(DatedVoxel& voxel, float term, SensorKind sensor) const {
         if (!std::isfinite(term) || term == 0.0F) return;
@@ -238,7 +245,7 @@ void expect_equal(const FusedMap& map, const VoxelByVoxel& expected) {
             ASSERT_EQ(voxel.state.hits + voxel.state.misses, 0.0F) << code;
         }
         const auto confirmation = map.confirmation(key);
-        const bool is_dated = voxel.is_seen && !std::isnan(voxel.state.log_odds);
+        const bool is_dated = voxel.is_time_known && !std::isnan(voxel.state.log_odds);
         ASSERT_EQ(confirmation.has_value(), is_dated) << code;
         if (!is_dated) continue;
         ASSERT_EQ(confirmation->kind, voxel.seen_by) << code;
@@ -267,6 +274,11 @@ TEST_P(VoxelRulesProperty, are_what_the_map_does_to_every_voxel) {
             now_s += random.below(3) == 0 ? 1 : 0;
             map.go_on(HostTime{now_s * 1'000'000'000});
             expected.go_on(now_s);
+            if (random.below(20) == 0) {
+                map.forget_times();
+                map.go_on(HostTime{now_s * 1'000'000'000});
+                expected.forget_times();
+            }
             const Evidence evidence = random.next(GetParam().withdraws);
             map.apply(evidence, {.spares = &spares});
             expected.apply(evidence, spares);

@@ -363,6 +363,82 @@ TEST(DatedMap, without_its_times_has_all_voxels_stale_and_forgets_them_as_it_wou
     EXPECT_EQ(map.known_voxels(), 0U);
 }
 
+/// A hit that may be of any of a hundred voxels marks none of them.
+ConeVoxels hit_of_nothing_known() {
+    ConeVoxels cone;
+    for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(x), 1.0F});
+    return cone;
+}
+
+TEST(DatedMap, without_its_times_forgets_counts_of_what_is_unknown) {
+    FusedMap map(aging(0, 5));
+    map.go_on(at_s(100));
+    feed(map, hit_of_nothing_known(), {});
+    map.forget_times();
+    map.go_on(at_s(0));
+    map.go_on(at_s(4));
+    EXPECT_FALSE(map.layers().counts.empty());
+    map.go_on(at_s(5));
+    EXPECT_TRUE(map.layers().counts.empty());
+    EXPECT_EQ(map.heap_bytes(), 0U);
+}
+
+/// With counts alone in some bricks, and one in which a voxel became known later.
+FusedMap map_that_keeps_all() {
+    FusedMap map(aging(0, 0));
+    map.go_on(at_s(0));
+    feed(map, hit_of_nothing_known(), {});
+    feed(map, one(key_at(0, 1), -0.4F));
+    return map;
+}
+
+TEST(DatedMap, forgets_counts_of_before_voxels_were_to_expire) {
+    FusedMap map = map_that_keeps_all();
+    map.limit(aging(0, 5));
+    map.go_on(at_s(4));
+    feed(map, one(key_at(0, 1), -0.4F));
+    EXPECT_EQ(map.layers().counts.hits.bricks(), 13U);
+    map.go_on(at_s(5));
+    EXPECT_EQ(map.layers().counts.hits.bricks(), 1U) << "it has the prior of the voxel that is known";
+    EXPECT_EQ(map.layers().counts.hits.find(brick_of(key_at(1))).at(cell_of(key_at(1))), 0.0F);
+    EXPECT_EQ(map.confirmation(key_at(0, 1)), by(SensorKind::range, 1));
+    map.go_on(at_s(9));
+    EXPECT_TRUE(map.layers().counts.empty());
+    EXPECT_EQ(map.heap_bytes(), 0U);
+}
+
+TEST(DatedMap, forgets_counts_that_were_saved_where_nothing_expired) {
+    const FusedMap saved = map_that_keeps_all();
+    FusedMap map(aging(0, 5), saved.layers(), saved.has_undated());
+    map.begin_to_wait();
+    EXPECT_TRUE(map.wait(5));
+    EXPECT_TRUE(map.layers().counts.empty());
+    EXPECT_EQ(map.known_voxels(), 0U);
+}
+
+TEST(VoxelAges, look_at_all_that_was_there_before_though_other_voxels_of_its_brick_are_confirmed) {
+    constexpr MortonCode kBricks = 300;
+    VoxelAges ages;
+    (void)ages.go_on(at_s(0));
+    BrickMask confirmed{};
+    put_in(confirmed, 7);
+    for (MortonCode i = 0; i < kBricks; ++i) ages.confirm(i * kBrickVoxels, confirmed, SensorKind::range);
+    const auto looked_at = [&] {
+        std::size_t found = 0;
+        ages.look_at_due(1, VoxelAges::kOfBefore + 1, [&](MortonCode brick) {
+            found += ages.find(brick).at(8) == VoxelAges::kOfBefore ? 1U : 0U;
+        });
+        return found;
+    };
+    EXPECT_EQ(looked_at(), 0U);
+    BrickMask there = confirmed;
+    put_in(there, 8);
+    for (MortonCode i = 0; i < kBricks; ++i) ages.take_from_before(i * kBrickVoxels, there);
+    EXPECT_EQ(ages.find(0).at(7), ages.stamp(SensorKind::range));
+    EXPECT_EQ(ages.find(0).at(9), 0U);
+    EXPECT_GE(looked_at(), kBricks);
+}
+
 // Oracle: a std::map of times and kinds, the same terms without a clock for the log-odds.
 TEST(DatedMap, equals_a_time_and_a_kind_kept_for_each_voxel) {
     struct Dated {
