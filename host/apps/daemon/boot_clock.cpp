@@ -121,18 +121,32 @@ std::optional<std::int64_t> seconds_between(const std::optional<BootTime>& then,
 }
 
 std::optional<std::int64_t> MapTime::begin_with(FusedMap& map, const std::optional<BootTime>& saved) {
-    saved_ = saved;
-    map_time_ = saved;
-    looked_ = clock_();
-    const auto passed_s = seconds_between(saved_, looked_);
+    const std::optional<BootTime> now = clock_();
+    const auto passed_s = seconds_between(saved, now);
     if (passed_s) {
         map.begin_to_wait();
-        if (map.wait(*passed_s)) map_time_ = looked_;
+        const bool is_older = map.wait(*passed_s);
+        begin(map, saved, now);
+        if (is_older) map_time_ = now;
     } else {
         map.forget_times();
+        begin(map, now, now);
     }
-    seen_ = map.layers().ages.clock();
     return passed_s;
+}
+
+void MapTime::forget(Pipeline& pipeline) {
+    pipeline.forget_times();
+    const std::optional<BootTime> now = clock_();
+    begin(pipeline.map(), now, now);
+}
+
+void MapTime::begin(const FusedMap& map, const std::optional<BootTime>& since,
+                    const std::optional<BootTime>& now) {
+    saved_ = since;
+    map_time_ = since;
+    looked_ = now;
+    seen_ = map.layers().ages.clock();
 }
 
 Nanoseconds MapTime::attend(Pipeline& pipeline, HostTime bus) {

@@ -68,8 +68,10 @@ class MapTime {
 
     /// `map` goes on, whose time was what it is then; empty: that is not known. It grows older by as many
     /// seconds as have passed since then, which is the answer, and waits; if that is not known, all of it is
-    /// stale, and the answer empty.
+    /// stale, its time begins now, and the answer is empty.
     std::optional<std::int64_t> begin_with(FusedMap& map, const std::optional<BootTime>& saved);
+    /// The same of a pipeline's map, whose times hold no more: all of it is stale, and its time begins now.
+    void forget(Pipeline& pipeline);
     /// To be called every now and then. The pipeline's map grows older by what passes while it waits for its
     /// first measurement: of the program, or after the machine slept, which is noticed here: the map then
     /// waits as it does when the program begins, and the answer is how long it slept. Else the answer is 0.
@@ -90,6 +92,8 @@ class MapTime {
     [[nodiscard]] std::optional<BootTime> go_on(FusedMap& copy, HostTime bus) const;
 
   private:
+    /// `map` waits since then.
+    void begin(const FusedMap& map, const std::optional<BootTime>& since, const std::optional<BootTime>& now);
     void go_on_after_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds slept);
 
     Clock clock_;

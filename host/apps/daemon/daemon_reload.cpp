@@ -68,7 +68,7 @@ bool Daemon::Parts::go_on_with(Next& next) {
     recordings.stop(monotonic_now(), "the daemon read its files anew (SIGHUP)", std::move(recorded));
     inputs.prepare_for(next.settings.host.rig);
     const std::uint64_t dropped = settle_pipeline();
-    if (!is_placed_as(next.settings.recorded.placement_crc32)) pipeline.forget_times();
+    if (!is_placed_as(next.settings.recorded.placement_crc32)) map_time.forget(pipeline);
     next.pipeline.go_on_from(pipeline);
     settings = std::move(next.settings);
     pipeline = std::move(next.pipeline);

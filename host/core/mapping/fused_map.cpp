@@ -67,6 +67,7 @@ void FusedMap::begin_to_wait() noexcept {
 
 void FusedMap::forget_times() noexcept {
     layers_.ages = {};
+    begin_to_wait();
 }
 
 void FusedMap::limit(const MapConfig& config) {

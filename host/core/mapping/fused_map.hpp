@@ -60,15 +60,15 @@ class FusedMap {
     /// nothing has become older.
     void leap(Nanoseconds by) noexcept { layers_.ages.leap(by); }
     /// A map that was saved, or that is of before the machine slept: what comes next has times of another
-    /// scale, and until then `wait` says what has passed. What has no time is
-    /// dated when time goes on. O(1).
+    /// scale, and until then `wait` says what has passed. The time of a map without one begins
+    /// with that, and what has no time is dated when time goes on. O(1).
     void begin_to_wait() noexcept;
     /// So many seconds have passed since `begin_to_wait`, in all: every age grows by what was not added yet,
     /// and what is too old expires. True if ages grew; false if the map does not wait, and if there is no
     /// memory for that: a later call adds it. Costs as `go_on`.
     bool wait(std::int64_t seconds) noexcept;
     /// How long ago anything was seen is not known any more: everything is as of before the map's time, which
-    /// begins anew, and stale until a sensor sees it. O(stamps).
+    /// begins anew and waits as with `begin_to_wait`, and stale until a sensor sees it. O(stamps).
     void forget_times() noexcept;
     /// From now on other limits hold, at the same resolution (asserted): what lies beyond new clamps is
     /// clamped; bricks beyond a smaller memory stay. Where voxels are to expire from now on, counts that have

@@ -64,8 +64,9 @@ class VoxelAges {
     /// seconds.
     void leap(Nanoseconds by) noexcept;
     /// Of a map that was saved: the time that comes next begins a scale of its own, and ages go on from what
-    /// they were and from what `wait` adds to them.
+    /// they were and from what `wait` adds to them. A clock that has not begun begins with that.
     void begin_to_wait() noexcept {
+        if (!clock_.has_begun) clock_ = {.has_begun = true, .now = kAgeMax_s};
         clock_.waits = true;
         clock_.waited_s = 0;
     }

@@ -34,8 +34,8 @@ HostTime bus(Nanoseconds time) {
 }
 
 /// Of a voxel that was seen at the bus's time `seen`.
-FusedMap map_seen_at(Nanoseconds seen) {
-    FusedMap map(MapConfig{});
+FusedMap map_seen_at(Nanoseconds seen, const AgeModel& age = MapConfig{}.age) {
+    FusedMap map(MapConfig{.age = age});
     map.go_on(bus(seen));
     feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 1.0F}});
     return map;
@@ -330,16 +330,45 @@ TEST_F(SleepingMachine, goes_on_with_its_measurements_when_it_wakes) {
     EXPECT_LT(youngest_s(), 600U) << "seen again";
 }
 
-TEST(MapTime, has_a_map_of_another_boot_stale) {
-    MapTime time([] { return std::optional(at(200s, 2)); });
+TEST(MapTime, has_a_map_of_another_boot_stale_and_then_unknown_though_nothing_is_measured) {
     for (const auto& saved : {std::optional(at(190s, 1)), std::optional<BootTime>()}) {
-        FusedMap map = map_seen_at(1000s);
+        BootTime now = at(200s, 2);
+        MapTime time([&now] { return std::optional(now); });
+        FusedMap map = map_seen_at(1000s, {.stale_after_s = 10, .unknown_after_s = 60});
         EXPECT_FALSE(time.begin_with(map, saved));
-        map.go_on(bus(1001s));
-        EXPECT_EQ(map.known_voxels(), 1U);
-        EXPECT_FALSE(age_s(map));
-        EXPECT_TRUE(map.is_stale({32768, 32768, 32768}) || MapConfig{}.age.stale_after_s == 0);
+        EXPECT_EQ(time.map_time(), now) << "what a save would say";
+        for (const Nanoseconds later : {0s, 59s}) {
+            now = at(200s + later, 2);
+            (void)map.wait(*time.since_saved());
+            EXPECT_EQ(map.known_voxels(), 1U);
+            EXPECT_FALSE(age_s(map));
+            EXPECT_TRUE(map.is_stale({32768, 32768, 32768}));
+        }
+        time.note(map, {});
+        FusedMap next = map.copy();
+        now = at(260s, 2);
+        EXPECT_TRUE(map.wait(*time.since_saved()));
+        EXPECT_EQ(map.known_voxels(), 0U);
+        EXPECT_TRUE(time.begin_with(next, time.map_time())) << "the daemon begins anew meanwhile";
+        EXPECT_EQ(next.known_voxels(), 0U);
     }
+}
+
+TEST_F(SleepingMachine, has_its_map_unknown_so_long_after_its_times_hold_no_more) {
+    MapConfig config = scene_.mapping.map;
+    config.age = {.stale_after_s = 10, .unknown_after_s = 60};
+    pipeline_.limit_map(config);
+    boottime_ += 30s;
+    EXPECT_EQ(time_.attend(pipeline_, bus_), 30s) << "from when it is older already";
+    ASSERT_LT(youngest_s(), VoxelAges::kAgeMax_s);
+    time_.forget(pipeline_);
+    EXPECT_EQ(youngest_s(), VoxelAges::kAgeMax_s);
+    pass(59s);
+    (void)time_.attend(pipeline_, bus_);
+    EXPECT_GT(pipeline_.map().known_voxels(), 0U);
+    pass(1s);
+    (void)time_.attend(pipeline_, bus_);
+    EXPECT_EQ(pipeline_.map().known_voxels(), 0U);
 }
 
 }  // namespace

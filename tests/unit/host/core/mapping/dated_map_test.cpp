@@ -370,17 +370,31 @@ ConeVoxels hit_of_nothing_known() {
     return cone;
 }
 
-TEST(DatedMap, without_its_times_forgets_counts_of_what_is_unknown) {
-    FusedMap map(aging(0, 5));
+TEST(DatedMap, without_its_times_forgets_counts_of_what_is_unknown_measured_or_not) {
+    for (const bool is_measured : {false, true}) {
+        FusedMap map(aging(0, 5));
+        map.go_on(at_s(100));
+        feed(map, hit_of_nothing_known(), {});
+        map.forget_times();
+        const auto pass = [&](std::int64_t seconds) {
+            is_measured ? map.go_on(at_s(static_cast<double>(seconds))) : void(map.wait(seconds));
+        };
+        pass(0);
+        pass(4);
+        EXPECT_FALSE(map.layers().counts.empty());
+        pass(5);
+        EXPECT_TRUE(map.layers().counts.empty()) << is_measured;
+        EXPECT_EQ(map.heap_bytes(), 0U);
+    }
+}
+
+TEST(DatedMap, without_its_times_has_its_voxels_stale_at_once) {
+    FusedMap map(aging(10, 0));
     map.go_on(at_s(100));
-    feed(map, hit_of_nothing_known(), {});
+    feed(map, one(key_at(0), 1.0F));
     map.forget_times();
-    map.go_on(at_s(0));
-    map.go_on(at_s(4));
-    EXPECT_FALSE(map.layers().counts.empty());
-    map.go_on(at_s(5));
-    EXPECT_TRUE(map.layers().counts.empty());
-    EXPECT_EQ(map.heap_bytes(), 0U);
+    EXPECT_TRUE(map.is_stale(key_at(0)));
+    EXPECT_FALSE(map.confirmation(key_at(0)));
 }
 
 /// With counts alone in some bricks, and one in which a voxel became known later.
