@@ -169,7 +169,7 @@ std::string Daemon::Parts::answer(const std::string& line) {
     try {
         room.emplace(kRoomBytes);
     } catch (const std::bad_alloc&) {  // so little is left that the answer might not even be taken apart
-        return R"({"ok":false,"error":"no memory for an answer","code":69})";
+        return AnswerRoom::kRefusal;
     }
     if (line == "status") {
         inputs.catch_up();  // the loop may have been busy with an image: what came meanwhile counts

@@ -27,10 +27,6 @@ std::vector<double> present_joints(const Pipeline& pipeline, std::size_t count, 
     return newest;
 }
 
-std::string no_memory_line() {
-    return query_refused({ExitCode::unavailable, "no memory for an answer"}).dump();
-}
-
 }  // namespace
 
 QueryDesk::QueryDesk(const HostSetup& setup, std::chrono::milliseconds field_idle_max,
@@ -56,7 +52,7 @@ void QueryDesk::change_robot(const HostSetup& setup) {
 bool QueryDesk::take(const std::string& line, std::uint64_t ticket, uid_t user) {
     if (!is_query(line)) return false;
     Questions taken;
-    taken.push_back({line, user, 0, {{ticket, no_memory_line()}}});
+    taken.push_back({line, user, 0, {{ticket, AnswerRoom::kRefusal}}});
     {
         const std::scoped_lock lock(mutex_);
         taken.front().round = round_of_next(user);

@@ -15,6 +15,9 @@ namespace octoskin {
 /// allocation of it that fails gets them: then there is room for all that follows, destructors included.
 class AnswerRoom {
   public:
+    /// The answer where there is no such room, as query_refused() has it, but made without JSON.
+    static constexpr const char* kRefusal = R"({"ok":false,"error":"no memory for an answer","code":69})";
+
     /// Throws std::bad_alloc where there are not as many. At most one at a time in a thread.
     explicit AnswerRoom(std::size_t bytes) : reserve_(bytes) { of_thread_ = this; }
     ~AnswerRoom() { of_thread_ = nullptr; }

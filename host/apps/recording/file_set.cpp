@@ -66,13 +66,6 @@ Result<FileLock, AppError> keep_daemons_out(const OpenFolder& folder) {
     return std::move(*taken);
 }
 
-/// Whether a daemon has the folder now. One may begin in it while the set is made.
-Status<AppError> look_for_daemon(const OpenFolder& folder) {
-    const auto none = keep_daemons_out(folder);
-    if (!none) return unexpected(none.error());
-    return Done{};
-}
-
 /// What to do, in the order in which it is done; `put` ends with the file that vouches for all.
 struct Journal {
     std::vector<fs::path> drop;
@@ -320,7 +313,8 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
     };
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
-    if (const auto free = look_for_daemon(folder); !free) return unexpected(free.error());
+    // None has it now; one may begin while the set is made.
+    if (const auto daemons = keep_daemons_out(folder); !daemons) return unexpected(daemons.error());
     if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
     Unfinished unfinished(folder, kDraftFolder, made->is_new);
     // What is there is of a process that was killed.
@@ -339,7 +333,6 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     for (const auto& names : {files, retired}) {
         if (const auto checked = check_places(folder_, names); !checked) return checked;
     }
-    if (const auto free = look_for_daemon(folder_); !free) return free;
     const Journal journal{retired, files};
     if (const auto written = write_journal(draft_, journal); !written) return written;
     for (const fs::path& file : files) {
@@ -347,7 +340,7 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     }
     if (const auto flushed = flush(draft_, kJournal); !flushed) return flushed;
     if (const auto flushed = flush(draft_); !flushed) return flushed;
-    // One may have begun since.
+    // One may have begun since; from here on none does.
     const auto daemons = keep_daemons_out(folder_);
     if (!daemons) return unexpected(daemons.error());
     const auto whole = unfinished_.finish();

@@ -7,7 +7,10 @@
 #include <cstddef>
 #include <limits>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <optional>
+
+#include "host/apps/querying/query_answer.hpp"
 
 namespace octoskin {
 namespace {
@@ -53,6 +56,10 @@ TEST_F(UnwindingRoomTest, of_an_answer_is_for_its_first_allocation_that_fails) {
     EXPECT_THROW(allocation_fails(), std::bad_alloc) << "there is no answer";
     const AnswerRoom room(kBytes);
     allocation_fails();
+}
+
+TEST_F(UnwindingRoomTest, of_an_answer_has_a_refusal_like_any_other) {
+    EXPECT_EQ(AnswerRoom::kRefusal, query_refused({ExitCode::unavailable, "no memory for an answer"}).dump());
 }
 
 TEST_F(UnwindingRoomTest, of_an_answer_is_refused_where_there_is_none) {
