@@ -227,7 +227,7 @@ void emit(YAML::Emitter& out, const Value& value) {  // no deeper than kDepthMax
             break;
         case Value::Kind::scalar:
             if (value.is_quoted) out << YAML::DoubleQuoted;
-            out << value.text;
+            emit_text(out, value.text);
             break;
         case Value::Kind::list:
             out << YAML::BeginSeq;
@@ -237,7 +237,9 @@ void emit(YAML::Emitter& out, const Value& value) {  // no deeper than kDepthMax
         case Value::Kind::table:
             out << YAML::BeginMap;
             for (const Value& item : value.items) {
-                out << YAML::Key << item.key << YAML::Value;
+                out << YAML::Key;
+                emit_text(out, item.key);
+                out << YAML::Value;
                 emit(out, item);
             }
             out << YAML::EndMap;
@@ -323,6 +325,12 @@ Value load_with_extends(const FilePlace& file, std::vector<FilePlace>* extended)
     Value merged = std::move(layers.back());
     for (std::size_t i = layers.size() - 1; i-- > 0;) merged = merge(std::move(merged), layers[i]);
     return merged;
+}
+
+void emit_text(YAML::Emitter& out, const std::string& text) {
+    const auto is_control = [](unsigned char byte) { return byte < 0x20 || byte == 0x7f; };
+    if (std::any_of(text.begin(), text.end(), is_control)) out << YAML::DoubleQuoted;
+    out << text;
 }
 
 std::string document_text(const Value& root) {

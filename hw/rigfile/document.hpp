@@ -13,6 +13,10 @@
 #include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/rig.hpp"
 
+namespace YAML {
+class Emitter;
+}
+
 namespace octoskin::rig {
 
 /// Thrown inside hw/rigfile only; the public functions catch it and return its error.
@@ -58,6 +62,10 @@ enum class Quotes : std::uint8_t { shown, withheld };
 /// over the other. Throws Fault also for a circle and for more than 8 files. `extended` is told those files,
 /// the nearest first.
 [[nodiscard]] Value load_with_extends(const FilePlace& file, std::vector<FilePlace>* extended = nullptr);
+
+/// Writes a text so that load_document() reads the same text. The emitter writes a carriage return without
+/// quotes, and a reader drops it: a text with a control character is written in double quotes.
+void emit_text(YAML::Emitter& out, const std::string& text);
 
 /// YAML that load_document() reads as this tree again, but for its lines.
 [[nodiscard]] std::string document_text(const Value& root);

@@ -70,7 +70,8 @@ Status<AppError> write_map_origin(const FilePlace& file, const MapOrigin& origin
     YAML::Emitter out;
     out << YAML::BeginMap;
     const auto put = [&out](const char* key, const std::string& value) {
-        out << YAML::Key << key << YAML::Value << value;
+        out << YAML::Key << key << YAML::Value;
+        rig::emit_text(out, value);
     };
     put("schema", kSchema);
     put("made_by", origin.made_by);

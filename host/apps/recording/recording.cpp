@@ -61,7 +61,8 @@ Status<RecordingError> check_kinds(const RecordingPaths& recording) {
 
 void write_source(YAML::Emitter& out, const std::string& key, const SourceFile& source) {
     if (source.file.empty()) return;
-    out << YAML::Key << key << YAML::Value << source.file.string();
+    out << YAML::Key << key << YAML::Value;
+    rig::emit_text(out, source.file.string());
     if (source.crc32) out << YAML::Key << key + "_crc32" << YAML::Value << crc_text(*source.crc32);
 }
 
@@ -126,7 +127,8 @@ Status<RecordingError> write_meta(const RecordingPaths& recording, const Recordi
     YAML::Emitter out;
     out << YAML::BeginMap;
     out << YAML::Key << "schema" << YAML::Value << kSchema;
-    out << YAML::Key << "made_by" << YAML::Value << meta.made_by;
+    out << YAML::Key << "made_by" << YAML::Value;
+    rig::emit_text(out, meta.made_by);
     if (!meta.source.empty()) out << YAML::Key << "source" << YAML::Value << meta.source;
     write_source(out, "world", meta.world);
     write_source(out, "scenario", meta.scenario);
