@@ -1,4 +1,4 @@
-// Words of others, in a message: as much of them as tells what they are.
+// Shortens a text from outside for use in a message.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace octoskin {
 
-/// The first `max` bytes of a text that is longer, and "..."; a character of UTF-8 is there as a whole or not
-/// at all.
+/// A text longer than `max` bytes is cut there and ends in "..."; a shorter one is unchanged. A character of
+/// UTF-8 is kept whole or left out.
 [[nodiscard]] inline std::string cut_text(std::string_view text, std::size_t max) {
     if (text.size() <= max) return std::string(text);
     constexpr unsigned kContinues = 0x80U;

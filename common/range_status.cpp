@@ -9,8 +9,8 @@ namespace {
 using enum RangeStatus;
 using enum RangeUse;
 
-// Where ST's two drivers disagree, the one that names a status other than 255 is followed: the full API for
-// the hardware faults 1, 2 and 17, the ULD for 22 and 23.
+// Where ST's two drivers disagree, the table follows the one that gives a status other than 255: the full API
+// for the hardware faults 1, 2 and 17, the ULD for 22 and 23.
 constexpr std::array<RangeStatusEntry, 32> kTable = {{
     {none, nothing, "no result yet"},
     {hardware_fail, nothing, "VCSEL continuity test failed"},

@@ -1,4 +1,4 @@
-// What a VL53L1X's range status means and what a mapper may do with it: the one table both sides use.
+// The meaning of a VL53L1X's range status and what a mapper may do with it: one table for firmware and host.
 #pragma once
 
 #include <cstdint>
@@ -25,14 +25,14 @@ enum class RangeStatus : std::uint8_t {
     none = 255,
 };
 
-/// What a reading of a status may do to the map.
+/// What a reading with a given status may change in the map.
 enum class RangeUse : std::uint8_t {
     hit,        ///< an endpoint, and free space before it
     no_return,  ///< no endpoint; may clear space up to a configured, capped distance
     nothing,    ///< neither
 };
 
-inline constexpr std::uint8_t kDeviceStatusesDefined = 24;  ///< 0..23; the rest of the 5 bits has no meaning
+inline constexpr std::uint8_t kDeviceStatusesDefined = 24;  ///< 0..23; the rest of the 5 bits is undefined
 inline constexpr std::uint8_t kDeviceStatusNoTarget = 4;
 inline constexpr std::uint8_t kDeviceStatusComplete = 9;
 inline constexpr std::uint8_t kDeviceStatusCompleteNoWrapCheck = 19;
@@ -43,9 +43,10 @@ struct RangeStatusEntry {
     const char* text = "";
 };
 
-/// For all 32 device codes (bits 4:0 of RESULT__RANGE_STATUS; mask before you call). Only code 9 is a hit:
-/// code 19 (first range, no wrap check) and code 8 (clipped at the minimum) give no trustworthy distance.
-/// Only code 4 may clear space. Source: VL53L1X full API and ULD status tables; UM2356 table 4 for the use.
+/// The entry of any of the 32 device codes (bits 4:0 of RESULT__RANGE_STATUS; the caller masks them). Only
+/// code 9 is a hit: code 19 (first range, no wrap check) and code 8 (clipped at the minimum) give no reliable
+/// distance. Only code 4 may clear space. Source: VL53L1X full API and ULD status tables; UM2356 table 4 for
+/// the use.
 [[nodiscard]] const RangeStatusEntry& range_status(std::uint8_t device_code) noexcept;
 
 }  // namespace octoskin

@@ -1,5 +1,5 @@
-// A value or the reason why there is none: the names of std::expected, which C++20 lacks. No heap, no
-// exceptions.
+// A value or the reason why there is none. The names are those of std::expected, which C++20 lacks. No heap,
+// no exceptions.
 #pragma once
 
 #include <cassert>
@@ -19,7 +19,7 @@ template <class E>
     return {std::move(error)};
 }
 
-/// Either a `T` or an `E`. Asking for the one that is not there is a programmer's mistake and asserts.
+/// Either a `T` or an `E`. Access to the one that is not held is a programmer's error (asserted).
 template <class T, class E>
 class [[nodiscard]] Result {
   public:

@@ -1,4 +1,4 @@
-// What the system says of the time of day, as a stamp.
+// The system's time of day as a time stamp.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 
 namespace octoskin {
 
-/// The begin of the year 2200: no clock that is right shows more. Nanoseconds since 1970 end in 2262, and
-/// a sum of a stamp and a duration stays below that.
+/// The start of the year 2200, later than any correct clock. Nanoseconds since 1970 end in 2262, so a time
+/// stamp plus a duration does not overflow.
 inline constexpr WallTime kWallTimeMax{7'258'118'400'000'000'000};
 
-/// Of a clock that shows a time before 1970 or after kWallTimeMax, that border: such a clock does not tell
-/// the time, and its stamps all agree.
+/// The time stamp of a clock's reading, limited to the range 1970..kWallTimeMax. A clock outside this range
+/// is not set; all its time stamps are equal to the limit.
 [[nodiscard]] constexpr WallTime wall_time(std::int64_t seconds, std::int64_t nanoseconds) noexcept {
     constexpr std::int64_t kNsPerS = 1'000'000'000;
     if (seconds < 0) return {0};
@@ -21,7 +21,7 @@ inline constexpr WallTime kWallTimeMax{7'258'118'400'000'000'000};
     return {seconds * kNsPerS + std::clamp<std::int64_t>(nanoseconds, 0, kNsPerS - 1)};
 }
 
-/// A clock that shows this tells the time.
+/// Whether `time` comes from a clock that is set.
 [[nodiscard]] constexpr bool tells_time(WallTime time) noexcept {
     return time.ns > 0 && time < kWallTimeMax;
 }

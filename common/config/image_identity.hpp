@@ -1,5 +1,5 @@
-// What a program says of itself to whoever flashes it: which layout of configuration block it reads. Eight
-// bytes somewhere in its flash, found by their first four.
+// The identity in a firmware image, for the flashing tool: which layout of the configuration block the
+// program reads. It is eight bytes somewhere in the image; the tool finds them by the first four.
 #pragma once
 
 #include <array>
@@ -7,7 +7,8 @@
 
 namespace octoskin {
 
-/// The newest layout of the configuration block: node_config.hpp. Whoever reads it reads the one before, too.
+/// The newest layout of the configuration block (node_config.hpp). A program that reads it also reads the
+/// layout before it.
 inline constexpr std::uint16_t kNodeConfigLayout = 5;
 
 /// "OSKI", the layout, and the layout's complement (16 bits each), little-endian.

@@ -14,7 +14,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::uint32_t kMagic = 0x434B534F;  // "OSKC" in memory
-/// Without what came with layout 5.
+/// Without the fields that layout 5 added.
 constexpr std::uint16_t kPlainLayout = 4;
 static_assert(kNodeConfigLayout == kPlainLayout + 1);
 constexpr std::size_t kHeaderBytes = 8;
@@ -51,7 +51,7 @@ class ByteWriter {
     std::size_t used_ = 0;
 };
 
-/// Takes integers from the front. Past the end it gives zeros and remembers.
+/// Takes integers from the front. Past the end it returns zeros and records the failure.
 class ByteReader {
   public:
     static constexpr bool kFillsIn = true;
@@ -148,7 +148,7 @@ void walk(Walker& walker, Of<Walker, NodeConfig>& config) {
     }
 }
 
-/// What came with layout 5.
+/// The fields that layout 5 added.
 template <class Walker>
 void walk_newer(Walker& walker, Of<Walker, NodeConfig>& config) {
     walker.flag(config.verifies_registers);
@@ -305,7 +305,8 @@ Result<NodeConfig, NodeConfigError> decode_node_config(Bytes memory) noexcept {
     if (layout == kNodeConfigLayout) {
         walk_newer(reader, config);
     }
-    // A block that could have been of the layout before is not canonical.
+    // A block of layout 5 whose newer fields all have their defaults is not canonical: it belongs in layout
+    // 4.
     const bool is_layout_needed = is_plain(config) == (layout == kPlainLayout);
     if (reader.has_failed() || !reader.is_at_end() || !is_layout_needed || !is_valid(config)) {
         return unexpected(NodeConfigError::invalid_field);

@@ -1,4 +1,4 @@
-// Which registers of a VL53L1X are read back and compared with what was written: the driver reads them, and a
+// The registers of a VL53L1X that are read back and compared with what was written. The driver reads them; a
 // rig may leave some of them out.
 #pragma once
 
@@ -14,9 +14,10 @@ struct RegisterRun {
     std::uint16_t first = 0;
     std::uint8_t count = 0;
 };
-/// All that the driver configures. Not in it: 0x31 and 0x32 (levels of pins), 0x86 and 0x87 (orders). The
-/// first three scale, steer or time the range: offset; time-outs, VCSEL periods, limits, valid phase and
-/// inter-measurement period; windows, initial phases, region of interest, sequence.
+/// All registers that the driver configures, except 0x31 and 0x32 (levels of pins) and 0x86 and 0x87
+/// (commands). The first three runs scale, steer or time the range. First: offset. Second: time-outs, VCSEL
+/// periods, limits, valid phase and inter-measurement period. Third: windows, initial phases, region of
+/// interest, sequence.
 inline constexpr std::array<RegisterRun, 10> kRegisterRuns{{{0x1E, 6},
                                                             {0x5E, 18},
                                                             {0x78, 14},

@@ -37,9 +37,9 @@ Derivative derivative(const LensDistortion& lens, RaySlope ray) noexcept {
             radial + 2.0 * per_s * ray.y * ray.y + 6.0 * lens.p1 * ray.y + 2.0 * lens.p2 * ray.x};
 }
 
-/// A lower bound of the derivative's eigenvalues at this radius, in whatever direction. Those of the radial
-/// part are d(r f)/dr and f = 1 + k1 r^2 + k2 r^4 + k3 r^6; the tangential part, 2 ((q.x) I + q x' + x q')
-/// with q = (p2, p1), has none below -6 |q| r.
+/// A lower bound of the derivative's eigenvalues at this radius, in any direction. The eigenvalues of the
+/// radial part are f and d(r f)/dr with f = 1 + k1 r^2 + k2 r^4 + k3 r^6. Those of the tangential part, 2
+/// ((q.x) I + q x' + x q') with q = (p2, p1), are at least -6 |q| r.
 double least_stretch(const LensDistortion& lens, double r) noexcept {
     const double s = r * r;
     const double outward = 1.0 + s * (3.0 * lens.k1 + s * (5.0 * lens.k2 + s * 7.0 * lens.k3));
@@ -64,8 +64,8 @@ RaySlope distorted(const LensDistortion& lens, RaySlope ray) noexcept {
             ray.y * radial + lens.p1 * (s + 2.0 * ray.y * ray.y) + lens.p2 * xy};
 }
 
-/// A map whose derivative is symmetric and positive definite all over a disc sends no two of its points to
-/// one (Gale and Nikaido 1965, theorem 6). The smallest eigenvalue is looked at from the centre outward.
+/// A map whose derivative is symmetric and positive definite on a whole disc is one-to-one there (Gale and
+/// Nikaido 1965, theorem 6). The smallest eigenvalue is checked from the centre outward.
 LensInverse::LensInverse(const LensDistortion& lens) noexcept : lens_(lens), radius_(0.0) {
     for (int step = 1; step * kRadiusStep <= kRadiusMax; ++step) {
         if (!(least_stretch(lens, step * kRadiusStep) > 0.0)) return;

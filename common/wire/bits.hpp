@@ -1,5 +1,5 @@
 // Bit fields in a byte buffer, numbered linearly: bit n is bit n % 8 of byte n / 8, and a field's least
-// significant bit comes first. This is what a DBC calls Intel byte order.
+// significant bit comes first. A DBC calls this Intel byte order.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace octoskin::wire {
     return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
 }
 
-/// Writes fields one after the other into zeroed bytes. Running out of room, and a value wider than its
-/// field, are programmer's mistakes.
+/// Writes fields one after the other into zeroed bytes. Running out of room and a value wider than its field
+/// are programmer's errors (asserted).
 class BitWriter {
   public:
     constexpr explicit BitWriter(std::span<std::uint8_t> zeroed) noexcept : bytes_(zeroed) {}
@@ -41,8 +41,8 @@ class BitWriter {
     unsigned position_ = 0;
 };
 
-/// Reads fields one after the other. Reading past the end is a programmer's mistake: whoever reads checks the
-/// length first.
+/// Reads fields one after the other. Reading past the end is a programmer's error (asserted): the caller
+/// checks the length first.
 class BitReader {
   public:
     constexpr explicit BitReader(std::span<const std::uint8_t> bytes) noexcept : bytes_(bytes) {}

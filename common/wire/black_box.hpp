@@ -1,5 +1,6 @@
-// What the pieces of a BLACK_BOX dump make together: a length, a time, and I2C transfers one after the other.
-// docs/protocol.md has the bytes. The node writes them, `octoskin black-box` reads them.
+// The content of a BLACK_BOX dump, put together from its pieces: a length, a time, and I2C transfers one
+// after the other. docs/protocol.md has the byte layout. The node writes dumps; `octoskin black-box` reads
+// them.
 #pragma once
 
 #include <array>
@@ -24,13 +25,13 @@ inline constexpr std::uint8_t kTransferOutcomes = 6;
 /// The enumerator as written in the source.
 [[nodiscard]] const char* name(TransferOutcome outcome) noexcept;
 
-/// What stands before the bytes of one transfer.
+/// The header of one transfer, before its bytes.
 struct TransferHeader {
     NodeTime start;
     std::uint8_t address = 0;  ///< 7 bits
     TransferOutcome outcome = TransferOutcome::done;
     std::uint8_t written = 0;     ///< bytes written
-    std::uint8_t read_asked = 0;  ///< bytes to be read; of a transfer that failed none follow
+    std::uint8_t read_asked = 0;  ///< bytes requested; none follow if the transfer failed
     [[nodiscard]] constexpr std::size_t bytes_following() const noexcept {
         return std::size_t{written} + (outcome == TransferOutcome::done ? read_asked : 0U);
     }
@@ -39,28 +40,28 @@ struct TransferHeader {
 inline constexpr std::size_t kTransferHeaderBytes = 8;
 [[nodiscard]] std::array<std::uint8_t, kTransferHeaderBytes> encode(const TransferHeader& header) noexcept;
 
-/// What stands before the transfers.
+/// The header of a dump, before its transfers.
 struct DumpHeader {
-    std::uint16_t length = 0;  ///< bytes of all that follows the length itself
-    NodeTime frozen;           ///< nothing was recorded from then on
+    std::uint16_t length = 0;  ///< bytes that follow this field
+    NodeTime frozen;           ///< the recording ends here
     friend constexpr bool operator==(const DumpHeader&, const DumpHeader&) = default;
 };
 inline constexpr std::size_t kDumpHeaderBytes = 6;
 [[nodiscard]] std::array<std::uint8_t, kDumpHeaderBytes> encode(const DumpHeader& header) noexcept;
 
 enum class DumpError : std::uint8_t {
-    truncated,      ///< ends in the middle
-    invalid_field,  ///< an outcome or an address that does not exist, a length that does not fit
+    truncated,      ///< ends too early
+    invalid_field,  ///< an undefined outcome or address, or a length that does not fit
 };
 [[nodiscard]] Result<DumpHeader, DumpError> decode_dump_header(std::span<const std::uint8_t> bytes) noexcept;
 
-/// One transfer, its bytes where they were given.
+/// One transfer; the spans refer to the bytes that were decoded.
 struct RecordedTransfer {
     TransferHeader header;
     std::span<const std::uint8_t> written;
     std::span<const std::uint8_t> read;
 };
-/// Takes the first transfer off `bytes`, which must not be empty.
+/// Removes the first transfer from `bytes`, which must not be empty.
 [[nodiscard]] Result<RecordedTransfer, DumpError> take_transfer(
     std::span<const std::uint8_t>& bytes) noexcept;
 

@@ -8,8 +8,8 @@ namespace {
 constexpr std::uint32_t kInterframeSpace = 3;
 constexpr std::uint32_t kAckAndEnd = 1 + 1 + 7;  // ACK slot, ACK delimiter, end of frame
 
-/// A stuff bit follows five equal bits, and is itself the first of the next run: the first after 5 bits, then
-/// one every 4 at worst.
+/// A stuff bit follows five equal bits and is the first bit of the next run. Worst case: the first after 5
+/// bits, then one after every 4.
 constexpr std::uint32_t worst_case_stuff_bits(std::uint32_t stuffed_bits) {
     return (stuffed_bits - 1) / 4;
 }
@@ -29,21 +29,22 @@ std::uint8_t full_length(FrameType type) {
 
 FrameBits worst_case_bits_classical(std::uint8_t payload_len) noexcept {
     assert(payload_len <= kClassicalPayloadMax);
-    // SOF, identifier, RTR, IDE, r0, DLC, data and CRC are stuffed; the CRC delimiter and what follows are
-    // not.
+    // Stuffed: SOF, identifier, RTR, IDE, r0, DLC, data and CRC. Not stuffed: the CRC delimiter and all after
+    // it.
     const std::uint32_t stuffed = 1 + 11 + 1 + 1 + 1 + 4 + 8U * payload_len + 15;
     return {.nominal = stuffed + worst_case_stuff_bits(stuffed) + 1 + kAckAndEnd + kInterframeSpace};
 }
 
 FrameBits worst_case_bits_fd(std::uint8_t payload_len) noexcept {
     assert(is_fd_length(payload_len));
-    // Nominal: SOF, identifier, RRS, IDE, FDF, res, BRS. IDE = 0, FDF = 1, res = 0, BRS = 1 alternate, so no
-    // run of five reaches past IDE: only SOF..IDE (14 bits) can be stuffed here. The bits in which the rate
-    // changes (BRS, CRC delimiter) are counted at the nominal rate: at most two nominal bits too many.
+    // At the nominal rate: SOF, identifier, RRS, IDE, FDF, res, BRS. IDE = 0, FDF = 1, res = 0, BRS = 1
+    // alternate, so no run of five equal bits extends past IDE: only SOF..IDE (14 bits) can be stuffed. The
+    // bits in which the rate changes (BRS, CRC delimiter) count at the nominal rate, which is at most two
+    // nominal bits too many.
     const std::uint32_t head = 1 + 11 + 1 + 1 + 1 + 1 + 1;
     const std::uint32_t head_stuffed = 14;
-    // Data: ESI, DLC, payload, stuffed in runs that may begin with BRS; then the CRC field, with the stuff
-    // count in it and a fixed stuff bit first and after every 4 bits.
+    // At the data rate: ESI, DLC and payload, stuffed in runs that may begin with BRS. Then the CRC field,
+    // which contains the stuff count, with a fixed stuff bit at its start and after every 4 bits.
     const std::uint32_t body = 1 + 4 + 8U * payload_len;
     const std::uint32_t crc_field = 4 + (payload_len <= 16 ? 17U : 21U);
     const std::uint32_t fixed_stuff_bits = 1 + (crc_field - 1) / 4;

@@ -1,5 +1,5 @@
-// How much of the bus a rig's frames need in the worst case. Computed, not measured: a rig that could
-// overload its bus is refused when it is loaded, not when a sensor is lost.
+// The share of the bus that a rig's frames need in the worst case. It is computed, not measured: a rig that
+// could overload its bus is refused when it is loaded.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace octoskin::wire {
 
-/// A rig above this is refused. The rest is for retransmissions, commands and frames of others.
+/// A rig above this is refused. The rest is for retransmissions, commands and the frames of other devices.
 inline constexpr double kBusLoadLimit = 0.70;
 
 struct BitRates {
@@ -19,7 +19,7 @@ struct BitRates {
     std::uint32_t data = 5'000'000;  ///< after the bit rate switch; CAN FD only
 };
 
-/// Bits of one frame, worst-case stuffing and the 3 bits between frames included.
+/// The bits of one frame, with worst-case stuffing and the 3 bits between frames.
 struct FrameBits {
     std::uint32_t nominal = 0;  ///< at the nominal bit rate
     std::uint32_t data = 0;     ///< at the data bit rate; 0 in classical format
@@ -33,8 +33,8 @@ struct FrameBits {
 /// frame format of ISO 11898-1:2015; the derivation is in the .cpp and in docs/protocol.md.
 [[nodiscard]] FrameBits worst_case_bits_fd(std::uint8_t payload_len) noexcept;
 
-/// How long this frame occupies a bus of these rates at most, in seconds. A CAN FD frame without bit rate
-/// switch has all its bits at the nominal rate.
+/// The longest time in seconds for which this frame occupies a bus of these rates. A CAN FD frame without bit
+/// rate switch has all its bits at the nominal rate.
 [[nodiscard]] double worst_case_seconds(const CanFrame& frame, const BitRates& rates) noexcept;
 
 /// Frames of one kind on one bus, all nodes together.
@@ -44,24 +44,24 @@ struct Traffic {
     double frames_per_s = 0.0;
 };
 
-/// The share of the time that `traffic` keeps the bus busy: 1.0 is a full bus, and more is possible. Types
-/// must be assigned ones. O(traffic).
+/// The share of time for which `traffic` keeps the bus busy: 1.0 is a full bus, and the result may exceed it.
+/// The types must be assigned ones. O(traffic).
 [[nodiscard]] double bus_load(std::span<const Traffic> traffic, const BitRates& rates) noexcept;
 
-/// What a rig puts on its bus.
+/// The bus traffic of a rig.
 struct BusUse {
-    std::uint32_t nodes = 0;                 ///< all of them: who sends joint states is one
+    std::uint32_t nodes = 0;                 ///< all nodes, with the sender of joint states
     std::uint32_t sensors = 0;               ///< all nodes together
     double readings_per_s = 0.0;             ///< all sensors together
     double aux_per_s = 0.0;                  ///< RANGE_AUX frames, all nodes together; classical only
     double joint_samples_per_s = 0.0;        ///< of four frames each
-    bool uses_can_fd = false;                ///< readings go as RANGE_FD rather than RANGE
+    bool uses_can_fd = false;                ///< readings are sent as RANGE_FD, not as RANGE
     std::uint8_t readings_per_fd_frame = 1;  ///< 1..4; 1 is the worst case
 };
 
-/// Everything such a rig sends regularly: readings, joint states, heartbeats at 10 Hz; each second one
+/// All that such a rig sends regularly: readings, joint states, heartbeats at 10 Hz; each second one
 /// SENSOR_HEALTH per sensor, all NODE_INFO pages of each node, and SYNC, FOLLOW_UP and the reports. Commands,
-/// marks and health reports on a change are rare and live in what `kBusLoadLimit` leaves free.
+/// marks and health reports on a change are rare; `kBusLoadLimit` leaves room for them.
 [[nodiscard]] std::array<Traffic, 9> traffic_of(const BusUse& use) noexcept;
 
 }  // namespace octoskin::wire

@@ -1,4 +1,4 @@
-// One CAN or CAN FD frame as both sides see it, without any operating system's layout.
+// One CAN or CAN FD frame, independent of an operating system's layout.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct CanFrame {
     std::uint32_t can_id = 0;  ///< 11 bits, or 29 when `is_extended`
     bool is_extended = false;
     bool is_remote = false;
-    bool is_error = false;  ///< an error frame of the adapter, no traffic of the bus
+    bool is_error = false;  ///< an error frame of the adapter, not bus traffic
     bool is_fd = false;     ///< CAN FD format
     bool has_bit_rate_switch = false;
     std::uint8_t payload_len = 0;  ///< bytes of `data` in use: 0..8, or an FD length up to 64

@@ -25,7 +25,7 @@ constexpr std::array<FrameType, std::variant_size_v<Message>> kTypeOfAlternative
     FrameType::reflex,      FrameType::black_box,     FrameType::calibration,
 };
 
-/// The checksum over identifier, length and `data`: all that a CAN frame says except the checksum itself.
+/// The checksum over identifier, length and `data`: all of a CAN frame except the checksum itself.
 std::uint16_t checksum_of(Checksum kind, std::uint32_t standard_id, std::size_t payload_len, Bytes data) {
     const std::array<std::uint8_t, 3> head = {static_cast<std::uint8_t>(standard_id),
                                               static_cast<std::uint8_t>(standard_id >> 8U),
@@ -37,9 +37,9 @@ constexpr std::size_t length_of(Checksum kind) {
     return static_cast<std::size_t>(kind);
 }
 
-// A CRC-16 goes high byte first, unlike every other field: only then is a burst on the wire, where each
-// byte's highest bit comes first, a burst to the polynomial as well. Low byte first, bursts of 13 bits across
-// the border between data and checksum pass.
+// A CRC-16 is sent high byte first, unlike every other field. On the wire each byte's highest bit comes
+// first, so only in this order is a burst on the wire a burst in the polynomial. Low byte first, bursts of 13
+// bits across the border between data and checksum would pass.
 std::uint16_t checksum_sent(Checksum kind, Bytes payload) {
     const Bytes last = payload.last(length_of(kind));
     return kind == Checksum::crc8 ? last[0] : static_cast<std::uint16_t>((last[0] << 8U) | last[1]);
@@ -56,7 +56,7 @@ void write(FieldWriter& writer, const T& message) {
 }
 template <class... Ts>
 void write(FieldWriter& writer, const std::variant<Ts...>& message) {
-    // Not std::visit, which may throw: these variants always hold something.
+    // Not std::visit, which may throw: these variants always hold a value.
     const auto write_if_held = [&writer](const auto* alternative) {
         if (alternative != nullptr) {
             write(writer, *alternative);
@@ -72,7 +72,7 @@ std::uint8_t payload_length(const FrameSpec& spec, const Message& message) {
 
 using DecodedMessage = Result<Message, DecodeError>;
 
-/// `data` is the payload without its checksum; length, checksum and version have been checked.
+/// `data`: the payload without its checksum. Length, checksum and version have been checked.
 template <class T, class Group = T>
 DecodedMessage read(Bytes data) {
     BitReader bits(data);
@@ -102,7 +102,7 @@ DecodedMessage read_range_fd(Bytes data) {
     return message;
 }
 
-/// The field right after the version, which tells the layouts of one type apart.
+/// The field after the version, which selects one of a type's layouts.
 std::uint8_t selector(Bytes data, unsigned bits) {
     return static_cast<std::uint8_t>((data[0] >> kVersionBits) & max_of_bits(bits));
 }

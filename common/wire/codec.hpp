@@ -1,5 +1,4 @@
-// Message <-> frame. Allocates nothing, reads nothing past a frame's end, and takes all of its bytes into
-// account.
+// Message <-> frame. Allocates nothing, reads nothing past a frame's end, and covers all of its bytes.
 #pragma once
 
 #include <span>
@@ -11,11 +10,10 @@
 
 namespace octoskin::wire {
 
-/// In the order of the checks. Each is a counter of its own at the receiver.
+/// In the order of the checks. The receiver counts each one separately.
 enum class DecodeError : std::uint8_t {
-    foreign_format,  ///< extended, remote or error frame, or FD where classical belongs and the reverse
-    unknown_type,    ///< an identifier that is reserved, not assigned, or with a node id its type does not
-                     ///< allow
+    foreign_format,  ///< extended, remote or error frame; FD where the type is classical, or the reverse
+    unknown_type,    ///< a reserved or unassigned identifier, or a node id that its type does not allow
     wrong_length,
     wrong_crc,
     wrong_version,  ///< CRC valid, version not ours
@@ -33,17 +31,16 @@ struct Decoded {
 /// The type of the frame that carries `message`.
 [[nodiscard]] FrameType type_of(const Message& message) noexcept;
 
-/// The frame for `message` from (or, for commands, to) `node_id`. A value that its field cannot hold, and a
-/// node id that the message's type does not allow, are programmer's mistakes and assert, except in the fields
-/// documented to saturate. Cost: < 1 us on a PC; no heap; from any thread or interrupt.
+/// The frame for `message` from (for commands: to) `node_id`. A value that its field cannot hold and a node
+/// id that the message's type does not allow are programmer's errors (asserted); fields documented to
+/// saturate do so. Cost: < 1 us on a PC; no heap; from any thread or interrupt.
 [[nodiscard]] CanFrame encode(const Message& message, NodeId node_id) noexcept;
 
 /// The message in `frame`. The checks, in this order: format, type, length, CRC, version, padding, field
-/// ranges. Any bytes, any length and any flags are safe. Whether the bit rate was switched makes no
-/// difference.
+/// ranges. Safe for any bytes, any length and any flags. The bit rate switch is ignored.
 [[nodiscard]] Result<Decoded, DecodeError> decode(const CanFrame& frame) noexcept;
 
-/// The same for a standard data frame whose payload lies elsewhere; reads nothing but `payload`.
+/// The same for a standard data frame whose payload is stored elsewhere. Reads only `payload`.
 [[nodiscard]] Result<Decoded, DecodeError> decode(std::uint32_t standard_id, bool is_fd,
                                                   std::span<const std::uint8_t> payload) noexcept;
 

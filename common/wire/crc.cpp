@@ -10,7 +10,7 @@ constexpr std::uint8_t kPolynomial8 = 0x2F;
 constexpr std::uint16_t kPolynomial16 = 0x1021;
 constexpr std::uint32_t kPolynomial32Reflected = 0xEDB88320;
 
-/// What four zero bits do to a register whose top four bits are the index.
+/// The effect of four zero bits on a register whose top four bits are the index.
 template <class Register>
 constexpr std::array<Register, 16> nibble_table(Register polynomial) {
     constexpr unsigned kWidth = sizeof(Register) * CHAR_BIT;
@@ -26,7 +26,7 @@ constexpr std::array<Register, 16> nibble_table(Register polynomial) {
     return table;
 }
 
-/// The mirror image: least significant bit first, the index in the register's low four bits.
+/// The mirrored table: least significant bit first, the index in the register's low four bits.
 constexpr std::array<std::uint32_t, 16> reflected_nibble_table(std::uint32_t polynomial) {
     std::array<std::uint32_t, 16> table{};
     for (std::uint32_t nibble = 0; nibble < 16; ++nibble) {

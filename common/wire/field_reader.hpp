@@ -1,5 +1,5 @@
-// The walker that decodes: see layout.hpp. It never stops early; what it found wrong is asked for at the end,
-// so that padding is judged before field ranges wherever the two lie.
+// The walker that decodes: see layout.hpp. It reads all fields before its errors are evaluated, so that
+// padding is judged before field ranges, wherever the two lie.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class FieldReader {
         assert(field.bits > 0);
         const std::uint64_t raw = bits_.get(field.bits);
         const std::uint64_t sign = std::uint64_t{1} << (field.bits - 1);
-        // Flipping the sign bit and taking its weight away again extends it into all higher bits.
+        // Flipping the sign bit and subtracting its weight extends the sign into all higher bits.
         value = static_cast<T>(static_cast<std::int64_t>(raw ^ sign) - static_cast<std::int64_t>(sign));
     }
     template <std::unsigned_integral T>
@@ -65,7 +65,7 @@ class FieldReader {
         static_cast<void>(bits_.get(field.bits));
     }
     void zeros(unsigned bits) noexcept { has_nonzero_padding_ |= bits_.get(bits) != 0; }
-    /// As many as the frame has room for, whatever it claims.
+    /// `count`, limited to the entries for which the frame has room.
     [[nodiscard]] std::uint8_t entries_present(std::uint8_t count) const noexcept {
         return static_cast<std::uint8_t>(std::min<std::size_t>(count, bits_.bits_left() / kRangeFdEntryBits));
     }

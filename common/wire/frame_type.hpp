@@ -1,4 +1,4 @@
-// Which frames there are: identifier, sender, format, length and checksum of each, in one table.
+// All frames: identifier, sender, format, length and checksum of each, in one table.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 
 namespace octoskin::wire {
 
-/// Type in the upper 5 bits of the 11-bit identifier, node id in the lower 6. Lower wins arbitration.
+/// The type is in the upper 5 bits of the 11-bit identifier, the node id in the lower 6. The lower identifier
+/// wins arbitration.
 enum class FrameType : std::uint8_t {
     reflex = 0,
     sync = 1,
@@ -34,7 +35,7 @@ inline constexpr std::uint32_t kStandardIdMax = 0x7FF;
 [[nodiscard]] constexpr std::uint32_t can_id(FrameType type, NodeId node_id) noexcept {
     return (static_cast<std::uint32_t>(type) << 6U) | node_id;
 }
-/// The two halves of a standard identifier. The type may be one that is not assigned: see `frame_spec`.
+/// The two parts of a standard identifier. The type may be unassigned: see `frame_spec`.
 [[nodiscard]] constexpr FrameType type_of(std::uint32_t standard_id) noexcept {
     return static_cast<FrameType>((standard_id >> 6U) & 31U);
 }
@@ -49,19 +50,19 @@ enum class Party : std::uint8_t {
     to_node,    ///< 1..62, or 63 for all: the receiver of a host's frame
 };
 
-enum class Checksum : std::uint8_t { crc8 = 1, crc16 = 2 };  ///< its value is its length in bytes
+enum class Checksum : std::uint8_t { crc8 = 1, crc16 = 2 };  ///< the value is the length in bytes
 
 struct FrameSpec {
     FrameType type = FrameType::reflex;
     const char* name = "";
     Party party = Party::from_node;
     bool is_fd = false;
-    std::uint8_t payload_len = 0;  ///< checksum included; the largest, for RANGE_FD
+    std::uint8_t payload_len = 0;  ///< with the checksum; for RANGE_FD the largest
     Checksum checksum = Checksum::crc8;
 };
 
-/// Every assigned type, by priority. Fixed for all protocol versions: identifier, checksum, and HEARTBEAT's
-/// length.
+/// All assigned types, by priority. Fixed for all protocol versions: the identifiers, the checksums and
+/// HEARTBEAT's length.
 inline constexpr std::array<FrameSpec, 15> kFrameSpecs = {{
     {FrameType::reflex, "REFLEX", Party::from_node, false, 8, Checksum::crc16},
     {FrameType::sync, "SYNC", Party::from_host, false, 3, Checksum::crc16},
@@ -90,7 +91,7 @@ inline constexpr std::array<FrameSpec, 15> kFrameSpecs = {{
     return nullptr;
 }
 
-/// Whether `node_id` may stand in an identifier of this kind.
+/// Whether an identifier of this kind may contain `node_id`.
 [[nodiscard]] constexpr bool is_allowed(Party party, NodeId node_id) noexcept {
     switch (party) {
         case Party::from_host:
@@ -103,8 +104,8 @@ inline constexpr std::array<FrameSpec, 15> kFrameSpecs = {{
     return false;
 }
 
-/// Bytes of a RANGE_FD frame with `readings` (1..4) in it: header byte, 14 bytes a reading, CRC-16, and zeros
-/// up to the next length that CAN FD has: 20, 32, 48 or 64.
+/// The bytes of a RANGE_FD frame with `readings` (1..4): header byte, 14 bytes per reading, CRC-16, and zeros
+/// up to the next length of CAN FD: 20, 32, 48 or 64.
 [[nodiscard]] constexpr std::uint8_t range_fd_length(std::uint8_t readings) noexcept {
     return next_fd_length(static_cast<std::uint8_t>(1 + 14 * readings + 2));
 }

@@ -1,5 +1,5 @@
-// What a CAN interface may be called. A log of candump has the name and the frame as words of one line, so a
-// name that looks like a frame, or like two words, would be read for one.
+// Which names of CAN interfaces are allowed. A candump log has the name and the frame as words of one line,
+// so a name that looks like a frame, or like two words, would be misread.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace octoskin::wire {
 
-inline constexpr std::size_t kInterfaceNameMax = 15;  ///< as Linux has it
+inline constexpr std::size_t kInterfaceNameMax = 15;  ///< the limit of Linux
 
-/// 1 to 15 printable ASCII characters, no blank, no '#'. Linux takes more than that.
+/// 1 to 15 printable ASCII characters, no blank, no '#'. Linux allows more than that.
 [[nodiscard]] constexpr bool is_interface_name(std::string_view name) noexcept {
     for (const char c : name) {
         if (c <= ' ' || c > '~' || c == '#') return false;
@@ -17,7 +17,7 @@ inline constexpr std::size_t kInterfaceNameMax = 15;  ///< as Linux has it
     return !name.empty() && name.size() <= kInterfaceNameMax;
 }
 
-/// What messages say of any other name.
+/// The explanation in messages about any other name.
 inline constexpr std::string_view kInterfaceNameRule =
     "a CAN interface's name here has 1 to 15 printable ASCII characters, no blank and no '#': rename it "
     "(`ip link set OLD name NEW`)";

@@ -11,8 +11,8 @@ namespace octoskin::wire {
 
 inline constexpr std::size_t kFramesPerJointSample = 4;
 
-/// In the order in which they are sent. `position_urad`: microradians (micrometres for a prismatic joint), 24
-/// bits signed each; `sampled`: span kFdTimeSpanUs.
+/// In sending order. `position_urad`: microradians (micrometres for a prismatic joint), 24 bits signed each;
+/// `sampled`: span kFdTimeSpanUs.
 [[nodiscard]] std::array<CanFrame, kFramesPerJointSample> joint_frames(
     NodeId node_id, std::uint8_t sequence, const std::array<std::int32_t, kJointsPerSample>& position_urad,
     const TimeResidue& sampled) noexcept;

@@ -1,6 +1,6 @@
-// The byte layout of every message, written once. A *walker* visits a message's fields in wire order: the
-// codec has one that writes, one that reads, and the DBC (hw/dbc) one that describes; so none can drift from
-// the others. What surrounds the fields in every frame (version first, CRC last) is the walker's caller's.
+// The byte layout of every message, written once. A *walker* visits a message's fields in wire order. The
+// codec has one walker that writes and one that reads; the DBC (hw/dbc) has one that describes. So none can
+// differ from the others. The caller of a walker handles what every frame has: version first, CRC last.
 //
 // Walker:   number(field, value)    unsigned or signed integer of `field.bits`, within `field.min..max`
 //           saturated(field, value) the same, but a larger value is sent as the largest
@@ -9,11 +9,10 @@
 //           choice(field, value)    an enumeration with a table in names.hpp
 //           flag(field, value)      one bit
 //           bytes(field, array)     the first byte lowest
-//           selector(field, value)  tells which of several layouts this is, a constant or kept in the
-//           message: comes
-//                                   right after the version, and whoever reads has looked at it to get here
+//           selector(field, value)  selects one of several layouts: a constant, or kept in the message; comes
+//                                   right after the version, and a reader has evaluated it before the walk
 //           zeros(bits)             padding
-//           entries_present(count) how many readings follow
+//           entries_present(count)  how many readings follow
 #pragma once
 
 #include <cstdint>
@@ -25,7 +24,7 @@
 
 namespace octoskin::wire {
 
-/// What one step of a field's number is worth.
+/// The unit of one step of a field's value.
 enum class Unit : std::uint8_t {
     none,
     millimetre,
@@ -45,7 +44,7 @@ struct Field {
     Unit unit;
     std::uint64_t min = 0;
     std::uint64_t max;
-    std::optional<unsigned> index;  ///< tells repeated fields of one name apart
+    std::optional<unsigned> index;  ///< distinguishes repeated fields of one name
 
     constexpr Field(const char* field_name, unsigned field_bits, Unit field_unit = Unit::none)
         : name(field_name), bits(field_bits), unit(field_unit), max(max_of_bits(field_bits)) {}
@@ -62,7 +61,7 @@ struct Field {
     }
 };
 
-/// Steps of a residue's field in microseconds.
+/// The steps of a residue's field in microseconds.
 [[nodiscard]] constexpr std::uint32_t step_us(Unit unit) noexcept {
     return unit == Unit::step_of_64_us ? kClassicalTimeStepUs : 1;
 }
@@ -154,7 +153,7 @@ void walk(Walker& walker, Of<Walker, Heartbeat>& beat) {
     walker.number(Field("node_hash_low", 16), beat.node_hash_low);
 }
 
-/// What every page of NODE_INFO begins with.
+/// The first field of every NODE_INFO page.
 template <class Walker>
 void walk_page(Walker& walker, InfoPage page) {
     walker.selector(Field("page", kInfoPageBits), static_cast<std::uint8_t>(page));

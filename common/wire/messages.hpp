@@ -1,5 +1,5 @@
-// What travels on the bus, as plain values. docs/protocol.md has the bytes; codec.hpp turns one into the
-// other.
+// The bus messages, as plain values. docs/protocol.md has the byte layout; codec.hpp converts messages to
+// frames and back.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace octoskin::wire {
 
-/// Low 3 bits of byte 0 of every frame, frozen for all versions.
+/// The low 3 bits of byte 0 of every frame, fixed for all versions.
 inline constexpr std::uint8_t kProtocolVersion = 1;
 
 /// 1..62; 0 is the host, 63 addresses every node (commands).
@@ -24,7 +24,7 @@ inline constexpr std::uint8_t kZonesMax = 15;           ///< zone index: 4 bits,
 inline constexpr std::uint8_t kZoneUnknown = 15;
 inline constexpr std::uint8_t kSequenceCount = 64;  ///< readings: 6-bit sequence per (node, sensor)
 
-/// The low bits of a node's clock as sent: the clock's value modulo `span_us`, rounded down to the field's
+/// The low bits of a node's clock as sent: the clock value modulo `span_us`, rounded down to the field's
 /// step.
 struct TimeResidue {
     std::uint32_t value_us = 0;
@@ -43,7 +43,7 @@ inline constexpr std::uint32_t kFdTimeSpanUs = 1U << 24;         ///< 24 bits of
     return {.value_us = time.us % kFdTimeSpanUs, .span_us = kFdTimeSpanUs};
 }
 
-/// One reading of one sensor: everything that acceptance needs.
+/// One reading of one sensor, with all that acceptance needs.
 struct RangeReading {
     std::uint8_t sensor = 0;             ///< local index on its node
     std::uint8_t zone = 0;               ///< ROI in force when the range began
@@ -84,8 +84,8 @@ struct RangeFd {  ///< CAN FD: 1..4 lossless readings
     friend constexpr bool operator==(const RangeFd&, const RangeFd&) = default;
 };
 
-/// Something came closer than a sensor's configured limit: one frame an event, before everything else on the
-/// bus, for whoever must stop an arm at once. The reading itself follows as a RANGE.
+/// Sent once when something comes closer than a sensor's configured limit, with the highest priority on the
+/// bus: for a device that must stop an arm at once. The reading itself follows as RANGE or RANGE_FD.
 struct Reflex {
     std::uint8_t sensor = 0;
     std::uint8_t zone = 0;
@@ -97,10 +97,10 @@ struct Reflex {
 
 inline constexpr std::uint8_t kBlackBoxBytes = 5;
 inline constexpr std::uint16_t kBlackBoxFramesMax = 512;
-/// A piece of what was last transferred on one I2C bus: black_box.hpp has what the pieces make together.
+/// One piece of a dump of the last transfers on one I2C bus. black_box.hpp describes the whole dump.
 struct BlackBox {
     std::uint8_t bus = 0;     ///< 0..3
-    std::uint8_t dump = 0;    ///< which one: counts the node's dumps modulo 4
+    std::uint8_t dump = 0;    ///< number of the dump: counts the node's dumps modulo 4
     std::uint16_t index = 0;  ///< of this piece in its dump
     std::array<std::uint8_t, kBlackBoxBytes> bytes{};
     friend constexpr bool operator==(const BlackBox&, const BlackBox&) = default;
@@ -110,11 +110,11 @@ enum class NodeState : std::uint8_t {
     starting = 0,  ///< sensors are being brought up
     ranging = 1,
     stopped = 2,      ///< by command
-    safe = 3,         ///< repeated resets: heartbeat only
+    safe = 3,         ///< after repeated resets: heartbeat only
     bad_config = 4,   ///< configuration block missing, damaged or for another board: no ranging
-    id_conflict = 5,  ///< heard its own node id: ranges stopped
+    id_conflict = 5,  ///< received a frame with its own node id: ranging stopped
     bus_fault = 6,    ///< no I2C bus usable
-    can_fault = 7,    ///< was bus-off less than a second ago, or is error-passive; ranges all the same
+    can_fault = 7,    ///< bus-off less than a second ago, or error-passive; ranging continues
 };
 enum class ResetCause : std::uint8_t {
     power_on = 0,
@@ -137,8 +137,8 @@ struct Heartbeat {
     friend constexpr bool operator==(const Heartbeat&, const Heartbeat&) = default;
 };
 
-/// Sent as pages at start, on request and once a second. Pages arrive in any order; a receiver holds a node's
-/// info complete once it has every page.
+/// Sent as pages at start, on request and once a second. Pages arrive in any order; a receiver has the
+/// complete info once it has every page.
 enum class InfoPage : std::uint8_t {
     uid_low = 0,
     uid_high = 1,
@@ -178,38 +178,40 @@ struct InfoTraffic {                 ///< since start, saturating
     std::uint16_t tx_dropped = 0;    ///< displaced by newer readings, or given up by the controller
     std::uint16_t late_dropped = 0;  ///< readings, REFLEX and SYNC_REPORT that waited over 50 ms to be sent
     std::uint8_t bus_off_count = 0;
-    std::uint8_t rx_rejected = 0;  ///< frames for us that failed length, CRC or version
+    std::uint8_t rx_rejected = 0;  ///< frames for this node that failed length, CRC or version
     friend constexpr bool operator==(const InfoTraffic&, const InfoTraffic&) = default;
 };
 enum class FaultKind : std::uint8_t {
     none = 0,
-    assertion = 1,     ///< where: number of the assertion, as the build's map has it
-    hard_fault = 2,    ///< where: program counter
-    stack_guard = 3,   ///< where: program counter
-    watchdog = 4,      ///< nobody wrote anything down before the reset
-    brown_out = 5,     ///<
+    assertion = 1,    ///< where: number of the assertion in the build's map
+    hard_fault = 2,   ///< where: program counter
+    stack_guard = 3,  ///< where: program counter
+    watchdog = 4,     ///< no fault was recorded before the reset
+    brown_out = 5,
     clock_fault = 6,   ///< the crystal failed
-    xshut_stuck = 7,   ///< now, no reset: where is the XSHUT line that does not put its sensor in reset
-    stray_sensor = 8,  ///< now, no reset: where is the I2C bus on which somebody answered at 0x29 unasked
-    /// Now, no reset: a sensor's register will not take its value. where: RegisterReport, whose subject is
-    /// the sensor.
+    xshut_stuck = 7,   ///< present fault, no reset; where: XSHUT line that does not reset its sensor
+    stray_sensor = 8,  ///< present fault, no reset; where: I2C bus with an unexpected answer at 0x29
+    /// Present fault, no reset: a register of a sensor does not keep the value written. where:
+    /// RegisterReport, whose subject is the sensor.
     register_fixed = 9,
-    /// Now, no reset: the data-ready line of I2C bus `where` fell too often for nothing and is not listened
-    /// to. Its sensors are read all the same.
+    /// Present fault, no reset: the data-ready line of I2C bus `where` had too many spurious falls and is
+    /// ignored. Its sensors are still read.
     data_ready_ignored = 10,
-    /// Now, no reset: a register reads otherwise than it is written on three or more of the node's sensors,
-    /// alike: it is how this type of part is, and nothing is withheld for it. where: RegisterReport, whose
-    /// subject is how many sensors had shown it when it was learnt.
+    /// Present fault, no reset: on three or more of the node's sensors a register reads back the same value,
+    /// which is not the one written. This is a property of the type of part, and no reading is withheld for
+    /// it. where: RegisterReport, whose subject is the number of sensors that had shown it when it was
+    /// recognised.
     register_alike = 11,
-    /// Now, no reset: sensor `where` had not said that its boot was over when it was given its address.
+    /// Present fault, no reset: sensor `where` had not reported the end of its boot when it was given its
+    /// address.
     boot_late = 12,
-    /// Now, no reset: a COMMAND was refused because the rig has the node refuse them (`refuses_commands`).
-    /// where: its code.
+    /// Present fault, no reset: a COMMAND was refused because the rig makes the node refuse them
+    /// (`refuses_commands`). where: the command's code.
     commands_refused = 13,
     unknown = 15,
 };
-/// What of a sensor's register is told in `InfoFault::where`: subject in bits 31:24, register in 23:16, the
-/// value written in 15:8 and the one read in 7:0.
+/// `InfoFault::where` for a register: subject in bits 31:24, register index in 23:16, the value written in
+/// 15:8 and the value read in 7:0.
 struct RegisterReport {
     std::uint8_t subject = 0;
     std::uint8_t index = 0;
@@ -227,13 +229,13 @@ struct RegisterReport {
     }
     friend constexpr bool operator==(const RegisterReport&, const RegisterReport&) = default;
 };
-/// What is wrong with the node now: one of it, by turns, its last recorded fault among them; if nothing is,
-/// that one; else all zero.
+/// One of the node's present faults. They take turns, and the last recorded fault takes part. If none is
+/// present: the recorded one; if there is none either: all zero.
 struct InfoFault {
     FaultKind kind = FaultKind::none;
-    std::uint8_t count = 0;     ///< resets that nobody ordered, since the last one that was; saturates at 15
-    std::uint32_t where = 0;    ///< by kind
-    std::uint8_t uptime_s = 0;  ///< how long the run that the fault ended had lasted; saturates at 255
+    std::uint8_t count = 0;     ///< unexpected resets since the last ordered one; saturates at 15
+    std::uint32_t where = 0;    ///< meaning depends on `kind`
+    std::uint8_t uptime_s = 0;  ///< length of the run that the fault ended; saturates at 255
     friend constexpr bool operator==(const InfoFault&, const InfoFault&) = default;
 };
 using NodeInfo =
@@ -245,7 +247,7 @@ enum class SensorState : std::uint8_t {
     ranging = 2,
     stopped = 3,
     degraded = 4,  ///< answers, but ten readings in a row were rejected on the node
-    lost = 5,      ///< answered once, does not now
+    lost = 5,      ///< answered before, does not now
 };
 enum class SensorFault : std::uint8_t {
     none = 0,
@@ -260,14 +262,14 @@ enum class SensorFault : std::uint8_t {
     bus_error = 9,
     address_conflict = 10,
     xshut_stuck = 11,    ///< its XSHUT line does not put it in reset
-    hardware_fail = 12,  ///< it says so itself, range after range: user status 5
+    hardware_fail = 12,  ///< reported by the sensor itself, range after range: user status 5
 };
 /// On change and once a second.
 struct SensorHealth {
     std::uint8_t sensor = 0;
     SensorState state = SensorState::absent;
     SensorFault fault = SensorFault::none;  ///< why it is not ranging, or the last fault
-    std::uint16_t sent = 0;  ///< readings sent since start, modulo 2^16; counts RANGE frames' entries
+    std::uint16_t sent = 0;  ///< readings sent since start, modulo 2^16; each reading in a frame counts
     std::uint8_t capture_bound_64us =
         0;                      ///< bound on the capture time's error, in steps of 64 us, rounded up
     std::uint8_t rejected = 0;  ///< readings rejected on the node since start, modulo 256
@@ -275,15 +277,15 @@ struct SensorHealth {
     friend constexpr bool operator==(const SensorHealth&, const SensorHealth&) = default;
 };
 
-/// Two-step synchronisation: every node notes its clock at the end of SYNC; FOLLOW_UP carries the host's own
-/// stamp of that instant; each node answers with its note.
+/// Two-step synchronisation: every node records its clock at the end of SYNC; FOLLOW_UP carries the host's
+/// own time stamp of that instant; each node reports its record in SYNC_REPORT.
 inline constexpr std::uint8_t kSyncSequenceCount = 32;
 struct Sync {
     std::uint8_t sequence = 0;
     friend constexpr bool operator==(const Sync&, const Sync&) = default;
 };
 struct FollowUp {
-    std::uint8_t sequence = 0;       ///< of the SYNC it belongs to
+    std::uint8_t sequence = 0;       ///< of its SYNC
     std::uint64_t host_time_us = 0;  ///< host clock at the end of that SYNC, 48 bits
     friend constexpr bool operator==(const FollowUp&, const FollowUp&) = default;
 };
@@ -311,8 +313,8 @@ struct JointLast {
 using JointState = std::variant<JointPair, JointLast>;
 
 enum class MarkKind : std::uint8_t { stop = 0, start = 1 };
-/// From the host (recorder or simulator): measurements captured before START or after STOP stay out of the
-/// map.
+/// From the host (recorder or simulator): measurements captured before START or after STOP are kept out of
+/// the map.
 struct Mark {
     MarkKind kind = MarkKind::start;
     std::uint64_t host_time_us = 0;  ///< 48 bits
@@ -327,8 +329,8 @@ enum class CommandCode : std::uint8_t {
     identify = 5,
     reset = 6,
     send_info = 7,
-    send_black_box = 8,  ///< what was last transferred on the I2C bus of a sensor, or on all of them
-    /// One sensor, at a target of a known range; the node answers with CALIBRATION.
+    send_black_box = 8,  ///< the last transfers on the I2C bus of a sensor, or on all buses
+    /// One sensor, facing a target at a known range; the node answers with CALIBRATION.
     calibrate_offset = 9,
     calibrate_crosstalk = 10,
 };
@@ -346,22 +348,21 @@ enum class CalibrationOutcome : std::uint8_t {
     under_way = 0,
     done = 1,
     refused = 2,         ///< no such sensor, no such target, or another calibration is under way on the node
-    not_brought_up = 3,  ///< the sensor could not be initialised: SENSOR_HEALTH says why
-    device_failed = 4,   ///< it failed in mid-calibration
+    not_brought_up = 3,  ///< the sensor could not be initialised; SENSOR_HEALTH gives the reason
+    device_failed = 4,   ///< it failed during the calibration
     no_result = 5,       ///< no range for 2 s
     no_target = 6,       ///< too many ranges without a valid result
     out_of_range = 7,    ///< the offset does not fit the device's 13 bits
 };
-/// The answer to a command to calibrate: at once `under_way` or `refused`, and `under_way` is followed by its
-/// end. The sensor itself is brought up anew as it was configured: nothing of a calibration stays on the
-/// node.
+/// The answer to a calibration command: at once `under_way` or `refused`; after `under_way` the final
+/// outcome. The sensor is then brought up again as configured: the node keeps nothing of a calibration.
 struct Calibration {
     std::uint8_t sensor = 0;
     CalibrationQuantity quantity = CalibrationQuantity::offset;
     CalibrationOutcome outcome = CalibrationOutcome::under_way;
     std::uint8_t sequence = 0;           ///< of the command
-    std::int16_t offset_quarter_mm = 0;  ///< of `done`; 0 unless it was what was sought
-    std::uint16_t crosstalk_raw = 0;     ///< of `done`: 7.9 kcps per SPAD; 0 unless it was what was sought
+    std::int16_t offset_quarter_mm = 0;  ///< if `done`: of an offset calibration; else 0
+    std::uint16_t crosstalk_raw = 0;     ///< if `done`: of a crosstalk calibration, 7.9 kcps per SPAD; else 0
     friend constexpr bool operator==(const Calibration&, const Calibration&) = default;
 };
 

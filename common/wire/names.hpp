@@ -1,5 +1,5 @@
-// The enumerations of the wire as tables: which values exist, and what people call them. The decoder refuses
-// what is not here; the DBC and the monitor print what is.
+// The enumerations of the wire as tables: the values and their names. The decoder refuses values that are not
+// in them; the DBC and the monitor print the names.
 #pragma once
 
 #include <array>

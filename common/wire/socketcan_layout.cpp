@@ -17,7 +17,8 @@ std::optional<CanFrame> from_socketcan(std::span<const std::byte> bytes) noexcep
     frame.is_error = (raw.can_id & CAN_ERR_FLAG) != 0;
     if ((frame.is_fd || frame.is_error) && frame.is_remote) return std::nullopt;
     if (frame.is_fd && frame.is_error) return std::nullopt;
-    // An error frame's identifier is its class: as wide as an extended one, which it is not.
+    // The identifier of an error frame is its class. It is 29 bits wide, but the frame is not an extended
+    // one.
     frame.is_extended = (raw.can_id & CAN_EFF_FLAG) != 0 && !frame.is_error;
     frame.can_id = raw.can_id & (frame.is_extended || frame.is_error ? CAN_EFF_MASK : CAN_SFF_MASK);
     frame.has_bit_rate_switch = frame.is_fd && (raw.flags & CANFD_BRS) != 0;

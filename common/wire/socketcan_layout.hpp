@@ -1,5 +1,5 @@
-// A frame as Linux lays it out in a raw CAN socket: <linux/can.h>, `struct can_frame` and `struct
-// canfd_frame`. Everybody on Linux who opens such a socket shares it.
+// A frame in the layout of a raw CAN socket of Linux: <linux/can.h>, `struct can_frame` and `struct
+// canfd_frame`. Shared by all programs on Linux that open such a socket.
 #pragma once
 
 #include <linux/can.h>
@@ -12,10 +12,10 @@
 
 namespace octoskin::wire {
 
-/// The frame in `bytes`, as one `read` of a raw CAN socket returned them; empty if that is neither a
+/// The frame in `bytes`, as one `read` of a raw CAN socket returned them. Empty if that is neither a
 /// classical nor an FD frame: another size, a length that its format does not have, a remote frame in FD
-/// format, which CAN does not have, or an error frame that is remote or in FD format, which no kernel makes.
-/// So each that is returned can be sent and written down, and is the same again when it is read.
+/// format (CAN has none), or an error frame that is remote or in FD format (no kernel makes one). So every
+/// returned frame can be sent and recorded, and is the same when it is read again.
 [[nodiscard]] std::optional<CanFrame> from_socketcan(std::span<const std::byte> bytes) noexcept;
 
 struct SocketCanBytes {
