@@ -12,8 +12,8 @@ namespace octoskin::node {
 
 namespace {
 
-/// The first range after a start cannot be checked for wrap-around; the device itself says "complete" all the
-/// same (full API: user status 6). On the wire that is the code which means just this.
+/// The first range after a start cannot be checked for wrap-around, yet the device reports code 9, "complete"
+/// (full API: user status 6). On the wire it gets code 19, which has exactly this meaning.
 std::uint8_t status_on_wire(const vl53l1x::Measurement& measurement) noexcept {
     const bool is_first = measurement.stream_count == 0;
     if (is_first && measurement.device_status == kDeviceStatusComplete)
@@ -25,14 +25,14 @@ bool is_after(NodeTime time, NodeTime other) noexcept {
     return !is_reached(time, other);
 }
 
-/// The wire's classical time field repeats after 262 ms. A reading is half a budget old when it is ready, 100
-/// ms at most, and waits to be sent for up to 50.
+/// The wire's classical time field repeats after 262 ms. A reading is half a budget old when it is ready, at
+/// most 100 ms, and waits up to 50 ms to be sent.
 constexpr Microseconds kReadLateMax{100'000};
 
-/// The stream count comes round after so many ranges.
+/// The stream count repeats after this many ranges.
 constexpr std::int64_t kStreamCycle = 128;
 
-/// A range begins up to `kRangeOverheadMax` before its window, and how long before is not known.
+/// A range begins up to `kRangeOverheadMax` before its window; how long before is unknown.
 TimeBracket begin_of(const TimeBracket& ready, Microseconds budget, Microseconds length_spread) noexcept {
     const TimeBracket window = shifted(ready, -budget);
     return {window.earliest - kRangeOverheadMax - length_spread, window.latest};
@@ -61,7 +61,7 @@ void Acceptance::on_not_ready(NodeTime asked) noexcept {
     ++not_ready_polls_;
 }
 
-/// No poll has been made for the next data, which was ready no sooner than `ready_since`.
+/// Forgets all polls: the next data was ready no sooner than `ready_since`.
 void Acceptance::forget_polls(NodeTime ready_since) noexcept {
     not_ready_at_ = ready_since;
     not_ready_before_ = ready_since;
@@ -70,15 +70,15 @@ void Acceptance::forget_polls(NodeTime ready_since) noexcept {
 
 void Acceptance::on_unreadable() noexcept {
     ++results_refused_;
-    // It may be the same data that is read next: ready since then, altered polls allowed for.
+    // The same data may be read next. It has been ready since then, even if a poll was altered in transit.
     forget_polls(not_ready_before_);
 }
 
-/// Once, it was more likely a poll that was altered than a range that was made: the next one is still to
-/// come.
+/// The first stale result in a row is more likely an altered poll than a new range: the next range is still
+/// to come.
 void Acceptance::on_stale() noexcept {
-    // Nor can the newest edge be trusted then, if nobody saw the data not ready before it: a pin that lies
-    // leads the rhythm astray.
+    // Nor is the newest edge reliable if no poll before it found the data not ready: a faulty pin would
+    // mislead the tracker.
     if (unproven_readings_ > 0) tracker_.forget();
     if (has_accepted() && !std::exchange(was_stale_, true)) return;
     on_unreadable();
@@ -109,7 +109,7 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
     results_refused_ = 0;
     was_stale_ = false;
 
-    // What a range is longer than its budget may lie before its light or after it.
+    // The extra length of a range may lie before its measuring window or after it.
     const Microseconds spread = policy_.length_spread();
     reading_ = {.zone = zones.in_force(begin_of(ready, budget_, spread)),
                 .device_status = status_on_wire(measurement),
@@ -124,8 +124,8 @@ Verdict Acceptance::judge(const ResultSeen& seen, const ZoneCycle& zones) noexce
     return is_dated && reading_.zone != wire::kZoneUnknown ? Verdict::accepted : Verdict::undated;
 }
 
-/// After a start there is no stream count to compare with, and the result may still be one of the run before,
-/// unless its data was seen to become ready: by two polls, since one may have been altered.
+/// After a start there is no stream count to compare with, and the result may be left over from the previous
+/// run. It is new if its data was seen to become ready: by two polls, since one may have been altered.
 bool Acceptance::is_new(const vl53l1x::Measurement& measurement) const noexcept {
     if (!last_stream_) return is_next_new();
     return passes(gate_, *last_stream_, measurement.stream_count);
@@ -136,9 +136,9 @@ std::optional<std::uint8_t> Acceptance::steps_to(std::uint8_t stream_count) cons
     return stream_steps(*last_stream_, stream_count);
 }
 
-/// Who could not read the last results and saw no data become ready does not know which range this is; nor
-/// does who saw it once, while the stream count says that it is another; nor who has no count, and
-/// reads when the one after may be there.
+/// Which range this is remains unknown in three cases. Without a count: if the read comes when the next range
+/// may be there. After results that could not be read: if no poll found the data not ready, or if only one
+/// did and the stream count points to another range.
 bool Acceptance::is_count_in_doubt(std::optional<std::uint8_t> steps, NodeTime read_end) const noexcept {
     const std::uint32_t seen = results_refused_ + 1;
     if (!steps && last_ready_ && elapsed(*last_ready_, read_end) > (4 * seen + 3) * tracker_.period() / 4)
@@ -148,7 +148,7 @@ bool Acceptance::is_count_in_doubt(std::optional<std::uint8_t> steps, NodeTime r
     return not_ready_polls_ == 1 && steps && *steps != seen;
 }
 
-/// Whoever was kept from asking for that long (4 s at 30 Hz) does not know how many ranges were made.
+/// After so long without a read (4 s at 30 Hz) the stream count does not give the number of ranges.
 bool Acceptance::has_count_come_round(std::optional<std::uint8_t> steps, NodeTime read_end) const noexcept {
     if (!steps || !last_ready_) return false;
     return elapsed(*last_ready_, read_end) > (*steps + kStreamCycle / 2) * tracker_.period();
@@ -162,23 +162,23 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges)
         not_ready_polls_ >= 2 && elapsed(not_ready_before_, not_ready_at_) <= policy_.close_polls_believed;
     const bool is_believed = (is_close || is_lone_poll_believed(predicted)) && !is_overdue;
     const NodeTime not_ready = is_believed ? not_ready_at_ : not_ready_before_;
-    // It was overdue for one poll only: either that was altered, or the sensor slipped. Both are possible.
+    // Only one poll found it overdue: that poll was altered, or the sensor slipped. Both are possible.
     if (is_overdue && !is_after(not_ready, predicted->latest))
         return tracker_.relearn({later_of(not_ready, predicted->earliest), seen.read_end}, ranges);
-    // Ready before it could be: the sensor is ahead of its rhythm, or its pin lies. The rhythm says nothing
-    // then, or it would be followed for ever.
+    // Ready before it could be: the sensor is ahead of its rhythm, or its pin is faulty. The rhythm is
+    // dropped; otherwise a wrong one would be followed for ever.
     const bool is_next = results_refused_ == 0 && ranges == 1;
     if (is_next && predicted && is_after(predicted->earliest, seen.ready_seen)) {
         tracker_.forget();
         return tracker_.observe({not_ready_before_, not_ready_polls_ >= 2 ? seen.ready_seen : seen.read_end},
                                 ranges);
     }
-    // Data stays ready until cleared, but a later range overwrites it: then the poll saw the edge of an
-    // earlier range than the one read. And a poll that was never answered "not ready" proves nothing about
-    // when, unless there was no earlier range.
+    // Data stays ready until cleared, but a later range overwrites it: then the polls saw the edge of an
+    // earlier range than the one read. And without a poll that found the data not ready, the time of the edge
+    // is unknown, unless there was no earlier range.
     const TimeBracket polled{not_ready, seen.ready_seen};
     const TimeBracket until_read{not_ready, seen.read_end};
-    // The count begins at 0 after a start, and never comes back to it.
+    // The count begins at 0 after a start and never returns to 0.
     const bool is_counted_next = gate_ == StreamGate::advanced &&
                                  (has_accepted() ? predicted && is_next : seen.measurement.stream_count == 0);
     const bool is_of_this = is_read_of(polled, predicted, seen.read_end, is_counted_next);
@@ -189,9 +189,8 @@ TimeBracket Acceptance::ready_time(const ResultSeen& seen, std::uint32_t ranges)
     return tracker_.observe(is_edge_seen ? polled : until_read, ranges);
 }
 
-/// Whether what was read is the data that became ready within `polled`. Who was kept waiting before the read
-/// may have read the next range's: then only the stream count tells, or a prediction that leaves no room for
-/// that one.
+/// Whether the result read is the data that became ready within `polled`. If the read was delayed, it may be
+/// the next range's. Then only the stream count can decide, or a prediction that excludes the next range.
 bool Acceptance::is_read_of(const TimeBracket& polled, const std::optional<TimeBracket>& predicted,
                             NodeTime read_end, bool is_counted_next) const noexcept {
     if (predicted && !intersection(polled, *predicted)) return false;
@@ -212,7 +211,7 @@ bool Acceptance::must_poll_punctually() const noexcept {
 
 bool Acceptance::wants_poll_confirmed() const noexcept {
     const auto predicted = next_ready();
-    // Where polls are far apart anyway, one more for each of them would cost more than it tells.
+    // Where polls are far apart, confirming each of them costs more than it gains.
     const bool is_near = predicted && known_width(*predicted) <= 3 * policy_.lone_poll_believed;
     return is_near && !is_lone_poll_believed(predicted) && is_after(not_ready_at_, predicted->earliest) &&
            elapsed(not_ready_before_, not_ready_at_) > policy_.lone_poll_believed;
@@ -220,7 +219,8 @@ bool Acceptance::wants_poll_confirmed() const noexcept {
 
 bool Acceptance::wants_ready_confirmed() const noexcept {
     const auto predicted = next_ready();
-    // The wider the bracket, the further off is what one altered poll says, and the period that it tells.
+    // The wider the bracket, the larger the error that one altered poll causes in the ready time and in the
+    // period.
     return !has_accepted() || !predicted || known_width(*predicted) > policy_.lone_poll_believed ||
            is_after(not_ready_at_, predicted->latest);
 }
@@ -235,7 +235,7 @@ std::optional<NodeTime> Acceptance::next_range_begin() const noexcept {
     return begin_of(*next, budget_, policy_.length_spread()).earliest;
 }
 
-/// How badly the sensor's grid is known: what its ranges stray from it comes on top.
+/// How well the sensor's grid is known, without the jitter of single ranges around it.
 Microseconds Acceptance::known_width(const TimeBracket& predicted) const noexcept {
     return predicted.width() - policy_.width_of_jitter();
 }

@@ -1,5 +1,5 @@
-// Judges each result of one sensor: is it new, when was it taken, in which zone? Only what passes becomes a
-// reading. The double read is the driver's part; what the status means is the host's.
+// Decides on each result of one sensor: is it new, when was it taken, in which zone? Only a result that
+// passes becomes a reading. The double read is the driver's task; the meaning of the status is the host's.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,17 @@
 
 namespace octoskin::node {
 
-/// A result as it was read, and when.
+/// A result as it was read, with its times.
 struct ResultSeen {
     vl53l1x::Measurement measurement;
-    NodeTime ready_seen;  ///< when the sensor answered that data is ready, at the latest
+    NodeTime ready_seen;  ///< latest time of the answer that data is ready
     NodeTime read_end;    ///< end of the read, interrupt cleared
 };
 
 enum class Verdict : std::uint8_t {
     accepted,
-    refused,  ///< the stream count says that it is not new
-    undated,  ///< a good result, but the time or zone it belongs to is not known well enough
+    refused,  ///< not new, by its stream count
+    undated,  ///< a good result whose time or zone is not known well enough
 };
 
 class Acceptance {
@@ -36,41 +36,42 @@ class Acceptance {
     /// Ranging was started at `started`, with a period within `uncertainty_permille` of `period`.
     void restart(NodeTime started, Microseconds period, std::int32_t uncertainty_permille) noexcept;
 
-    /// A poll that asked no sooner than at `asked` found no data.
+    /// A poll that began at `asked` or later found no data.
     void on_not_ready(NodeTime asked) noexcept;
-    /// A result was there, but could not be read twice alike, or made no sense.
+    /// A result was there, but its two reads did not agree, or it was implausible.
     void on_unreadable() noexcept;
     [[nodiscard]] Verdict judge(const ResultSeen& seen, const ZoneCycle& zones) noexcept;
 
     /// The last accepted reading.
     [[nodiscard]] const Reading& reading() const noexcept { return reading_; }
-    /// Whether a result was accepted since the start: the next one's stream count tells whether it is new.
+    /// Whether a result was accepted since the start, so that the stream count shows whether the next one is
+    /// new.
     [[nodiscard]] bool has_accepted() const noexcept { return last_stream_.has_value(); }
-    /// Whether the last accepted result was seen to follow another: the sensor measures.
+    /// Whether the last accepted result followed another one: proof that the sensor measures.
     [[nodiscard]] bool is_proven() const noexcept { return is_proven_; }
 
-    /// When the next result should become ready; empty until the first one was seen.
+    /// When the next result should become ready; empty before the first one.
     [[nodiscard]] std::optional<TimeBracket> next_ready() const noexcept;
-    /// Whether data was lately seen not to be ready before its time: the sensor is not ahead of its rhythm.
-    /// Never where the stream count does not tell how many ranges it made.
+    /// Whether data was recently seen not ready before its time: proof that the sensor is not ahead of its
+    /// rhythm. Always false where the stream count does not give the number of ranges.
     [[nodiscard]] bool is_rhythm_proven() const noexcept {
         return gate_ == StreamGate::advanced && unproven_readings_ < policy_.unproven_readings_max;
     }
-    /// Whether the last poll, which found nothing, is worth asking again at once: alone it would not be
-    /// believed, and the poll before it was long ago.
+    /// Whether the last poll, which found nothing, should be repeated at once: alone it is not trusted, and
+    /// the poll before it was long ago.
     [[nodiscard]] bool wants_poll_confirmed() const noexcept;
-    /// Whether a poll that comes late would leave the next ready time known less well than it should be.
+    /// Whether a late poll would leave the next ready time less well known than it should be.
     [[nodiscard]] bool must_poll_punctually() const noexcept;
-    /// Whether a poll that finds data needs a second one: for the first result of a run, and where polls
-    /// found none when it was due.
+    /// Whether a poll that finds data needs a second one: for the first result of a run, and if polls found
+    /// none when it was due.
     [[nodiscard]] bool wants_ready_confirmed() const noexcept;
-    /// When the range after the last result begins: the earliest it can be.
+    /// The earliest time at which the range after the last result begins.
     [[nodiscard]] std::optional<NodeTime> next_range_begin() const noexcept;
-    /// Whether results came since the last accepted one, and none of them could be used.
+    /// Whether results came since the last accepted one, none of them usable.
     [[nodiscard]] bool has_refused() const noexcept { return results_refused_ > 0; }
-    /// Whether data that becomes ready now could not be left over from before the start: two polls told.
+    /// Whether data that becomes ready now cannot be left over from before the start: two polls found none.
     [[nodiscard]] bool is_next_new() const noexcept { return not_ready_polls_ >= 2; }
-    /// Nothing was accepted for longer than the policy allows.
+    /// Whether nothing was accepted for longer than the policy allows.
     [[nodiscard]] bool is_silent(NodeTime now) const noexcept;
 
     [[nodiscard]] Microseconds period() const noexcept { return tracker_.period(); }
@@ -101,10 +102,10 @@ class Acceptance {
     std::optional<std::uint8_t> last_stream_;
     std::optional<NodeTime> last_ready_;
     NodeTime last_accepted_;              ///< or the start
-    NodeTime not_ready_at_;               ///< the last poll without data, or the result before
-    NodeTime not_ready_before_;           ///< the poll before that one, or the result before
+    NodeTime not_ready_at_;               ///< the last poll without data, or the previous result
+    NodeTime not_ready_before_;           ///< the poll before that one, or the previous result
     std::uint32_t not_ready_polls_ = 0;   ///< since the last result
-    bool was_stale_ = false;              ///< a result since the last accepted one
+    bool was_stale_ = false;              ///< a result that came since the last accepted one was stale
     std::uint8_t unproven_readings_ = 0;  ///< in a row, whose data was ready at the first poll
     std::uint32_t results_refused_ = 0;   ///< since the last accepted one
     Reading reading_;

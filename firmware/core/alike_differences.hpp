@@ -1,5 +1,9 @@
-// What several parts of a node read back alike, though something else was written, is how this type of part
-// is, and no reason to withhold a reading. What one part alone reads is that part's fault.
+// If several parts of a node read back the same value although another was written, this is a property of the
+// type of part: no reading is withheld for it. A value that only one part reads back is a fault of that part.
+//
+// Parts that had failed for such a difference are brought up again at once, and parts that were withheld
+// range at once. A fleet whose parts all differ has its first readings 0.65 s after the start instead of 0.32
+// s.
 #pragma once
 
 #include <array>
@@ -14,22 +18,23 @@ namespace octoskin::node {
 
 class AlikeDifferences {
   public:
-    /// Three parts that are wrong alike by accident, each at three attempts in a row, are not to be expected.
+    /// Three parts with the same accidental difference, each at three attempts in a row, are not to be
+    /// expected.
     static constexpr std::uint8_t kPartsMin = 3;
 
     struct Told {
-        vl53l1x::RegisterDifference difference;  ///< as the first of the parts has it
-        std::uint8_t parts = 0;                  ///< that had shown it when it was learnt
+        vl53l1x::RegisterDifference difference;  ///< as the first of the parts shows it
+        std::uint8_t parts = 0;                  ///< number of parts that had shown it when it was recognised
     };
 
-    /// Both outlive it.
+    /// Both must outlive this object.
     AlikeDifferences(vl53l1x::Verification& verification,
                      std::span<const std::optional<Sensor>> sensors) noexcept
         : verification_(verification), sensors_(sensors) {}
 
-    /// Looks for what `kPartsMin` parts show: at once if none has anything new, else O(parts * parts) with at
-    /// most 16 differences of each. True if the verification overlooks more than before: each sensor is to be
-    /// told.
+    /// Looks for differences that `kPartsMin` parts share. Returns at once if no part has a new one, else
+    /// O(parts * parts) with at most 16 differences of each. True if the verification overlooks more than
+    /// before: the caller then notifies each sensor.
     [[nodiscard]] bool update() noexcept;
     [[nodiscard]] std::span<const Told> learnt() const noexcept {
         return std::span(learnt_).first(learnt_count_);
@@ -41,7 +46,7 @@ class AlikeDifferences {
 
     vl53l1x::Verification& verification_;
     std::span<const std::optional<Sensor>> sensors_;
-    std::uint32_t seen_ = 0;  ///< lasting differences, of all parts, when last looked at
+    std::uint32_t seen_ = 0;  ///< lasting differences of all parts at the last look
     std::array<Told, vl53l1x::Verification::kAlikeMax> learnt_{};
     std::uint8_t learnt_count_ = 0;
 };

@@ -57,7 +57,7 @@ void Announcer::set_quiet(bool is_quiet) noexcept {
 
 void Announcer::request_all() noexcept {
     info_due_ = kAllPages;
-    if (is_quiet_) return;  // of sensors that are not at work there is nothing to say
+    if (is_quiet_) return;  // sensors that are not at work have no health to report
     for (std::uint8_t sensor = 0; sensor < sensor_count_; ++sensor) request_health(sensor);
 }
 
@@ -69,7 +69,7 @@ std::optional<wire::InfoPage> Announcer::info_page_due() const noexcept {
 }
 
 std::optional<std::uint8_t> Announcer::health_due() const noexcept {
-    if (health_due_ == 0) return std::nullopt;  // nearly always, and asked in every poll
+    if (health_due_ == 0) return std::nullopt;  // nearly always; checked in every poll
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         const auto sensor = static_cast<std::uint8_t>((health_first_ + i) % sensor_count_);
         if ((health_due_ >> sensor) & 1U) return sensor;

@@ -1,6 +1,6 @@
-// When does the node speak about itself? Heartbeat at 10 Hz, each NODE_INFO page and each sensor's health
-// once a second, spread evenly, and earlier when something changed. It remembers only *that* something is to
-// be said; what is said is composed at the moment it is sent, so it is never out of date and never queues up.
+// When the node reports about itself: the heartbeat at 10 Hz, each NODE_INFO page and each sensor's health
+// once a second, spread evenly, and earlier after a change. It stores only which reports are due. A report is
+// composed when it is sent, so it is never out of date and never queues up.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ class Announcer {
   public:
     Announcer(std::uint8_t sensor_count, const Policy& policy, NodeTime now) noexcept;
 
-    /// Notes what has fallen due by `now`.
+    /// Records what is due by `now`.
     void update(NodeTime now) noexcept;
-    /// When `update` next has something to note.
+    /// When `update` next has something to record.
     [[nodiscard]] NodeTime next_due() const noexcept;
 
-    /// Quiet: of its own accord the node says nothing but its heartbeat, though it answers what is asked.
-    /// Ends with everything to be said at once.
+    /// Quiet: the node sends only its heartbeat unasked, but answers requests. When this ends, every report
+    /// is due at once.
     void set_quiet(bool is_quiet) noexcept;
 
     void request_all() noexcept;
@@ -59,7 +59,7 @@ class Announcer {
     std::uint64_t health_due_ = 0;  ///< bit i: sensor i
     std::uint8_t info_turn_ = 0;
     std::uint8_t health_turn_ = 0;
-    std::uint8_t health_first_ = 0;  ///< where the search begins, so that no sensor is always last
+    std::uint8_t health_first_ = 0;  ///< where the search starts, so that no sensor is always last
 };
 
 }  // namespace octoskin::node

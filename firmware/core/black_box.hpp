@@ -1,5 +1,5 @@
-// Sends what the recorders of the buses hold, slowly, after a fault or on command: at most one dump is under
-// way, and its recorder stands still meanwhile.
+// Sends the records of the buses, slowly, after a fault or on command. At most one dump is under way, and its
+// recorder is frozen meanwhile.
 #pragma once
 
 #include <array>
@@ -20,18 +20,18 @@ using BusRecorders = std::array<std::optional<BusRecorder>, kNodeBusesMax>;
 
 class BlackBox {
   public:
-    /// `recorders` must outlive the black box.
+    /// `recorders` must outlive this object.
     BlackBox(BusRecorders& recorders, const Policy& policy) noexcept;
 
-    /// Something failed on `bus`: what led there is kept and sent, unless it was sent for an earlier fault
-    /// less than `black_box_pause` ago, or is on its way.
+    /// Something failed on `bus`: its record is kept and sent, unless a dump for an earlier fault was sent
+    /// less than `black_box_pause` ago, or is under way.
     void on_fault(std::uint8_t bus, NodeTime now) noexcept;
-    /// On somebody's order, whenever it was sent last. Nothing for a bus that is not there.
+    /// On command, however recent the last dump is. No effect for a bus that does not exist.
     void on_request(std::uint8_t bus, NodeTime now) noexcept;
 
-    /// Notes which pauses are over. Call in every turn, before `due`.
+    /// Records which pauses are over. Call in every turn, before `due`.
     void update(NodeTime now) noexcept;
-    /// The piece to send now; empty while there is none, or the last one was sent too short a time ago.
+    /// The piece to send now; empty if there is none, or if the last one was sent too recently.
     [[nodiscard]] std::optional<wire::BlackBox> due() const noexcept;
     /// `due()` was handed to the bus.
     void sent(NodeTime now) noexcept;
@@ -43,9 +43,9 @@ class BlackBox {
 
     BusRecorders& recorders_;
     const Policy& policy_;
-    std::uint8_t pending_ = 0;  ///< bit i: bus i is frozen, and to be sent or being sent
-    std::uint8_t current_ = 0;  ///< the bus of the dump under way, if any: others wait until it has ended
-    std::uint16_t index_ = 0;   ///< of its next piece
+    std::uint8_t pending_ = 0;  ///< bit i: bus i is frozen, and its dump waits or is under way
+    std::uint8_t current_ = 0;  ///< the bus of the dump under way, if any; others wait for its end
+    std::uint16_t index_ = 0;   ///< of that dump's next piece
     std::uint8_t dump_ = 0;
     Pause piece_pause_;
     std::array<Pause, kNodeBusesMax> fault_pauses_{};

@@ -9,7 +9,7 @@ namespace octoskin::node {
 
 namespace {
 
-// One at 0x29 and one at the sensor's own address; who comes back after that cannot be parked.
+// One at 0x29 and one at the sensor's own address. A device that reappears after that cannot be parked.
 constexpr std::uint8_t kParkingsMax = 2;
 
 }  // namespace
@@ -94,7 +94,7 @@ BusUse BringUp::advance(NodeTime now) {
             assert(false && "an operation is begun before it is polled");
             break;
     }
-    // Between two steps everybody else on the bus gets a chance.
+    // Between two steps the other sensors of the bus can take their turn.
     return BusUse::releases;
 }
 
@@ -209,13 +209,15 @@ void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
     } else if (step_ == Step::checking_parked) {
         start_step(Step::booting, now);
     } else {
-        // Somebody answered who is no VL53L1X, or hardly one, or does not let itself be moved.
+        // The device that answered is not a VL53L1X, does not answer like one, or does not let itself be
+        // moved.
         fail(wire::SensorFault::address_conflict);
     }
 }
 
-/// A run of registers at a time, so that the others on the bus need not wait for all of them; and all of
-/// them, whatever the first one says, so that every register that differs is seen at each attempt.
+/// Reads back one run of registers at a time, so that the other sensors of the bus need not wait for all of
+/// them. All runs are read whatever the first one shows, so that each attempt sees every register that
+/// differs.
 void BringUp::on_run_verified(NodeTime now) {
     if (std::exchange(is_verified_anew_, false)) {
         run_ = 0;
@@ -258,7 +260,8 @@ void BringUp::on_silence(NodeTime now) {
             start_step(is_to_be_sought ? Step::checking_parked : Step::booting, now);
             break;
         case Step::checking_parked:
-            // This sensor's reset, or another's, has brought it back to 0x29 and to silence.
+            // The reset of this sensor, or of another, has returned the parked device to 0x29 and silenced
+            // it.
             is_known_stuck_ = false;
             default_address_.forget_parked();
             start_step(Step::booting, now);
@@ -281,7 +284,8 @@ void BringUp::on_silence(NodeTime now) {
     }
 }
 
-/// Somebody is parked who is none of those that came since: then it is this one, which XSHUT does not move.
+/// If the parked device is none of the sensors that came up since, it is this sensor: XSHUT has no effect on
+/// it.
 void BringUp::on_nobody_came() {
     const bool is_suspect = default_address_.is_somebody_parked() && cleared_ != default_address_.parkings();
     fail(is_known_stuck_ || is_suspect ? wire::SensorFault::xshut_stuck : wire::SensorFault::no_answer);
@@ -290,7 +294,7 @@ void BringUp::on_nobody_came() {
 void BringUp::fail(wire::SensorFault fault) {
     fault_ = fault;
     outcome_ = Outcome::failed;
-    // In reset it cannot answer at 0x29, where it would be taken for its neighbour.
+    // Out of reset it could answer at 0x29 and be taken for its neighbour.
     hold_in_reset();
 }
 

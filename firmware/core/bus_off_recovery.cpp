@@ -30,7 +30,7 @@ BusOffRecovery::Action BusOffRecovery::on_off(NodeTime now) noexcept {
         return Action::discard;
     }
     if (!is_reached(try_at_, now)) return Action::none;
-    // While the lines stay dominant the way back never ends: asking again does no harm.
+    // While the lines stay dominant the recovery never ends; requesting it again does no harm.
     wait_ = std::min(wait_ * 2, policy_.bus_off_longest);
     try_at_ = now + wait_;
     return Action::restart;

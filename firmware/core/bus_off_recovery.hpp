@@ -1,6 +1,6 @@
-// When a node that the bus has shut out may try again: 100 ms after it went bus-off, then 200, 400 and 800,
-// and every 800 from there on; once it has stayed on the bus for a second, from 100 anew. The controller of
-// the STM32G4 (RM0440, FDCAN) recovers only when software asks for it, so nobody hurries.
+// When a node that went bus-off may try again: after 100 ms, then 200, 400 and 800, then every 800 ms. After
+// a second on the bus the sequence starts again at 100 ms. The controller of the STM32G4 (RM0440, FDCAN)
+// recovers only when software requests it.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ class BusOffRecovery {
   public:
     enum class Action : std::uint8_t {
         none,
-        discard,  ///< it has just gone bus-off: what waits in the controller is about to be stale
-        restart,  ///< let the controller begin its way back
-        resume,   ///< it is back
+        discard,  ///< just gone bus-off: frames in the controller are about to become stale
+        restart,  ///< let the controller begin its recovery
+        resume,   ///< back on the bus
     };
 
     explicit BusOffRecovery(const Policy& policy) noexcept;
@@ -28,7 +28,7 @@ class BusOffRecovery {
     [[nodiscard]] bool is_off() const noexcept { return is_off_; }
     /// Bus-off now, or back for less than `can_proven`.
     [[nodiscard]] bool is_recent() const noexcept { return is_off_ || back_since_.has_value(); }
-    /// When `update` next has something to do of its own accord.
+    /// When `update` next has something to do without a change of state.
     [[nodiscard]] std::optional<NodeTime> wake_time() const noexcept;
     [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
 

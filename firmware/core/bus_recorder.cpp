@@ -8,7 +8,7 @@ namespace octoskin::node {
 
 namespace {
 
-// The longest a loop may leave a transfer that has ended unattended.
+// The longest time for which a loop may leave an ended transfer unattended.
 constexpr Microseconds kOverdue{100'000};
 
 wire::TransferOutcome outcome_of(i2c::TransferError error) noexcept {
@@ -82,7 +82,7 @@ void BusRecorder::record(const InFlight& ended, wire::TransferOutcome outcome) n
 }
 
 void BusRecorder::make_room(std::size_t bytes) noexcept {
-    // Two spans of at most 255 bytes and a header: whatever comes fits once the rest is gone.
+    // Two spans of at most 255 bytes and a header: any transfer fits once the others are gone.
     static_assert(kRecordedBytesMax >= wire::kTransferHeaderBytes + std::size_t{2} * 255);
     while (transfers_ == kRecordedTransfersMax || used_ + bytes > ring_.size()) drop_oldest();
 }

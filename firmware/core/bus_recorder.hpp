@@ -1,5 +1,5 @@
-// An I2C bus that remembers what was last transferred on it, so that a fault in the field can be told byte by
-// byte. It stands between the sensors and the port's bus, and knows too whether a transfer is overdue.
+// An I2C bus that records the last transfers, so that a fault in the field can be examined byte by byte. It
+// lies between the sensors and the port's bus. It also detects overdue transfers.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 namespace octoskin::node {
 
 inline constexpr std::size_t kRecordedTransfersMax = 64;
-/// Of transfers with their headers. A reading of one sensor costs about 120 bytes, a bring-up 700.
+/// Transfers with their headers. A reading of one sensor takes about 120 bytes, a bring-up 700.
 inline constexpr std::size_t kRecordedBytesMax = 1'536;
 
 class BusRecorder final : public i2c::Bus {
@@ -30,18 +30,18 @@ class BusRecorder final : public i2c::Bus {
     [[nodiscard]] i2c::TransferError error() const override { return bus_.error(); }
     bool recover() override;
 
-    /// Whether the transfer in flight should have ended long ago, and not even `recover` could end it: the
-    /// port breaks its promises.
+    /// Whether the transfer in flight should have ended long ago and `recover` could not end it: a defect of
+    /// the port.
     [[nodiscard]] bool is_overdue(NodeTime now) const noexcept;
 
     // --- the record
-    /// Stops recording, so that the record can be read piece by piece; transfers go on.
+    /// Stops recording, so that the record can be read piece by piece; transfers continue.
     void freeze(NodeTime now) noexcept;
     [[nodiscard]] bool is_frozen() const noexcept { return is_frozen_; }
     void thaw() noexcept { is_frozen_ = false; }
-    /// Bytes of the dump, its header included; while frozen.
+    /// Bytes of the dump with its header; only while frozen.
     [[nodiscard]] std::size_t dump_size() const noexcept { return wire::kDumpHeaderBytes + used_; }
-    /// Byte number `at` < `dump_size()` of the dump; while frozen.
+    /// Byte number `at` < `dump_size()` of the dump; only while frozen.
     [[nodiscard]] std::uint8_t dump_byte(std::size_t at) const noexcept;
 
   private:
@@ -60,7 +60,7 @@ class BusRecorder final : public i2c::Bus {
     i2c::Bus& bus_;
     std::optional<InFlight> in_flight_;
     std::array<std::uint8_t, kRecordedBytesMax> ring_{};
-    std::size_t first_ = 0;  ///< of the oldest transfer
+    std::size_t first_ = 0;  ///< position of the oldest transfer
     std::size_t used_ = 0;
     std::size_t transfers_ = 0;
     bool is_frozen_ = false;

@@ -14,10 +14,10 @@ namespace {
 // A step takes a few microseconds on the board; two transitions without a transfer may follow each other.
 constexpr int kStepsPerPoll = 4;
 
-// A block of results, which is what a ranging sensor has the bus for longest, and a part in ten for a bus
-// that runs slower than configured.
+// A result block, the longest use of the bus by a ranging sensor, plus 10 % for a bus that runs slower than
+// configured.
 constexpr std::int64_t kLongestReadBits = std::int64_t{i2c::bit_count(2, 17)} * 11 / 10;
-// A poll, with half as much again.
+// A poll, plus 50 %.
 constexpr std::int64_t kLongestPollBits = std::int64_t{i2c::bit_count(2, 1)} * 3 / 2;
 
 }  // namespace
@@ -39,7 +39,7 @@ void BusWorker::add(Sensor& sensor) {
 
 void BusWorker::poll(NodeTime now) {
     if (!has_sensors()) return;
-    // A controller may have been reset in the middle of a sensor's byte: the bus is freed before first use.
+    // The controller may have been reset in the middle of a sensor's byte: the bus is freed before first use.
     const bool is_retry_due = is_faulty_ && is_reached(retry_at_, now);
     if (!std::exchange(has_started_, true) || is_retry_due) free_bus(now);
 
@@ -60,8 +60,9 @@ void BusWorker::follow_hint(NodeTime now) {
     }
 }
 
-/// The bus is free: whose is it next? Who must be punctual; then who was interrupted; then who has been due
-/// longest. Who had to wait for too long goes before all but a start.
+/// Chooses the next owner of the free bus: first a sensor that must be punctual, then one that was
+/// interrupted, then the one that has been due longest. A sensor that has waited too long goes before all but
+/// a start.
 void BusWorker::take_turns(NodeTime now) {
     awaited_ = nullptr;
     Sensor* const punctual = first_punctual(now + longest_read_);
@@ -102,7 +103,7 @@ Sensor* BusWorker::longest_interrupted() noexcept {
     return longest;
 }
 
-/// The owner ends its transfer and begins the next, unless somebody must be punctual.
+/// The owner ends its transfer and begins the next, unless another sensor must be punctual.
 void BusWorker::advance_owner(NodeTime now) {
     Sensor& sensor = *owner_;
     const bool is_held = is_owner_under_way_ && may_be_interrupted_ && sensor.may_be_interrupted() &&
@@ -114,7 +115,7 @@ void BusWorker::advance_owner(NodeTime now) {
     if (use == BusUse::releases) {
         owner_ = nullptr;
     } else if (is_held && !bus_.is_busy()) {
-        // Each sensor at most once: who is interrupted is not due to be punctual.
+        // Each sensor at most once: an interrupted one is not due to be punctual.
         assert(interrupted_count_ < interrupted_.size());
         if (interrupted_count_ == 0) interrupted_at_ = now;
         interrupted_[interrupted_count_++] = owner_;
@@ -124,9 +125,9 @@ void BusWorker::advance_owner(NodeTime now) {
     if (sensor.take_bus_suspicion()) free_bus(now);
 }
 
-/// Of those, but the owner, that need the bus for themselves at a time not after `by`: the one that needs it
-/// first. A start decides when all ranges of its run will be: it goes before polls that become due so shortly
-/// before it that they would delay it.
+/// Among the sensors, without the owner, that need the bus for themselves at a time not after `by`: the one
+/// that needs it first. A start determines the times of all ranges of its run. It goes before polls that
+/// become due so shortly before it that they would delay it.
 Sensor* BusWorker::first_punctual(NodeTime by) const {
     Sensor* first = nullptr;
     for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
@@ -159,8 +160,8 @@ void BusWorker::free_bus(NodeTime now) {
         is_faulty_ = false;
         return;
     }
-    // Somebody holds a line: with all sensors in reset it is free, unless the fault is elsewhere. They then
-    // come back one after the other, and the culprit is the one whose bring-up fails.
+    // A device holds a line. With all sensors in reset the line is free, unless the fault is elsewhere. The
+    // sensors then come back one after the other; the faulty one is the one whose bring-up fails.
     retry_at_ = now + (is_faulty_ ? policy_.bus_retry : policy_.bus_isolation);
     is_faulty_ = true;
     owner_ = nullptr;

@@ -1,8 +1,8 @@
-// One I2C bus and its sensors: at any time one of them owns the bus. Whoever has been due longest is next,
-// and a due time only moves once its owner was served: so no sensor starves, and a silent one costs its
-// neighbours no more than its own failed transfers. Only who must be punctual, to start in its phase or to
-// ask for data of which the time is not known well enough, goes before its turn: between the transfers of
-// whoever owns the bus, and no transfer is begun that would make it late.
+// One I2C bus and its sensors: at any time one of them owns the bus. The next owner is the sensor that has
+// been due longest, and a due time moves only after the sensor was served. So no sensor starves, and a silent
+// one costs its neighbours no more than its own failed transfers. Only a sensor that must be punctual goes
+// before its turn: to start in its phase, or to poll for data whose time is not known well enough. It goes
+// between the owner's transfers, and no transfer is begun that would make it late.
 #pragma once
 
 #include <array>
@@ -26,23 +26,23 @@ class BusWorker {
     BusWorker(i2c::Bus& bus, std::uint32_t i2c_hz, const vl53l1x::Options& options, const Policy& policy,
               const DataReadyHint& hint);
 
-    /// The sensor must outlive the worker. Call for all before the first `poll`.
+    /// `sensor` must outlive the worker. Call for all sensors before the first `poll`.
     void add(Sensor& sensor);
     [[nodiscard]] DefaultAddress& default_address() noexcept { return default_address_; }
-    /// Somebody answered at 0x29 whom no XSHUT line put there; parked since.
+    /// Whether a device answered at 0x29 without an XSHUT line having released it. It is parked since.
     [[nodiscard]] bool has_parked() const noexcept { return default_address_.is_somebody_parked(); }
 
-    /// Advances the owner and hands the bus on, a few steps at most. O(steps * sensors of the bus).
+    /// Advances the owner and passes the bus on, in at most 4 steps. O(steps * sensors of the bus).
     void poll(NodeTime now);
-    /// The bus as its sensors see it: busy also while somebody else's poll goes first.
+    /// The bus as its sensors see it: also busy while another sensor's poll goes first.
     [[nodiscard]] i2c::Bus& shared_bus() noexcept { return shared_bus_; }
 
-    /// When a sensor next wants the bus; empty while a transfer is in flight, whose end is the next event.
+    /// When a sensor next needs the bus; empty while a transfer is in flight, whose end is the next event.
     [[nodiscard]] std::optional<NodeTime> wake_time() const;
 
     [[nodiscard]] bool has_sensors() const noexcept { return sensor_count_ > 0; }
     [[nodiscard]] const DataReadyHint& hint() const noexcept { return hint_; }
-    /// A line is held low and could not be freed.
+    /// Whether a line is held low and could not be freed.
     [[nodiscard]] bool is_faulty() const noexcept { return is_faulty_; }
 
   private:
@@ -69,9 +69,9 @@ class BusWorker {
     bool is_owner_under_way_ = false;  ///< has begun a transfer since its turn began
     bool may_be_interrupted_ = true;
     const Sensor* awaited_ = nullptr;                     ///< the bus is kept free for it until it is due
-    std::array<Sensor*, kNodeSensorsMax> interrupted_{};  ///< between two of their transfers; first first
+    std::array<Sensor*, kNodeSensorsMax> interrupted_{};  ///< between two transfers; earliest first
     std::uint8_t interrupted_count_ = 0;
-    NodeTime interrupted_at_;  ///< or given a turn since
+    NodeTime interrupted_at_;  ///< or since when one of them was given a turn
     bool has_started_ = false;
     bool is_faulty_ = false;
     NodeTime retry_at_;

@@ -1,4 +1,4 @@
-// What a node is asked to calibrate and what it answers: at most one sensor at a time.
+// Calibration by command: the order to a node and its answer. At most one sensor at a time.
 #pragma once
 
 #include <array>
@@ -21,31 +21,31 @@ struct CalibrationResult {
     std::uint16_t crosstalk_raw = 0;
 };
 
-/// Of a run whose `poll` just said `done` or `failed`.
+/// For a run whose `poll` just returned `done` or `failed`.
 [[nodiscard]] CalibrationResult result_of(const vl53l1x::CalibrationRun& run,
                                           vl53l1x::Progress progress) noexcept;
 
-/// The node's half of the dialogue: which calibration is under way, and which answers are to be sent. Answers
-/// go in the order of their commands, each once: who misses one asks again. The end, for which nobody could
-/// ask, goes three times: at once, and after each of the next two heartbeats.
+/// The node's side of a calibration: which one is under way, and which answers are due. Answers are sent in
+/// the order of their commands, each once; a host that misses one repeats its command. The final outcome
+/// cannot be requested again, so it is sent three times: at once, and after each of the next two heartbeats.
 class CalibrationDialogue {
   public:
     static constexpr std::uint8_t kEndsSent = 3;
 
     [[nodiscard]] bool is_under_way() const noexcept { return under_way_.has_value(); }
-    /// Of the calibration under way.
+    /// The sensor of the calibration under way.
     [[nodiscard]] std::uint8_t sensor() const noexcept { return under_way_->sensor; }
 
     /// `command` calibrates one sensor, not all.
     void accept(const wire::Command& command) noexcept;
     void refuse(const wire::Command& command) noexcept;
-    /// Answers once more if it is the very command whose calibration is under way; else returns false.
+    /// If `command` is the one whose calibration is under way, answers once more; else returns false.
     [[nodiscard]] bool answers_again(const wire::Command& command) noexcept;
-    /// Of the one under way.
+    /// Ends the calibration under way.
     void end(const CalibrationResult& result) noexcept;
 
     [[nodiscard]] std::optional<wire::Calibration> due() const noexcept;
-    /// What was due is on its way.
+    /// `due()` was handed to the bus.
     void sent() noexcept;
     void on_heartbeat_sent() noexcept { is_end_due_ = ends_left_ > 0; }
 
@@ -53,7 +53,7 @@ class CalibrationDialogue {
     void answer(const wire::Calibration& answer) noexcept;
 
     std::optional<wire::Calibration> under_way_;
-    /// Oldest first. Whoever asks more than this before the bus takes an answer gets none to the rest.
+    /// Oldest first. While it is full, further commands get no answer.
     std::array<wire::Calibration, 4> answers_{};
     std::uint8_t answer_count_ = 0;
     wire::Calibration ended_;
@@ -61,7 +61,7 @@ class CalibrationDialogue {
     bool is_end_due_ = false;
 };
 
-/// What a command to calibrate is about.
+/// The order in a calibration command.
 [[nodiscard]] CalibrationOrder order_of(const wire::Command& command) noexcept;
 
 }  // namespace octoskin::node

@@ -7,8 +7,8 @@ namespace octoskin::node {
 
 namespace {
 
-// A confirmed fall makes up for so many spurious ones: a line may bring two in three, as when sensors of its
-// bus are started again and again, but not chatter between them.
+// A confirmed fall offsets this many spurious ones. Two in three may be spurious, as when sensors of the bus
+// are restarted again and again; a chattering line has more.
 constexpr std::uint16_t kDoubtLifted = 2;
 
 }  // namespace

@@ -1,8 +1,8 @@
-// The one place on a bus where a freshly reset sensor answers, 0x29, and who may use it. Two sensors there at
-// once would both take the same new address, so one at a time goes through it, and all others watch.
+// The address 0x29, at which a sensor answers after reset, and which sensor may use it. Two sensors there at
+// once would both take the same new address. So one at a time uses it, and all others wait.
 //
-// Whoever is found there unasked, because its XSHUT does not put it in reset, or because nobody drives it, is
-// *parked*: given an address that no sensor of the bus has, where it disturbs nobody.
+// A device found there unexpectedly, because its XSHUT line does not put it in reset or is not driven, is
+// *parked*: it is given an address that no sensor of the bus has, where it disturbs none.
 #pragma once
 
 #include <array>
@@ -25,22 +25,22 @@ class DefaultAddress {
         if (holder_ == who) holder_ = nullptr;
     }
 
-    /// For asking whether anybody answers where nobody should, and for parking; only for the holder.
+    /// For checking that no device answers where none should, and for parking; only for the holder.
     [[nodiscard]] vl53l1x::Device& watcher() noexcept { return watcher_; }
 
-    /// A sensor of this bus is to have `address`: before the first bring-up, for all.
+    /// Reserves `address` for a sensor of this bus. Call for all sensors before the first bring-up.
     void reserve(i2c::Address address) noexcept { is_taken_[address] = true; }
-    /// The highest address that I2C leaves to devices and no sensor of this bus is to have.
+    /// The highest device address of I2C that is reserved for no sensor of this bus.
     [[nodiscard]] i2c::Address parking() const noexcept {
         i2c::Address address = kAddressLast;
         while (is_taken_[address]) --address;  // a bus has fewer sensors than addresses
         return address;
     }
 
-    /// Somebody was parked from 0x29, and nobody knows who it is. Counts how often, so that who answered
-    /// since is known not to be the one.
+    /// An unidentified device was parked from 0x29. The count shows which sensors have answered since, and so
+    /// are not that device.
     void note_parked() noexcept { ++parkings_, is_parked_ = true; }
-    /// Nobody answers at the parking address any more.
+    /// No device answers at the parking address any more.
     void forget_parked() noexcept { is_parked_ = false; }
     [[nodiscard]] bool is_somebody_parked() const noexcept { return is_parked_; }
     [[nodiscard]] std::uint32_t parkings() const noexcept { return parkings_; }

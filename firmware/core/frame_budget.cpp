@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kHeartbeatsPerSecond = 10;
 constexpr std::uint32_t kSyncReportsPerSecond = 1;
 constexpr std::uint32_t kBurstMin = 8;
-/// Two looks at something far off, then one at something near: `Reflex`.
+/// Two readings of something far, then one of something near: see `Reflex`.
 constexpr std::uint32_t kReadingsPerEvent = 3;
 
 }  // namespace
@@ -27,7 +27,7 @@ FrameBudgets frame_budgets(const NodeConfig& config) noexcept {
         const std::uint32_t readings = (1'000 + period_ms - 1) / period_ms;
         const bool has_aux = !config.uses_can_fd && config.aux_every > 0;
         const std::uint32_t aux = has_aux ? readings / config.aux_every + 1 : 0;
-        nominal += readings + aux + 1;  // and its health
+        nominal += readings + aux + 1;  // plus its health
         if (sensor.reflex_below_mm == 0) continue;
         ++watching;
         readings_watched += readings;

@@ -1,6 +1,6 @@
-// How many frames a node may send: at most twice its nominal rate in any second, the limit above which a host
-// takes a node for a babbling one. What its REFLEXes may need of that is theirs alone: neither do they wait
-// for a token of the rest, nor the heartbeat for one that they took.
+// How many frames a node may send: in any second at most twice its nominal rate, the limit above which a host
+// treats a node as babbling. The REFLEX frames have a share of their own: they do not wait for a token of
+// other frames, and the heartbeat does not wait because of them.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ struct FrameBudget {
     friend constexpr bool operator==(const FrameBudget&, const FrameBudget&) = default;
 };
 
-/// `burst + per_second` of both is twice the nominal rate.
+/// `burst + per_second` of both budgets is twice the nominal rate.
 struct FrameBudgets {
     FrameBudget reflex;
     FrameBudget others;
 };
 
-/// A reading counts as one frame, shared or not.
+/// A reading counts as one frame, even if it shares one.
 [[nodiscard]] FrameBudgets frame_budgets(const NodeConfig& config) noexcept;
 
 }  // namespace octoskin::node

@@ -14,10 +14,10 @@ namespace {
 
 constexpr Microseconds kBlinkHalfPeriod{250'000};
 
-// A full transmit mailbox has no event of its own here: look again soon.
+// A full transmit mailbox gives no event here: try again soon.
 constexpr Microseconds kTransmitRetry{1'000};
 
-/// What the sensor would refuse at every attempt is no fault of the sensor.
+/// A setting that the sensor would always refuse is not a fault of the sensor.
 bool is_usable(const SensorConfig& sensor, std::size_t bus_count) noexcept {
     return sensor.bus < bus_count &&
            vl53l1x::range_timeouts(sensor.distance_mode, sensor.timing_budget_ms).has_value() &&
@@ -163,12 +163,12 @@ void Node::watch_reflex(std::uint8_t sensor, const Reading& reading, NodeTime no
 }
 
 void Node::note_health_changes(NodeTime now) {
-    // A look at everybody at every turn would be a fifth of a busy node's work.
+    // Looking at every sensor in every turn would be a fifth of a busy node's work.
     const Microseconds since = elapsed(health_looked_at_, now);
     is_health_look_due_ = since.count() >= 0 && since < policy_.health_look_interval;
     if (is_health_look_due_) return;
     health_looked_at_ = now;
-    // In turns: both at once would hold up a slow core for longer than a reading may wait.
+    // Alternating: both at once would delay a slow core for longer than a reading may wait.
     if (std::exchange(looks_at_faults_, !looks_at_faults_)) {
         learn_what_is_alike(now);
         note_fault_change();
@@ -178,7 +178,7 @@ void Node::note_health_changes(NodeTime now) {
         if (sensors_[i]->take_failure()) black_box_.on_fault(config_.sensors[i].bus, now);
         const Told& told = told_[i];
         const bool is_changed = sensors_[i]->state() != told.state || sensors_[i]->fault() != told.fault;
-        // The first comparison spares nearly every poll the division by the wire's step.
+        // The first comparison avoids the division by the wire's step in nearly every poll.
         const bool is_bound_exceeded =
             told.bound_since > told.bound && bound_on_wire(told.bound_since) > bound_on_wire(told.bound);
         if (is_changed || is_bound_exceeded) announcer_.request_health(i);

@@ -1,6 +1,6 @@
-// The node: brings its sensors up, reads them on schedule, accepts or rejects each reading, and puts frames
-// out. The same code runs on the board, on Linux and in the simulator: time is an argument, buses and lines
-// are interfaces.
+// The node: brings its sensors up, reads them on schedule, accepts or rejects each reading, and sends frames.
+// The same code runs on the board, on Linux and in the simulator: time is an argument, buses and lines are
+// interfaces.
 #pragma once
 
 #include <array>
@@ -30,36 +30,36 @@
 
 namespace octoskin::node {
 
-/// What the node counted since its start.
+/// The node's counters since its start.
 struct NodeCounts {
-    std::uint32_t i2c_errors = 0;       ///< failed transfers, retried ones included; silence at 0x29 is none
-    std::uint32_t rejected = 0;         ///< results that did not become readings
-    std::uint32_t reads_disagreed = 0;  ///< of these: never read twice alike
+    std::uint32_t i2c_errors = 0;  ///< failed transfers, with retried ones; silence at 0x29 does not count
+    std::uint32_t rejected = 0;    ///< results that did not become readings
+    std::uint32_t reads_disagreed = 0;  ///< of these: the two reads never agreed
     std::uint32_t undated = 0;          ///< of these: time or zone not known well enough
-    std::uint32_t withheld = 0;  ///< of these: a register that decides the range will not take its value
+    std::uint32_t withheld = 0;  ///< of these: a register that decides the range does not keep its value
     std::uint32_t suspect = 0;   ///< readings sent while a register may have been wrong
     std::uint32_t sensor_restarts = 0;
     std::uint32_t displaced = 0;  ///< readings displaced by a newer one of the same sensor before being sent
     std::uint32_t late = 0;       ///< readings that waited too long to be sent
-    std::uint32_t others_late = 0;      ///< REFLEX and SYNC_REPORT that did
-    std::uint32_t given_up = 0;         ///< readings in frames that the controller took and could not send
+    std::uint32_t others_late = 0;      ///< REFLEX and SYNC_REPORT that waited too long
+    std::uint32_t given_up = 0;         ///< readings in frames that the controller took but could not send
     std::uint32_t others_given_up = 0;  ///< such frames without a reading
     std::uint32_t bus_off = 0;          ///< times that the controller went bus-off
     std::uint32_t accepted = 0;         ///< readings: sent, displaced, late, given up, or still waiting
     std::uint32_t frames_sent = 0;      ///< handed to the controller
-    std::uint32_t rx_rejected = 0;      ///< frames for us that failed a check, and commands that were refused
-    std::uint32_t boots_late = 0;       ///< sensors that were given their address before their boot was over
-    std::uint32_t spurious_hints = 0;   ///< falls of data-ready lines that no data answered to
+    std::uint32_t rx_rejected = 0;      ///< frames for this node that failed a check, and refused commands
+    std::uint32_t boots_late = 0;      ///< sensors that were given their address before the end of their boot
+    std::uint32_t spurious_hints = 0;  ///< falls of data-ready lines without data
 };
 
-/// `config` that is not valid, or for another type of board: the node does not range, and its heartbeat says
-/// `bad_config`. For a configuration block that is missing or damaged see `without_configuration`.
+/// If `config` is not valid or is for another type of board, the node does not range and its heartbeat
+/// reports `bad_config`. For a missing or damaged configuration block see `without_configuration`.
 ///
 /// Call `poll` in a loop of 100 us or faster, or at `wake_time` and whenever an I2C transfer ends or a
-/// transmit mailbox falls free; and `on_frame` for every frame received (never for own ones), with the time
-/// of its end. One thread only; nothing waits. A `poll` takes at most 4 steps on each I2C bus and sends at
-/// most 8 frames: O(sensors). Slower loops are safe, but lose readings: each transfer of a reading needs a
-/// poll of its own.
+/// transmit mailbox falls free. Call `on_frame` for every frame received (never for own ones), with the time
+/// of its end. One thread only; no call waits, except `i2c::Bus::recover` for at most 1 ms. A `poll` takes at
+/// most 4 steps on each I2C bus and sends at most 8 frames: O(sensors). Slower loops are safe, but lose
+/// readings: each transfer of a reading needs a poll of its own.
 class Node {
   public:
     Node(const NodeConfig& config, const Identity& identity, const Ports& ports, NodeTime now,
@@ -70,32 +70,31 @@ class Node {
     void poll(NodeTime now);
     void on_frame(const wire::CanFrame& frame, NodeTime received);
 
-    /// When `poll` next has something to do of its own accord, never before `now`. The ends of I2C transfers
-    /// and of transmissions come on top: they are events of the ports.
+    /// When `poll` next has something to do, never before `now`. The ends of I2C transfers and of
+    /// transmissions are additional: they are events of the ports.
     [[nodiscard]] NodeTime wake_time(NodeTime now) const;
 
     /// Readings that wait to be sent.
     [[nodiscard]] std::size_t waiting() const noexcept { return queue_.waiting(); }
-    /// Readings handed to the controller and not given up by it since.
+    /// Readings handed to the controller and not given up since.
     [[nodiscard]] std::uint32_t readings_sent() const noexcept { return queue_.total_sent() - given_up_; }
 
     /// Times that the CAN controller went bus-off.
     [[nodiscard]] std::uint32_t bus_off_count() const noexcept { return bus_off_.count(); }
 
-    /// Bit b: the data-ready line of bus b brought too many falls that meant nothing, and is not listened to
-    /// before the next start. Its sensors are read all the same.
+    /// Bit b: the data-ready line of bus b had too many spurious falls and is ignored until the next start.
+    /// Its sensors are still read.
     [[nodiscard]] std::uint8_t ignored_data_ready() const noexcept;
 
-    /// What several sensors read back alike, otherwise than it was written, in the order in which it was
-    /// learnt.
+    /// Differences that several sensors read back alike, in the order in which they were recognised.
     [[nodiscard]] std::span<const AlikeDifferences::Told> alike() const noexcept { return alike_.learnt(); }
 
-    /// The host asked for a reset: the application performs it.
+    /// The host requested a reset: the application performs it.
     [[nodiscard]] bool is_reset_requested() const noexcept { return is_reset_requested_; }
 
     [[nodiscard]] wire::NodeState state() const noexcept;
     [[nodiscard]] NodeCounts counts() const noexcept;
-    /// In the rig's order; none is empty.
+    /// In the rig's order; none of the optionals is empty.
     [[nodiscard]] std::span<const std::optional<Sensor>> sensors() const noexcept {
         return std::span(sensors_).first(sensor_count_);
     }
@@ -107,7 +106,7 @@ class Node {
         std::uint8_t end = 0;
         [[nodiscard]] bool is_empty() const noexcept { return first == end; }
     };
-    /// What was last told of a sensor, and the worst capture bound since.
+    /// What was last reported about a sensor, and the worst capture bound since.
     struct Told {
         wire::SensorState state = wire::SensorState::starting;
         wire::SensorFault fault = wire::SensorFault::none;
@@ -183,7 +182,7 @@ class Node {
     bool is_config_usable_;
     std::uint32_t node_hash_;
     std::uint16_t uid_crc_;
-    std::uint8_t sensor_count_ = 0;  ///< of those at work: none in safe mode, or with a bad configuration
+    std::uint8_t sensor_count_ = 0;  ///< sensors at work: none in safe mode, or with a bad configuration
 
     PhaseClock phase_clock_;
     BusRecorders recorders_{};
@@ -200,11 +199,11 @@ class Node {
     std::array<ReflexEvent, kNodeSensorsMax> reflex_events_{};
     std::uint64_t reflex_due_ = 0;  ///< bit i: `reflex_events_[i]` is to be sent
     std::uint8_t reflex_sequence_ = 0;
-    std::uint32_t faults_seen_ = 0;    ///< what there was at the last look, mixed
-    std::uint32_t fault_turn_ = 0;     ///< which of them is told next
-    std::uint32_t faults_untold_ = 0;  ///< since they changed
+    std::uint32_t faults_seen_ = 0;    ///< hash of the faults at the last look
+    std::uint32_t fault_turn_ = 0;     ///< which of them is reported next
+    std::uint32_t faults_untold_ = 0;  ///< not yet reported since they changed
     bool is_refusal_untold_ = false;   ///< a command was refused since the last turn of `tell_faults_on`
-    bool is_refusal_due_ = false;      ///< the next fault page tells that
+    bool is_refusal_due_ = false;      ///< the next fault page reports that
     ReadingQueue queue_;
     Announcer announcer_;
     TokenBucket tokens_;
@@ -221,7 +220,7 @@ class Node {
     bool is_reset_requested_ = false;
     bool is_health_look_due_ = false;
     NodeTime health_looked_at_;
-    bool looks_at_faults_ = false;  ///< at the next look
+    bool looks_at_faults_ = false;  ///< the next look is at the faults, not at the health
     std::uint32_t frames_sent_ = 0;
     std::uint32_t given_up_ = 0;
     std::uint32_t others_given_up_ = 0;
@@ -230,14 +229,14 @@ class Node {
     std::uint32_t rx_rejected_ = 0;
     std::optional<wire::SyncReport> sync_report_;
     std::optional<ReceivedCommand> last_command_;
-    std::optional<ReceivedCommand> refused_command_;  ///< the first of late, with the time of the last
+    std::optional<ReceivedCommand> refused_command_;  ///< first of a recent series; time of the last
     std::uint64_t commanded_to_range_ = 0;            ///< bit i: sensor i
     std::optional<NodeTime> own_id_heard_;
     std::optional<NodeTime> identify_until_;
     NodeTime blink_at_;
     std::uint32_t uptime_ms_ = 0;
     NodeTime uptime_counted_;
-    std::uint32_t mode_since_ms_ = 0;  ///< of `run_.mode`, in uptime
+    std::uint32_t mode_since_ms_ = 0;  ///< start of `run_.mode`, in uptime
     NodeTime feed_at_;
 };
 

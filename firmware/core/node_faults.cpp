@@ -1,5 +1,5 @@
-// What is wrong with the node and its sensors, as NODE_INFO's fault page tells it: the page has room for one,
-// so they take turns.
+// The present faults of the node and its sensors, for NODE_INFO's fault page. The page has room for one, so
+// they take turns.
 #include <algorithm>
 #include <utility>
 
@@ -54,7 +54,7 @@ void Node::visit_present_faults(Visitor visit) const {
     }
 }
 
-/// The page has room for one. The first is told at once, the others by `tell_faults_on`.
+/// The page has room for one fault. The first is sent at once, the others by `tell_faults_on`.
 void Node::note_fault_change() {
     constexpr std::uint32_t kOffset = 2'166'136'261U;  // FNV-1a
     constexpr std::uint32_t kPrime = 16'777'619U;
@@ -71,8 +71,8 @@ void Node::note_fault_change() {
     announcer_.request_info(wire::InfoPage::fault);
 }
 
-/// After a change each of them once, ten a second: 34 sensors may each have one. A refused command is
-/// answered out of turn; the page that comes once a second keeps its turns.
+/// After a change each fault is sent once, ten a second: 34 sensors may each have one. A refused command is
+/// reported out of turn; the page sent once a second keeps its turns.
 void Node::tell_faults_on() {
     is_refusal_due_ = std::exchange(is_refusal_untold_, false);
     if (faults_untold_ > 0 || is_refusal_due_) announcer_.request_info(wire::InfoPage::fault);
@@ -84,7 +84,7 @@ void Node::note_fault_told() noexcept {
     if (faults_untold_ > 0) --faults_untold_;
 }
 
-/// One at each turn, the recorded one among them.
+/// One fault in each turn; the recorded one takes part.
 wire::InfoFault Node::fault_to_tell() const noexcept {
     wire::InfoFault fault{.kind = run_.fault,
                           .count = saturated8(run_.resets),

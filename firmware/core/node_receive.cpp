@@ -1,4 +1,4 @@
-// What the node does about frames it hears.
+// How the node handles received frames.
 #include <algorithm>
 
 #include "common/wire/codec.hpp"
@@ -8,7 +8,7 @@ namespace octoskin::node {
 
 namespace {
 
-// The clock wraps after 71 minutes and is compared over half of that.
+// The clock wraps after 71 minutes; comparisons hold over half of that.
 constexpr std::uint16_t kIdentifySecondsMax = 1'800;
 
 }  // namespace
@@ -22,7 +22,8 @@ void Node::on_frame(const wire::CanFrame& frame, NodeTime received) {
     }
     if (const auto* sync = std::get_if<wire::Sync>(&decoded->message)) {
         if (is_safe()) return;
-        // Answered at once, not after FOLLOW_UP: the note is the node's own, and one lost frame costs less.
+        // Answered at once, not after FOLLOW_UP: the recorded time is the node's own, and a lost frame costs
+        // less.
         sync_report_ = wire::SyncReport{.sequence = sync->sequence, .heard = received};
     } else if (const auto* command = std::get_if<wire::Command>(&decoded->message)) {
         on_command(*command, received);
@@ -31,8 +32,8 @@ void Node::on_frame(const wire::CanFrame& frame, NodeTime received) {
     }
 }
 
-/// SYNC, commands to this node or to all, and whatever another node sends under this node's id. Everything
-/// else on the bus is none of its business, and not even decoded.
+/// SYNC, commands to this node or to all, and frames that another node sends under this node's id. All other
+/// frames are not even decoded.
 bool Node::is_for_us(const wire::CanFrame& frame) const noexcept {
     if (frame.is_extended || frame.is_error) return false;
     const wire::FrameSpec* spec = wire::frame_spec(wire::type_of(frame.can_id));
@@ -67,15 +68,16 @@ void Node::apply_order_to_range(NodeTime now) {
 }
 
 void Node::on_command(const wire::Command& command, NodeTime now) {
-    if (last_command_ && last_command_->command == command) return;  // the same frame once more
+    if (last_command_ && last_command_->command == command) return;  // the same frame repeated
     last_command_ = {.command = command, .received = now};
     if (config_.refuses_commands) return refuse(command, now);
     const bool is_done = is_safe() ? perform_in_safe_mode(command, now) : perform(command, now);
     if (!is_done) ++rx_rejected_;
 }
 
-/// The rig has it so: whoever can send on the bus must not be able to stop a sensor. It says so in NODE_INFO,
-/// and to a calibration as to any that it does not begin. However many come, ten a second are answered.
+/// The rig requires it: a device on the bus must not be able to stop a sensor. NODE_INFO reports the refusal.
+/// A calibration command is answered like one that cannot be started. At most ten answers a second are sent,
+/// however many commands arrive.
 void Node::refuse(const wire::Command& command, NodeTime now) {
     ++rx_rejected_;
     if (refused_command_) {
@@ -89,7 +91,7 @@ void Node::refuse(const wire::Command& command, NodeTime now) {
     if (is_calibration && command.sensor != wire::kAllSensors) calibration_.refuse(command);
 }
 
-/// What a node does that keeps still: it can be woken, found, asked and reset.
+/// The commands of safe mode: start, identify, send_info and reset.
 bool Node::perform_in_safe_mode(const wire::Command& command, NodeTime now) {
     switch (command.code) {
         case wire::CommandCode::start:
@@ -106,7 +108,7 @@ bool Node::perform_in_safe_mode(const wire::Command& command, NodeTime now) {
             return false;
         case wire::CommandCode::calibrate_offset:
         case wire::CommandCode::calibrate_crosstalk:
-            return perform(command, now);  // which refuses: no sensor is at work
+            return perform(command, now);  // refuses it: no sensor is at work
     }
     return false;
 }
@@ -149,7 +151,7 @@ bool Node::perform(const wire::Command& command, NodeTime now) {
     return false;
 }
 
-/// One sensor, while no other is: a person holds the target.
+/// One sensor at a time: a person holds the target.
 bool Node::calibrate(const wire::Command& command, NodeTime now) {
     if (command.sensor == wire::kAllSensors) return false;
     if (calibration_.answers_again(command)) return true;
@@ -171,8 +173,8 @@ bool Node::request_black_box(const Selection& selection, NodeTime now) {
     return !selection.is_empty();
 }
 
-/// Each sensor decides for itself whether the period fits its budget; the command counts as refused unless
-/// all of them could follow.
+/// Each sensor checks whether the period fits its budget. The command counts as refused unless all of them
+/// can follow.
 bool Node::set_rate(const Selection& selection, std::uint16_t period_ms, NodeTime now) {
     const std::optional<Microseconds> period =
         period_ms == 0 ? std::nullopt : std::optional(Microseconds{std::int64_t{period_ms} * 1'000});

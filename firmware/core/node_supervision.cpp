@@ -1,5 +1,4 @@
-// What keeps the node as a whole going: the record of its runs, safe mode, the way back from bus-off, and the
-// watchdog.
+// Supervision of the node: its run record, safe mode, bus-off recovery and the watchdog.
 #include <limits>
 
 #include "firmware/core/node.hpp"
@@ -8,7 +7,7 @@ namespace octoskin::node {
 
 namespace {
 
-/// How often the record is brought up to date: a run's length is known this well after it ended.
+/// How often the record is updated: the length of a run is known this well after it ended.
 constexpr Microseconds kUptimeStep{100'000};
 constexpr std::uint32_t kUptimeStepMs = 100;
 
@@ -41,7 +40,7 @@ void Node::count_uptime(NodeTime now) {
     tell_faults_on();
     run_.uptime_ms = uptime_ms_;
     keep_run_record();
-    // All sensors' in every poll would be a tenth of the core's time.
+    // Updating all of them in every poll would be a tenth of the core's time.
     for (auto& reflex : reflexes_) {
         if (reflex) reflex->update(now);
     }
@@ -87,7 +86,7 @@ void Node::supervise_can(NodeTime now) {
     }
 }
 
-/// By the node's own clock: one that stands still never feeds.
+/// By the node's own clock: a clock that stops never feeds.
 void Node::feed_watchdog(NodeTime now) {
     if (ports_.watchdog == nullptr || !is_reached(feed_at_, now)) return;
     for (const auto& recorder : recorders_) {

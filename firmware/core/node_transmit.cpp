@@ -1,6 +1,6 @@
-// What the node says, in which order. Everything is composed at the moment the controller takes it, so a full
-// mailbox delays what is said but never makes it old. What is about one instant (readings, REFLEX,
-// SYNC_REPORT) has an age limit.
+// What the node sends, in which order. Each message is composed when the controller takes it, so a full
+// mailbox delays messages but never makes them old. Messages about one instant (readings, REFLEX,
+// SYNC_REPORT) have an age limit.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -36,8 +36,9 @@ std::optional<std::uint8_t> reflex_sensor(const wire::CanFrame& frame) {
 
 }  // namespace
 
-/// A frame counts as many as it holds readings, so that every reading accepted is accounted for; one without
-/// counts one. Nobody has heard of an event whose REFLEX was given up: the next reading may tell it anew.
+/// A frame counts as the number of its readings, so that every accepted reading is accounted for; a frame
+/// without readings counts as one. If a REFLEX was given up, its event is unknown to the host: the next
+/// reading may report it anew.
 void Node::count_given_up() {
     for (int i = 0; i < kFramesPerPoll; ++i) {
         const auto frame = ports_.can.take_given_up();
@@ -50,8 +51,8 @@ void Node::count_given_up() {
     }
 }
 
-/// What is too old to be said is counted. An event that is not told by then is one that the next reading may
-/// begin anew, so that whatever is still too close when the bus is back is told at once.
+/// Messages that are too old are dropped and counted. If a REFLEX is dropped, the next reading may begin the
+/// event anew. So what is still too close when the bus is back is reported at once.
 void Node::drop_late(NodeTime now) {
     queue_.drop_late(now);
     if (sync_report_ && elapsed(sync_report_->heard, now) > policy_.report_age_max) {
@@ -72,8 +73,8 @@ void Node::transmit(NodeTime now) {
     reflex_tokens_.refill(now);
     drop_late(now);
     has_unsent_ = false;
-    if (bus_off_.is_off()) return;  // all it has to say stays as new as it can
-    // A node without a valid id of its own has no right to speak.
+    if (bus_off_.is_off()) return;  // messages are composed after the return, so that they are new
+    // A node without a valid id of its own must not send.
     if (!wire::is_allowed(wire::Party::from_node, config_.node_id)) return;
     for (int i = 0; i < kFramesPerPoll; ++i) {
         if (!send_most_urgent(now)) return;
@@ -81,7 +82,7 @@ void Node::transmit(NodeTime now) {
     has_unsent_ = true;
 }
 
-/// In the order of the identifiers, as the bus would arbitrate them.
+/// In the order of the identifiers, as the bus arbitrates them.
 bool Node::send_most_urgent(NodeTime now) {
     if (reflex_due_ != 0 && !own_id_heard_) {
         if (!send_reflex()) return false;
@@ -92,7 +93,7 @@ bool Node::send_most_urgent(NodeTime now) {
     } else if (sync_report_) {
         if (!send(*sync_report_)) return false;
         sync_report_.reset();
-    } else if (!own_id_heard_ && queue_.is_ready(now)) {  // else they grow too old, and are counted so
+    } else if (!own_id_heard_ && queue_.is_ready(now)) {  // else they become too old, and are counted
         if (!send(queue_.front())) return false;
         queue_.pop();
     } else if (const auto sensor = announcer_.health_due()) {
@@ -118,8 +119,8 @@ bool Node::send_most_urgent(NodeTime now) {
     return true;
 }
 
-/// Whatever else was sent of late. The tokens of its own are as many as events are possible, so that it waits
-/// for one only if something is wrong, and cannot babble either.
+/// Whatever else was sent recently. REFLEX has as many tokens of its own as events are possible. It waits for
+/// one only if something is wrong, and then cannot flood the bus.
 bool Node::send_reflex() {
     const auto sensor = static_cast<std::size_t>(std::countr_zero(reflex_due_));
     wire::Reflex event = reflex_events_[sensor].message;
@@ -130,7 +131,7 @@ bool Node::send_reflex() {
     }
     reflex_tokens_.take();
     ++frames_sent_;
-    reflex_due_ &= reflex_due_ - 1;  // its lowest bit was this sensor's
+    reflex_due_ &= reflex_due_ - 1;  // clears its lowest bit, this sensor's
     reflex_sequence_ = static_cast<std::uint8_t>((reflex_sequence_ + 1U) % wire::kSequenceCount);
     return true;
 }

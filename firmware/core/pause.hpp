@@ -1,5 +1,5 @@
-// A time that runs out and then stays run out, however long ago that was: a time kept and compared later than
-// 35 minutes would lie in the future again, as the clock wraps.
+// A pause that, once over, stays over. A stored time that is compared after more than 35 minutes would lie in
+// the future again, because the clock wraps.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ class Pause {
     void update(NodeTime now) noexcept {
         if (end_ && is_reached(*end_, now)) end_.reset();
     }
-    /// As of the last `update`; before the first `begin` too.
+    /// As of the last `update`; also before the first `begin`.
     [[nodiscard]] bool is_over() const noexcept { return !end_; }
     /// Empty once it is over.
     [[nodiscard]] std::optional<NodeTime> end() const noexcept { return end_; }

@@ -7,12 +7,12 @@ namespace octoskin::node {
 namespace {
 
 constexpr std::int64_t kMillion = 1'000'000;
-// Oscillators are 6-7 % off. Asking for more than this means that something else is wrong.
+// Oscillators are 6-7 % off. A larger correction means that something else is wrong.
 constexpr std::int64_t kScaleMinPpm = 850'000;
 constexpr std::int64_t kScaleMaxPpm = 1'150'000;
-// As long as a window of the ready times' tracker: the average is then known to a third of a register's step.
+// As long as a window of the ready-time tracker: the average is then known to a third of a register's step.
 constexpr std::uint32_t kRangesMax = 32;
-// One step of the register is 0.05-0.17 % at 50-15 ms; the rest is for drift since the last measurement.
+// One step of the register is 0.05-0.17 % at 50-15 ms; the rest allows for drift since the last measurement.
 constexpr std::int32_t kTrimmedUncertaintyPermille = 10;
 
 }  // namespace
@@ -43,16 +43,16 @@ std::int32_t PeriodTrim::error_permille(Microseconds measured) const noexcept {
 }
 
 bool PeriodTrim::wants_trim(const MeasuredPeriod& measured, NodeTime now) noexcept {
-    // Forgotten once it no longer matters. It may not have been asked for longer than half the clock's range
-    // (a sensor at rest), which looks like a time to come; after a whole one it looks recent, for one
-    // interval.
+    // Dropped once it no longer matters. A sensor at rest may not evaluate it for longer than half the
+    // clock's range: then it looks like a future time. After a full wrap it looks recent, for one interval.
     if (last_trim_) {
         const Microseconds since = elapsed(*last_trim_, now);
         if (since.count() < 0 || since >= policy_.trim_interval) last_trim_.reset();
     }
 
     Microseconds real = measured.value;
-    // A period that came out too short for the budget is seen doubled; half of it is what the register makes.
+    // A period that became too short for the budget is observed doubled; half of it is what the register
+    // makes.
     if (real > configured_ * 17 / 10) real /= 2;
     const std::int64_t tolerance_us = configured_.count() * policy_.trim_tolerance_permille / 1000;
     const std::int64_t off_us = std::abs((real - configured_).count());
@@ -72,7 +72,7 @@ bool PeriodTrim::wants_trim(const MeasuredPeriod& measured, NodeTime now) noexce
 }
 
 Nanoseconds PeriodTrim::refine(Nanoseconds walk, Nanoseconds step) noexcept {
-    // To the nearest whole step.
+    // Rounded to the nearest whole step.
     const std::int64_t half = walk.count() < 0 ? -step.count() / 2 : step.count() / 2;
     const std::int64_t steps = (walk.count() + half) / step.count();
     refinements_ = static_cast<std::uint8_t>(std::min(refinements_ + 1, 2));
@@ -80,7 +80,7 @@ Nanoseconds PeriodTrim::refine(Nanoseconds walk, Nanoseconds step) noexcept {
         is_oscillator_known_ = true;
         return walk;
     }
-    // The register rounds down: amid the values that come out the same, none is missed and none taken twice.
+    // The register rounds down. A value in the middle of a step neither misses a step nor takes one twice.
     const std::int64_t before = Nanoseconds{commanded()} / step;
     const std::int64_t scale = ((before - steps) * step + step / 2).count() * 1'000 / configured_.count();
     scale_ppm_ = std::clamp(scale, kScaleMinPpm, kScaleMaxPpm);

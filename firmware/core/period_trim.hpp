@@ -1,5 +1,8 @@
-// Decides when a sensor's inter-measurement register is worth trimming, and to what. A trim costs the sensor
-// two or three readings (stop, write, start), so there are few.
+// Decides when a sensor's inter-measurement register is worth trimming, and to which value. A trim costs the
+// sensor two or three readings (stop, write, start), so trims are rare.
+//
+// A period is judged after the ranges of one second, 9 to 32 of them, not once it is known well enough: so
+// two nodes with the same part poll at the same times and trim to the same register value.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +16,31 @@ namespace octoskin::node {
 
 class PeriodTrim {
   public:
-    /// `configured`: the period the sensor shall have on the node's clock.
+    /// `configured`: the wanted period on the node's clock.
     PeriodTrim(Microseconds configured, const Policy& policy) noexcept;
 
-    /// Another period is wanted from now on. What is known of the part's oscillator stays.
+    /// Sets another wanted period. What is known of the part's oscillator is kept.
     void set_configured(Microseconds configured) noexcept;
 
     [[nodiscard]] Microseconds configured() const noexcept { return configured_; }
-    /// What to ask of the driver so that the real period comes out as configured.
+    /// The period to request from the driver so that the real one comes out as configured.
     [[nodiscard]] Microseconds commanded() const noexcept;
-    /// How far the real period may be from the configured one, before it is measured (again).
+    /// How far the real period may differ from the configured one before it is measured (again).
     [[nodiscard]] std::int32_t uncertainty_permille() const noexcept;
 
-    /// Whether the period is judged after so many ranges since the start. That depends on nothing that was
-    /// measured: two nodes with the same part decide the same.
+    /// Whether the period is judged after this many ranges since the start. This depends on no measurement,
+    /// so that two nodes with the same part decide alike.
     [[nodiscard]] bool is_judged_after(std::uint32_t ranges) const noexcept;
-    /// Takes a measured period; true if the sensor should now be stopped and given `commanded()`.
+    /// Processes a measured period. True if the sensor should now be stopped and given `commanded()`.
     [[nodiscard]] bool wants_trim(const MeasuredPeriod& measured, NodeTime now) noexcept;
 
-    /// Whether it was refined twice: its first measurement may be off by some steps.
+    /// Whether it was refined twice: the first measurement may be off by some steps.
     [[nodiscard]] bool is_refined() const noexcept { return refinements_ > 1; }
-    /// The period is longer by `walk` than it should be, and the register has steps of `step`: takes the
-    /// value that comes closest. Returns by how much the period will then be longer.
+    /// The period is too long by `walk`, and the register has steps of `step`: chooses the closest register
+    /// value. Returns by how much the period will then be too long.
     [[nodiscard]] Nanoseconds refine(Nanoseconds walk, Nanoseconds step) noexcept;
 
-    /// `measured` against the configured period.
+    /// The deviation of `measured` from the configured period.
     [[nodiscard]] std::int32_t error_permille(Microseconds measured) const noexcept;
 
   private:

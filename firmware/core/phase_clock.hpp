@@ -1,5 +1,5 @@
-// The node's clock without its wrap, for what lies on an even grid of it: a wrap would shift the phases of
-// those sensors that start after it against all others.
+// The node's clock without its wrap, for times on an even grid. A wrap would shift the phases of the sensors
+// that start after it against all others.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class PhaseClock {
 
     /// Call at least every 35 minutes.
     void advance(NodeTime now) noexcept { us_ = us_at(now); }
-    /// Of a time within 35 minutes of the last `advance`.
+    /// For a time within 35 minutes of the last `advance`.
     [[nodiscard]] std::uint64_t us_at(NodeTime time) const noexcept {
         const Microseconds since = elapsed(NodeTime{static_cast<std::uint32_t>(us_)}, time);
         return us_ + static_cast<std::uint64_t>(since.count());

@@ -9,27 +9,28 @@ namespace octoskin::node {
 
 namespace {
 
-// Oscillators are 6-7 % off. A period that is longer by more than this skips its slots: that is PeriodTrim's.
+// Oscillators are 6-7 % off. A period that is longer by more than this skips slots: PeriodTrim handles that.
 constexpr std::int64_t kWalkMaxPermille = 150;
-// Who hardly walks is started near its phase: which way it will go is not known then.
+// A sensor that hardly drifts is started near its phase, since the direction of its drift is not known.
 constexpr std::int64_t kPeriodsAhead = 32;
-// A first range's time is known to a tenth of a millisecond or two: the mean of many is known better.
+// The time of a first range is known to 0.1 or 0.2 ms; the mean of many is known better.
 constexpr std::int64_t kFirstsAveraged = 16;
 
-// A sensor's ready times are known better from range to range: for so many periods.
+// A sensor's ready times become better known from range to range, for this many periods.
 constexpr std::int64_t kFirstWithin = 6;
 
-// A run tells the walk the better the longer it is: it counts by the square of its periods. Those before
-// count no more than 64 periods would, so that a part that warms up is followed.
+// A longer run gives the drift more precisely: it counts by the square of its periods. Earlier runs count no
+// more than 64 periods would, so that a part that warms up is followed.
 constexpr std::int64_t kWalkWeightMax = std::int64_t{64} * 64;
 
-// A part's first run, before it is trimmed, and those after its first trims tell nothing about its
+// A part's first run, before it is trimmed, and the runs after its first trims give no information about its
 // oscillator.
 constexpr int kStartsForFree = 4;
 // 1,024 periods: a tenth of a percent of the readings.
 constexpr int kDoublingsMax = 6;
 
-// Without a range for so many periods: a period is known to 12 % before it is trimmed, and to 1 % then.
+// The longest time without a range, in periods: a period is known to 12 % before it is trimmed, and to 1 %
+// afterwards.
 constexpr std::int64_t kGapMax = 3;
 constexpr std::int64_t kGapMaxTrimmed = 24;
 
@@ -66,22 +67,22 @@ void PhaseHold::observe(const TimeBracket& ready) noexcept {
     if (!is_judged_ && periods_ >= policy_.phase_periods_min) judge_start();
 }
 
-/// For a range whose time is known better than this first one's.
+/// Whether to wait for a range whose time is known better than this first one's.
 bool PhaseHold::is_worth_waiting(const TimeBracket& ready) const noexcept {
     const Microseconds after = elapsed(start_.at.earliest, ready.middle());
     const bool is_soon = after.count() >= 0 && after <= kFirstWithin * start_.period;
     return is_soon && ready.width() > policy_.phase_first_known_within;
 }
 
-/// Whether so long after the last one it is known which range this is: by then the sensor may not have walked
-/// as far as to where another one would be.
+/// Whether, this long after the last range, it is certain which range this is: the sensor must not have
+/// drifted as far as the place of another range.
 bool PhaseHold::is_told_from_others(Microseconds since_last) const noexcept {
     const std::int64_t periods_max = start_.is_trimmed ? kGapMaxTrimmed : kGapMax;
     return since_last.count() >= 0 && since_last <= periods_max * start_.period;
 }
 
-/// One range's time may be a tenth of a millisecond off: what the walk foresees counts three times as much.
-/// What it cannot have foreseen is another walk: that of a sensor which does not keep its rate.
+/// One range's time may be 0.1 ms off, so the predicted drift counts three times as much. A deviation that
+/// the prediction excludes means another drift: that of a sensor which does not keep its rate.
 void PhaseHold::go_on(Microseconds since_last) noexcept {
     const Microseconds strayed = nearest_to_zero(since_last);
     const std::int64_t periods = (since_last - strayed) / start_.period;
@@ -97,29 +98,29 @@ void PhaseHold::go_on(Microseconds since_last) noexcept {
     smoothed_off_ = is_foreseen ? foreseen + (off_ - foreseen) / 4 : off_;
 }
 
-/// As near as their times are known.
+/// Whether both are equal, as well as ready times are known.
 bool PhaseHold::is_near(Microseconds off, Microseconds other) const noexcept {
     return std::abs((off - other).count()) <= policy_.phase_known_within.count();
 }
 
-/// How it walks is counted from here on.
+/// The drift is measured from here on.
 void PhaseHold::count_from(Microseconds off) noexcept {
     off_ = off_at_first_ = smoothed_off_ = off;
     periods_ = 0;
 }
 
-/// How long after its start a run's first range was ready says where the others should be. That is the part's
-/// own, and the same each time, once its period is.
+/// The time from a start to the run's first ready time gives the place of the later ones. It is a property of
+/// the part, and the same each time once its period is set.
 void PhaseHold::begin(Microseconds first_after) noexcept {
     if (!start_.is_trimmed) return;
-    // One that was kept waiting in the middle of its start began nobody knows when.
+    // If a start was interrupted in the middle, its time is unknown.
     const bool is_start_known = start_.at.width() <= 2 * policy_.phase_known_within;
     if (!is_start_known || !is_told_from_others(first_after)) {
         if (firsts_ > 0) count_from(off_ + nearest_to_zero(first_after - first_after_));
         return;
     }
-    // Parts give the first range one period after the start. This may be a later one, if those before were
-    // too vague: by then the sensor has walked.
+    // Parts give the first range one period after the start. This may be a later one, if the times of earlier
+    // ones were too uncertain: by then the sensor has drifted.
     periods_ = std::max((first_after + start_.period / 2) / start_.period - 1, std::int64_t{0});
     const Microseconds walked = whole_us(expected_walk_ * periods_);
     const Microseconds first = first_after - periods_ * start_.period - walked;
@@ -137,8 +138,8 @@ Microseconds PhaseHold::nearest_to_zero(Microseconds off) const noexcept {
     return off - (off + half) / start_.period * start_.period;
 }
 
-/// A sensor that keeps its rate walks by half a step of its register a period: by how badly its times are
-/// known it may seem to walk by more, and by a whole step if it does not keep its rate.
+/// A sensor that keeps its rate drifts by half a register step per period. Because its times are uncertain it
+/// may seem to drift by more. If it does not keep its rate it may seem to drift by a whole step.
 void PhaseHold::judge_start() noexcept {
     is_judged_ = true;
     const Nanoseconds walked{std::abs(Nanoseconds{off_ - off_at_first_}.count())};
@@ -146,12 +147,12 @@ void PhaseHold::judge_start() noexcept {
     if (walked > step_each) {
         count_in_vain();
     } else if (!is_in_vain_ && walked * 6 <= step_each * 5) {
-        // One that wanders has not come far now and then by chance.
+        // An unsteady sensor sometimes has drifted little, by chance.
         starts_in_vain_ = std::max(starts_in_vain_ - 1, 0);
     }
 }
 
-/// Once a run.
+/// At most once per run.
 void PhaseHold::count_in_vain() noexcept {
     if (std::exchange(is_in_vain_, true)) return;
     starts_in_vain_ = std::min(starts_in_vain_ + 1, kStartsForFree + kDoublingsMax);
@@ -161,7 +162,7 @@ bool PhaseHold::is_out() const noexcept {
     return std::abs(smoothed_off_.count()) > policy_.phase_tolerance.count();
 }
 
-/// So many periods are between two starts.
+/// The number of periods between two starts.
 std::int64_t PhaseHold::patience() const noexcept {
     return policy_.phase_periods_min << std::max(starts_in_vain_ - kStartsForFree, 0);
 }

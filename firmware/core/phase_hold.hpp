@@ -1,8 +1,13 @@
-// Keeps a sensor's ranges where the rig put them within the period, for as long as it ranges. The period is
-// known to a step of its register (0.05-0.17 % at 50-15 ms), and ST allows no change while the sensor ranges
-// (UM2356): so each sensor walks off, and is started anew once it has walked too far, on the far side of its
-// phase, so that it walks through all that is allowed. One whose oscillator does not keep its rate is not
-// held by any start: it is started anew ever more rarely, until one helps again.
+// Keeps a sensor's ranges at their place within the period while it ranges. The period can be set only to a
+// step of its register (0.05-0.17 % at 50-15 ms), and ST allows no change while the sensor ranges (UM2356).
+// So each sensor drifts ("walks") away from its phase. Once it has drifted too far it is restarted on the far
+// side of its phase, so that it drifts through the whole tolerance. No start holds a sensor whose oscillator
+// does not keep its rate: it is restarted ever more rarely, until a start helps again.
+//
+// How a sensor drifts is estimated over its runs, since one of 16 periods gives the drift only to 6 us.
+// Starts are in vain for a sensor that drifts by more than a step per period, or not as in the runs before.
+// After the fourth such start in a row it is restarted every 32 periods, then ever more rarely, up to every
+// 1,024; more often again as starts help.
 #pragma once
 
 #include <cstdint>
@@ -19,29 +24,29 @@ class PhaseHold {
     explicit PhaseHold(const Policy& policy) noexcept : policy_(policy) {}
 
     struct Start {
-        TimeBracket at;       ///< from when it was begun until it was done
-        Microseconds off{0};  ///< how long after the sensor's phase it was begun
+        TimeBracket at;       ///< from the begin of the start until its end
+        Microseconds off{0};  ///< from the sensor's phase to the begin of the start
         Microseconds period{0};
-        Nanoseconds step{0};      ///< of the register that sets it
-        bool is_trimmed = false;  ///< to one of those
+        Nanoseconds step{0};      ///< of the register that sets the period
+        bool is_trimmed = false;  ///< to one of those steps
     };
     void restart(const Start& start) noexcept;
-    /// A range was ready within `ready`; too vague a time tells nothing. How long after a start the first
-    /// one comes is the part's own, and not counted.
+    /// A range was ready within `ready`; a time that is too uncertain is ignored. How long after a start the
+    /// first range comes is a property of the part, and not counted.
     void observe(const TimeBracket& ready) noexcept;
 
-    /// Whether it has walked too far, at a rate that a trim can mend, and is to be started anew.
+    /// Whether it has drifted too far, at a rate that a trim can correct, and is to be restarted.
     [[nodiscard]] bool is_lost() const noexcept;
-    /// By how much a period is longer than it should be: by this run and those before it.
+    /// By how much a period is too long, estimated from this run and earlier ones.
     [[nodiscard]] Nanoseconds walk() const noexcept;
-    /// From its next start on, which changes its period, it will walk by so much.
+    /// From its next start on, which changes its period, the sensor will drift by `walk` per period.
     void expect_walk(Nanoseconds walk) noexcept;
-    /// Its period will be changed by what nobody knows.
+    /// Its period will change by an unknown amount.
     void forget_walk() noexcept {
         expected_walk_ = Nanoseconds{0};
         walk_weight_ = 0;
     }
-    /// How long after its phase to start a sensor that will then walk by so much a period.
+    /// How long after its phase to start a sensor that will then drift by `walk` per period.
     [[nodiscard]] Microseconds start_off(Nanoseconds walk) const noexcept;
 
   private:
@@ -59,18 +64,18 @@ class PhaseHold {
 
     const Policy& policy_;
     Start start_;
-    Microseconds off_at_first_{0};  ///< off its phase, where its walk is counted from: its start
+    Microseconds off_at_first_{0};  ///< distance from its phase where the drift is counted from: its start
     Microseconds off_{0};           ///< how far after its phase the newest range was
-    Microseconds smoothed_off_{0};  ///< likewise, by its walk and the ranges before
-    Nanoseconds expected_walk_{0};  ///< of this run, by those before it
-    std::int64_t walk_weight_ = 0;  ///< of those; 0: nothing is expected
-    std::int64_t periods_ = 0;      ///< from there to the newest range
-    std::optional<NodeTime> last_;  ///< when that was ready; of this run
-    Microseconds first_after_{0};   ///< a start, the first range is ready: the mean
-    std::int64_t firsts_ = 0;       ///< so many of them; no more than count
-    bool is_judged_ = false;        ///< this run: whether its start helped
-    bool is_in_vain_ = false;       ///< this run: its start, or what was expected of it
-    int starts_in_vain_ = 0;        ///< more than helped
+    Microseconds smoothed_off_{0};  ///< the same, smoothed by the drift and the earlier ranges
+    Nanoseconds expected_walk_{0};  ///< of this run, by the runs before it
+    std::int64_t walk_weight_ = 0;  ///< of those runs; 0: nothing is expected
+    std::int64_t periods_ = 0;      ///< from `off_at_first_` to the newest range
+    std::optional<NodeTime> last_;  ///< ready time of the newest range of this run
+    Microseconds first_after_{0};   ///< mean time from a start to the first ready time
+    std::int64_t firsts_ = 0;       ///< number of times in that mean, limited
+    bool is_judged_ = false;        ///< this run: whether its start helped is decided
+    bool is_in_vain_ = false;       ///< this run: its start, or the expectation, was in vain
+    int starts_in_vain_ = 0;        ///< minus those that helped
 };
 
 }  // namespace octoskin::node

@@ -6,8 +6,8 @@ namespace octoskin::node {
 
 namespace {
 
-// A one-byte read with its index: 48 bits; a quarter more, for a bus that runs at 320 of its 400 kHz. Where
-// edges are so slow that it runs at 283, one poll follows the other.
+// A one-byte read with its index: 48 bits, plus a quarter for a bus that runs at 320 of its 400 kHz. On a bus
+// with edges so slow that it runs at 283 kHz, polls follow each other without a gap.
 constexpr std::int64_t kPollBits = 48;
 constexpr Microseconds kLoopDelay{20};
 
@@ -17,20 +17,20 @@ constexpr std::int64_t kIndexBits = 28;
 // The byte, its acknowledge and STOP, likewise.
 constexpr std::int64_t kAnswerBits = 10;
 
-// Slow sensors are polled in proportion: 128 polls a period find it, and a bracket of a 2048th is precise
-// enough.
+// Slow sensors are polled in proportion: 128 polls per period find the data, and a bracket of 1/2048 of the
+// period is precise enough.
 constexpr std::int64_t kLongestGapsPerPeriod = 128;
 constexpr std::int64_t kShortestGapsPerPeriod = 2048;
 
-/// Reckoned from `from`, not from the last poll: how long a poll took decides nothing.
+/// Counted from `from`, not from the last poll, so that the duration of a poll has no influence.
 NodeTime next_on_grid(NodeTime from, Microseconds gap, NodeTime now) noexcept {
     const Microseconds since = elapsed(from, now);
     if (since.count() < 0) return from;
     return from + gap * (since / gap + 1);
 }
 
-/// The last place that passed during the poll of `asked` is taken at once, however late it is: the next one
-/// would be later still, and the gap up to twice as wide.
+/// If a place of the grid passed during the poll of `asked`, the last such place is taken at once, however
+/// late it is: the next one would be later still, and the gap up to twice as wide.
 NodeTime next_or_missed(NodeTime from, Microseconds gap, const TimeBracket& asked) noexcept {
     const NodeTime next = next_on_grid(from, gap, asked.latest);
     const bool is_last_missed = next != from && !is_reached(next - gap, asked.earliest);
@@ -51,7 +51,7 @@ NodeTime PollPlan::first_poll(const TimeBracket& predicted) const noexcept {
 
 NodeTime PollPlan::poll_within(const TimeBracket& predicted, Microseconds period) const noexcept {
     const Microseconds width = predicted.width();
-    // There is no poll before it that might have taken longer than usual.
+    // No poll comes before it that might have taken longer than usual.
     const Microseconds first = spacing(period) * 4 / 5;
     const Microseconds into = std::max(width / 4, std::min(width / 2, first));
     return predicted.earliest + into - index_duration_;
@@ -79,19 +79,20 @@ NodeTime PollPlan::blind_poll(NodeTime from, Microseconds period, NodeTime now) 
 }
 
 NodeTime PollPlan::repoll(const TimeBracket& predicted, Microseconds period, NodeTime now) const noexcept {
-    // Closer together around the time at which it must be, further apart the longer it is overdue.
+    // Polls are closer together around the expected time, and further apart the longer the data is overdue.
     const Microseconds distance = elapsed(now, predicted.latest);
     const bool is_overdue = distance.count() < 0;
     return now + (is_overdue ? std::clamp(-distance, policy_.repoll_min, longest_gap(period))
                              : std::clamp(distance / 2, policy_.repoll_min, shortest_gap(period)));
 }
 
-/// Where ranges differ in length, when one ended says where its light was no better than that.
+/// Where ranges differ in length, the end of a range gives the place of its measuring window no better than
+/// that.
 Microseconds PollPlan::shortest_gap(Microseconds period) const noexcept {
     return std::max({policy_.repoll_min, period / kShortestGapsPerPeriod, policy_.length_spread() / 4});
 }
 
-/// From poll to poll, at the closest.
+/// The shortest distance between two polls.
 Microseconds PollPlan::spacing(Microseconds period) const noexcept {
     return poll_duration_ + shortest_gap(period);
 }

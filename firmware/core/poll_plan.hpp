@@ -1,6 +1,12 @@
-// When to ask a sensor whether its data is ready. A poll in the middle of where the ready time must lie tells
-// most, whatever it says. One that comes just too early bounds the ready time from below where little is
-// known, and is the proof that a sensor still keeps its rhythm. One poll is 48 bits on the bus.
+// When to poll a sensor for data. A poll in the middle of the bracket of the ready time gives the most
+// information, whatever the answer. A poll just too early bounds the ready time from below while little is
+// known, and proves that the sensor still keeps its rhythm. One poll has 48 bits on the bus.
+//
+// Where more than a third of a millisecond is unknown, up to four polls follow each other through the
+// bracket. Before the first range polls lie on an even grid that begins with the sensor's phase: 1 ms apart,
+// and 0.17 ms where the first range is expected. The time of the first range is then known to 0.15 ms if one
+// sensor has the bus to itself, and to 1 ms if nine start at once; that of the fourth is known as well as
+// any.
 #pragma once
 
 #include <cstdint>
@@ -17,32 +23,31 @@ class PollPlan {
 
     /// The first poll for data that should become ready within `predicted`.
     [[nodiscard]] NodeTime first_poll(const TimeBracket& predicted) const noexcept;
-    /// The first poll where it need not come too early: it looks in the middle of `predicted`, or where that
-    /// is wide at the first of up to four places.
+    /// The first poll where it need not come too early: in the middle of `predicted` or, where that is wide,
+    /// at the first of up to four places.
     [[nodiscard]] NodeTime poll_within(const TimeBracket& predicted, Microseconds period) const noexcept;
-    /// The first poll, and likely the only one, where a line tells when data is ready: after the line, should
-    /// it not.
+    /// The poll in case the data-ready line fails: just after the data must be ready, so that a working line
+    /// comes first.
     [[nodiscard]] NodeTime poll_after_hint(const TimeBracket& predicted) const noexcept;
-    /// The first poll after a start that can find data: nothing can be ready before the timing budget is used
-    /// up.
+    /// The first poll after a start that can find data: none is ready before the timing budget has passed.
     [[nodiscard]] NodeTime first_poll_after_start(NodeTime started,
                                                   Microseconds timing_budget) const noexcept;
-    /// The poll after the one of `asked`, from its begin to its end, for the first data of a run, which is
-    /// there no sooner than `from` and most likely becomes ready within `expected`, where one poll follows
-    /// the other.
+    /// The next poll for the first data of a run, after the poll that lasted as long as `asked`. The data is
+    /// not ready before `from` and most likely becomes ready within `expected`, where polls follow each other
+    /// closely.
     [[nodiscard]] NodeTime poll_after_start(NodeTime from, const TimeBracket& expected, Microseconds period,
                                             const TimeBracket& asked) const noexcept;
-    /// The next poll after `now` while nothing is known, for data that is there no sooner than `from`.
+    /// The next poll after `now` while nothing is known, for data that is not ready before `from`.
     [[nodiscard]] NodeTime blind_poll(NodeTime from, Microseconds period, NodeTime now) const noexcept;
-    /// The next poll when the one that ended at `now` found nothing. Data that is overdue is asked for ever
-    /// more rarely, so that a sensor that has none does not take the bus from the others.
+    /// The next poll after one that ended at `now` and found nothing. Overdue data is polled for ever more
+    /// rarely, so that a sensor without data does not take the bus from the others.
     [[nodiscard]] NodeTime repoll(const TimeBracket& predicted, Microseconds period,
                                   NodeTime now) const noexcept;
-    /// Until when, at least, data was not ready if the poll begun at `began` found none: the sensor cannot
-    /// have looked before it was told at which register.
+    /// The time until which data was certainly not ready if the poll begun at `began` found none: the sensor
+    /// cannot have looked before it received the register's index.
     [[nodiscard]] NodeTime not_ready_until(NodeTime began) const noexcept;
-    /// When, at the latest, data was ready if the poll that ended at `ended` found it: the sensor cannot have
-    /// looked after it began to answer.
+    /// The latest time at which data became ready if the poll that ended at `ended` found it: the sensor
+    /// cannot have looked after it began to answer.
     [[nodiscard]] NodeTime ready_by(NodeTime ended) const noexcept;
 
   private:

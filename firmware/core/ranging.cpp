@@ -11,7 +11,7 @@ namespace {
 
 using wire::SensorFault;
 
-// One poll that finds no result of a range that was under way at the stop may have been altered.
+// A single poll that finds no result of a range under way at the stop may have been altered in transit.
 constexpr std::uint8_t kLooksForLastResult = 2;
 
 constexpr std::uint8_t kStartsPutOffMax = 3;
@@ -67,7 +67,7 @@ void Ranging::on_hint(NodeTime now) noexcept {
     const bool may_be_ready = step_ == Step::awaiting_data && is_reached(ready_from_, now);
     if (!may_be_ready && step_ != Step::reading) return;
     has_hint_ = true;
-    // One that is due keeps its place: who has waited longest is next.
+    // A sensor that is already due keeps its place: the one that has waited longest is next.
     if (may_be_ready) step_due_ = earlier_of(step_due_, now);
 }
 
@@ -89,7 +89,7 @@ Ranging::Result Ranging::advance(NodeTime now) {
             return {.bus = BusUse::keeps};
         case vl53l1x::Progress::done: {
             const Event event = on_step_done(now);
-            // Others would have the bus for longer than the pause between two ranges.
+            // Otherwise other sensors would have the bus for longer than the pause between two ranges.
             return {.bus = step_ == Step::writing_zone ? BusUse::keeps : BusUse::releases, .event = event};
         }
         case vl53l1x::Progress::failed:
@@ -101,7 +101,7 @@ Ranging::Result Ranging::advance(NodeTime now) {
     return {};
 }
 
-/// Steps that wait for a time become the step that follows once they are due.
+/// A step that waits for a time changes to the next step once it is due.
 void Ranging::start_due_step(NodeTime now) {
     if (!is_waiting()) return;
     if (is_stop_requested_ || is_trim_due_) {
@@ -115,7 +115,8 @@ void Ranging::start_due_step(NodeTime now) {
     }
 }
 
-/// Who was kept waiting for the bus starts a period later rather than out of its phase. Not for ever.
+/// A sensor delayed by the bus starts a period later rather than out of its phase; at most kStartsPutOffMax
+/// times in a row.
 bool Ranging::is_too_late_to_start(NodeTime now) const noexcept {
     return step_ == Step::awaiting_phase && rules_.holds_phases && starts_put_off_ < kStartsPutOffMax &&
            elapsed(phase_due_, now) > policy_.phase_start_slack;
@@ -134,7 +135,7 @@ void Ranging::start_step(Step step, NodeTime now) {
             break;
         case Step::awaiting_phase:
             phase_due_ = next_phase(now);
-            // The bus makes it late: by as much as it was early, in the mean.
+            // The bus delays it, on average by as much as it was early.
             step_due_ = rules_.holds_phases ? phase_due_ - policy_.phase_start_slack : phase_due_;
             break;
         case Step::starting:
@@ -225,8 +226,8 @@ Ranging::Event Ranging::on_step_failed(vl53l1x::Error error, NodeTime now) {
     return failed;
 }
 
-/// Where phases are held, starts are frequent: there a range that was under way at the stop is read, too, and
-/// a sensor of which it is known that none was is not waited for.
+/// Where phases are held, starts are frequent. There a range under way at the stop is read, too, and a sensor
+/// that is known to have had none is not waited for.
 void Ranging::drain(NodeTime now) {
     looks_left_ = 0;
     if (is_between_ranges(now)) {
@@ -256,7 +257,7 @@ Ranging::Event Ranging::on_drained(NodeTime now) {
     return Event::none;
 }
 
-/// What is found is a reading like any other; what is not was not under way.
+/// A result is a reading like any other; if there is none, no range was under way.
 Ranging::Event Ranging::on_last_read(NodeTime now) {
     if (!device_.has_measurement()) {
         acceptance_.on_not_ready(polls_.not_ready_until(step_began_));
@@ -293,13 +294,13 @@ void Ranging::on_started(NodeTime now) {
     starts_put_off_ = 0;
     zones_.settle();
     ready_from_ = polls_.first_poll_after_start(phase_due_, budget());
-    // Parts were seen to give the first result one period after the start.
+    // Observed: parts give the first result one period after the start.
     const NodeTime expected = phase_due_ + trim_.configured();
     const Microseconds uncertainty = trim_.configured() * trim_.uncertainty_permille() / 1'000;
     first_expected_ = widened({expected, expected}, uncertainty);
     early_until_ = first_expected_.earliest - policy_.repoll_max;
     if (rules_.holds_phases && comes_as_expected_) ready_from_ = early_until_;
-    // Once before: what is there at once is not of this run.
+    // One poll before that: data that is there at once is not of this run.
     await_data(now + policy_.repoll_max);
     ranges_ = 0;
     has_hint_ = was_announced_ = false;
@@ -308,7 +309,7 @@ void Ranging::on_started(NodeTime now) {
 Ranging::Event Ranging::on_read(NodeTime now) {
     if (!device_.has_measurement()) {
         if (!device_.have_polls_disagreed()) acceptance_.on_not_ready(polls_.not_ready_until(step_began_));
-        // A sensor that gave results which had to be refused is not one that gives none.
+        // A sensor whose results had to be refused is not one that gives none.
         const SensorFault silence = acceptance_.has_refused() ? fault_ : SensorFault::no_data_ready;
         if (acceptance_.is_silent(now)) return fail(silence);
         await_data(has_hint_ ? now : repoll(now));
@@ -335,7 +336,7 @@ Verdict Ranging::judge_result(NodeTime now) {
     return acceptance_.judge(seen, zones_);
 }
 
-/// After one that found nothing.
+/// The next poll after one that found nothing.
 NodeTime Ranging::repoll(NodeTime now) const noexcept {
     if (acceptance_.wants_poll_confirmed()) return now;
     const auto predicted = acceptance_.next_ready();
@@ -372,7 +373,7 @@ void Ranging::after_result(NodeTime now) {
     }
 }
 
-/// For another period, or to be back in its phase.
+/// For another period, or to return to its phase.
 bool Ranging::is_restart_wanted(NodeTime now) noexcept {
     const auto measured = acceptance_.measured_period();
     if (measured && trim_.is_judged_after(ranges_) && trim_.wants_trim(*measured, now)) {
@@ -413,22 +414,23 @@ void Ranging::await_next_result(NodeTime now) {
 void Ranging::await_data(NodeTime due) noexcept {
     step_ = Step::awaiting_data;
     step_due_ = due;
-    // Of the first data only: half the clock's range later, that time would seem to be still to come.
+    // Only for the first data: half the clock's range later that time would seem to be in the future.
     is_early_ = !acceptance_.has_accepted() && !acceptance_.next_ready() && acceptance_.is_next_new() &&
                 !is_reached(early_until_, due);
     is_poll_punctual_ = !is_early_ && acceptance_.must_poll_punctually();
 }
 
-/// The line told of this data if it fell while data was awaited, or while the sensor was being asked.
+/// The line announced this data if it fell while data was awaited, or while the sensor was polled.
 void Ranging::note_announcement() noexcept {
     was_announced_ = is_hinted_ || has_hint_;
     has_confirmed_ = has_confirmed_ || was_announced_;
     has_hint_ = false;
 }
 
-/// A poll in the middle of the bracket tells most, whatever it says. One just before the bracket tells no
-/// more than that the sensor keeps its rhythm: enough of that now and then. A line tells when data is ready,
-/// so there one poll is enough until the bracket, which grows from range to range, has become too wide.
+/// A poll in the middle of the bracket gives the most information, whatever the answer. One just before the
+/// bracket only shows that the sensor keeps its rhythm, which is needed only now and then. Where a line
+/// announces data, one poll is enough until the bracket, which grows from range to range, has become too
+/// wide.
 NodeTime Ranging::next_poll(const TimeBracket& predicted) const noexcept {
     const Microseconds width = predicted.width() - policy_.width_of_jitter();
     if (acceptance_.has_refused() || width > policy_.known_width_max) return polls_.first_poll(predicted);
@@ -442,7 +444,7 @@ bool Ranging::is_zone_write_due(NodeTime now) const noexcept {
     return zones_.is_cycling() && !is_trim_due_ && begin && zones_.fits_before(*begin, now);
 }
 
-/// Only where phases are held: elsewhere nothing hurries.
+/// Only where phases are held: elsewhere a stop is not urgent.
 bool Ranging::is_between_ranges(NodeTime now) const noexcept {
     const auto next = acceptance_.next_ready();
     return rules_.holds_phases && is_trim_due_ && next && range_length_.is_before(now, next->earliest);
@@ -463,10 +465,10 @@ std::int32_t Ranging::period_error_permille() const noexcept {
     return measured ? trim_.error_permille(measured->value) : 0;
 }
 
-/// Sensors start at whole periods of the node's clock plus their phase, and the first time once all of them
-/// had the time to be brought up.
+/// Sensors start at whole periods of the node's clock plus their phase; the first time once all of them had
+/// the time to be brought up.
 NodeTime Ranging::next_phase(NodeTime now) const noexcept {
-    // (A whole wrap later it looks as if it were still to come, for this short while.)
+    // After a full wrap of the clock it looks as if it were still to come, for this short while.
     const Microseconds until_first = elapsed(now, first_start_);
     const bool is_first = until_first.count() > 0 && until_first <= policy_.first_starts;
     const NodeTime from = is_first ? first_start_ : now;

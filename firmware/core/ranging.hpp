@@ -1,5 +1,5 @@
 // One configured sensor while it ranges: starts it in its phase, polls it when its data should be ready,
-// hands each result to acceptance, cycles its zones, and stops it to trim its period.
+// passes each result to acceptance, cycles its zones, and stops it to trim its period.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@
 
 namespace octoskin::node {
 
-/// What ranging needs of the node's configuration.
+/// The part of the node's configuration that ranging needs.
 struct RangingRules {
     StreamGate stream_gate = StreamGate::advanced;
     Microseconds zone_guard{1'000};
@@ -38,7 +38,7 @@ class Ranging {
         none,
         reading,  ///< `reading()` was accepted
         undated,  ///< a good result of unknown time or zone was dropped
-        refused,  ///< a result was not new, or could not be read alike twice: see `fault()`
+        refused,  ///< a result was not new, or its two reads did not agree: see `fault()`
         stopped,  ///< as requested
         failed,   ///< the sensor does not answer, or nothing was accepted for too long: see `fault()`
     };
@@ -47,70 +47,70 @@ class Ranging {
         Event event = Event::none;
     };
 
-    /// `node_began`: when all the sensors' first bring-ups did.
+    /// `node_began`: when the first bring-up of all the sensors began.
     Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
             const Policy& policy, const PhaseClock& clock, NodeTime node_began) noexcept;
 
-    /// The sensor was just configured, which puts it in its first zone, and all of it read back.
+    /// The sensor was just configured, which puts it in its first zone, and all of it was read back.
     void on_configured() noexcept {
         zones_.restart();
         checks_.restart();
     }
-    /// The sensor is configured and stopped: start it at its next phase.
+    /// The sensor is configured and stopped: starts it at its next phase.
     void begin(NodeTime now);
-    /// Stop and start again, to bring a silent sensor back.
+    /// Stops and starts it, to recover a silent sensor.
     void begin_restart(NodeTime now);
-    /// Stop as soon as the transfers under way are over, then report `stopped`.
+    /// Stops once the transfers under way have ended, then reports `stopped`.
     void request_stop(NodeTime now) noexcept;
-    /// The bus's data-ready line fell: data is asked for now, if it may be there. Which sensor pulled the
-    /// line nobody knows, so this is no more than a reason to ask.
+    /// The bus's data-ready line fell: polls now if data may be there. Which sensor pulled the line is
+    /// unknown, so this is only a reason to poll.
     void on_hint(NodeTime now) noexcept;
-    /// Whether a hint was followed and data was there; told once.
+    /// Whether a hint was followed and data was there; true once.
     [[nodiscard]] bool take_confirmation() noexcept { return std::exchange(has_confirmed_, false); }
-    /// Another period: from the next start on, and if ranging, restart for it.
+    /// Sets another period: from the next start on; a ranging sensor is restarted for it.
     void set_period(Microseconds period, NodeTime now) noexcept;
     /// The sensor was taken away (reset, lost): nothing is under way any more.
     void abandon() noexcept { step_ = Step::idle; }
 
-    /// When it is due to start in its phase, or to ask for data whose time a late answer would blur.
+    /// When it is due for a start in its phase, or for a poll that would blur the ready time if it came late.
     [[nodiscard]] std::optional<NodeTime> punctual_due() const noexcept {
         const bool is_punctual =
             step_ == Step::awaiting_phase || (step_ == Step::awaiting_data && is_poll_punctual_);
         if (is_punctual) return step_due_;
-        // Who was asked early, or had to wait with it, is asked in time.
+        // A sensor that is polled early, or waits for such a poll, is polled punctually afterwards.
         if (step_ == Step::awaiting_data && is_early_) return early_until_;
         return std::nullopt;
     }
-    /// Whether what it must be punctual for is its start.
+    /// Whether it must be punctual for its start.
     [[nodiscard]] bool awaits_start() const noexcept { return step_ == Step::awaiting_phase; }
-    /// Whether it is asked before its first data is expected, most likely in vain: that can wait.
+    /// Whether its due poll comes before the first data is expected and most likely finds none: that can
+    /// wait.
     [[nodiscard]] bool is_early(NodeTime now) const noexcept {
         return step_ == Step::awaiting_data && is_early_ && !is_reached(early_until_, now);
     }
-    /// Not while a start is under way, whose instant decides when all its ranges will be; nor between two
-    /// polls of which one confirms the other; nor before a zone's write, which is soon over and soon too
-    /// late.
+    /// False during a start, whose instant determines the times of all its ranges; between two polls of which
+    /// one confirms the other; and before a zone's write, which is short and soon too late.
     [[nodiscard]] bool may_be_interrupted() const noexcept {
         return step_ != Step::starting && step_ != Step::writing_zone &&
                !(step_ == Step::reading && device_.is_confirming_ready());
     }
-    /// When the bus is wanted; empty when nothing is under way.
+    /// When the bus is needed; empty if nothing is under way.
     [[nodiscard]] std::optional<NodeTime> due() const noexcept {
         return step_ == Step::idle ? std::nullopt : std::optional(step_due_);
     }
-    /// One step, with the bus free or taken by this sensor's own transfer.
+    /// One step, while the bus is free or used by this sensor's own transfer.
     [[nodiscard]] Result advance(NodeTime now);
 
     [[nodiscard]] const Reading& reading() const noexcept { return acceptance_.reading(); }
-    /// Whether the last reading was seen to follow another: the sensor measures.
+    /// Whether the last reading followed another one: proof that the sensor measures.
     [[nodiscard]] bool is_proven() const noexcept { return acceptance_.is_proven(); }
     [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
-    /// Readings accepted since the registers that are now found wrong were last seen to be right; of a
-    /// failure of another kind: 0.
+    /// Readings accepted since the registers that are now found wrong were last correct; 0 for a failure of
+    /// another kind.
     [[nodiscard]] std::uint32_t suspect_readings() const noexcept { return suspect_readings_; }
-    /// Whether the failed sensor might be helped by stopping and starting it.
+    /// Whether stopping and starting may help the failed sensor.
     [[nodiscard]] bool can_restart() const noexcept;
-    /// The measured period against the configured one; 0 until measured.
+    /// The deviation of the measured period from the configured one; 0 until measured.
     [[nodiscard]] std::int32_t period_error_permille() const noexcept;
 
   private:
@@ -127,7 +127,7 @@ class Ranging {
         checking_steering,
         stopping,
         draining,      ///< the range under way at the stop may still end with a result
-        reading_last,  ///< that result, if there is one
+        reading_last,  ///< reading that result, if there is one
     };
 
     void start_step(Step step, NodeTime now);
@@ -173,28 +173,28 @@ class Ranging {
     SteeringChecks checks_;
 
     NodeTime first_start_;
-    bool is_poll_punctual_ = false;    ///< asked of every sensor at every turn: worked out once a poll
+    bool is_poll_punctual_ = false;    ///< needed of every sensor in every turn: computed once a poll
     bool is_early_ = false;            ///< likewise
-    NodeTime phase_due_;               ///< when the sensor was to start, whenever the bus was free for it
+    NodeTime phase_due_;               ///< when the sensor was to start, even if the bus was not free then
     std::uint8_t starts_put_off_ = 0;  ///< in a row, for being late
-    Microseconds start_off_{0};        ///< of that time, from the sensor's phase
+    Microseconds start_off_{0};        ///< of that time from the sensor's phase
     std::uint32_t ranges_ = 0;         ///< results since the start
     Step step_ = Step::idle;
     NodeTime step_due_;
     NodeTime step_began_;
-    NodeTime ready_from_;         ///< while data is awaited: there is none before
+    NodeTime ready_from_;         ///< while data is awaited: none is ready before
     TimeBracket first_expected_;  ///< where the first data after the start is most likely ready
-    NodeTime early_until_;        ///< before that it is asked for most likely in vain
+    NodeTime early_until_;        ///< a poll before this is most likely in vain
     bool has_hint_ = false;       ///< since the poll under way began, or the last one
     bool is_hinted_ = false;      ///< the poll under way follows a hint
     bool has_confirmed_ = false;  ///< not taken yet
-    bool was_announced_ = false;  ///< the line told of the last data
+    bool was_announced_ = false;  ///< the line announced the last data
     bool is_stop_requested_ = false;
     bool is_trim_due_ = false;
-    bool is_period_set_ = false;      ///< as commanded
-    bool comes_as_expected_ = false;  ///< the first data of a run, when it came last
+    bool is_period_set_ = false;      ///< to the commanded one
+    bool comes_as_expected_ = false;  ///< the first data of the last run came when it was expected
     NodeTime stop_began_;
-    /// While it is looked for: when the result would be ready of the range that may have been under way.
+    /// While a last result is looked for: when it would be ready.
     TimeBracket last_expected_;
     std::uint8_t looks_left_ = 0;
     wire::SensorFault fault_ = wire::SensorFault::none;

@@ -13,7 +13,8 @@ void ReadingQueue::push(std::uint8_t sensor, const Reading& reading, NodeTime no
     const auto older =
         std::find_if(queue_.begin(), end, [=](const Waiting& w) { return w.sensor == sensor; });
     if (older != end) {
-        // The newer one goes to the back, as if the older had never been: nobody else waits longer for it.
+        // The newer reading goes to the back, as if the older had never been there: no other reading waits
+        // longer.
         std::move(older + 1, end, older);
         --waiting_;
         ++losses_.displaced;

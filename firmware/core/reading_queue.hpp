@@ -1,5 +1,5 @@
-// The readings that wait for the bus: at most one a sensor, as a newer one displaces an older one, and none
-// for longer than its age allows. Every loss has a counter.
+// The readings that wait for the bus: at most one per sensor, since a newer one displaces an older one, and
+// none for longer than its age limit. Every loss is counted.
 #pragma once
 
 #include <array>
@@ -27,23 +27,23 @@ class ReadingQueue {
     /// O(sensors).
     void push(std::uint8_t sensor, const Reading& reading, NodeTime now) noexcept;
 
-    /// Drops what has waited too long. O(waiting).
+    /// Drops readings that have waited too long. O(waiting).
     void drop_late(NodeTime now) noexcept;
 
-    /// Whether there is enough to send now: one reading in classical frames; in CAN FD a full frame, or one
-    /// reading that has waited long enough for company.
+    /// Whether a frame can be sent now. Classical: one reading is enough. CAN FD: a full frame, or one
+    /// reading that has waited for `company_wait`.
     [[nodiscard]] bool is_ready(NodeTime now) const noexcept;
-    /// When `is_ready` next becomes true by itself; empty if nothing waits.
+    /// When `is_ready` becomes true without another reading; empty if nothing waits.
     [[nodiscard]] std::optional<NodeTime> ready_time() const noexcept;
 
     /// The next frame's content, oldest readings first; only while something waits. Sequence numbers count
-    /// what is sent, so that a gap in them is a loss on the bus and nothing else.
+    /// the readings sent, so that a gap always means a loss on the bus.
     [[nodiscard]] wire::Message front() const noexcept;
     /// `front()` was handed to the bus.
     void pop() noexcept;
 
-    /// Classical only: signal figures of every `aux_every`-th reading sent. They are a service, not needed
-    /// for acceptance: a newer one displaces one that could not be sent yet.
+    /// Classical only: the signal figures of every `aux_every`-th reading sent. They are not needed for
+    /// acceptance: a newer one displaces one that could not be sent yet.
     [[nodiscard]] const std::optional<wire::RangeAux>& aux() const noexcept { return aux_; }
     void pop_aux() noexcept { aux_.reset(); }
 

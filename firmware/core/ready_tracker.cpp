@@ -9,11 +9,12 @@ namespace {
 
 constexpr std::int64_t kQ8 = 256;
 // The period is measured over windows of this many ranges: long enough for 0.03 % at 33 ms, short enough to
-// follow a part that warms up. A window whose start was known half as well as the present is given up before.
+// follow a part that warms up. A window whose start is known only half as well as the present is ended
+// before.
 constexpr std::uint32_t kWindowSlots = 32;
-// How far the period may have moved within a window, and from one window to the next.
+// How much the period may change within a window, and from one window to the next.
 constexpr std::int64_t kDriftPerWindowPpm = 300;
-// A single range may come this much earlier than the rhythm says before the rhythm is doubted altogether.
+// A single range may come this much earlier than predicted before the whole rhythm is doubted.
 constexpr Microseconds kEarlySlip{1'000};
 
 constexpr std::int64_t floor_q8(std::int64_t q8) {
@@ -69,8 +70,8 @@ TimeBracket ReadyTracker::observe(const TimeBracket& seen, std::uint32_t ranges)
         return *ready;
     }
     // A sensor whose period is too close to its budget skips a start slot now and then: the grid holds, with
-    // one place left empty. Twice in a row it is no exception any more, but a sensor at half its rate.
-    // (Seen within more than half a period, it might be any of several places.)
+    // one place left empty. Twice in a row it is a sensor at half its rate. (If the bracket is wider than
+    // half a period, it could be any of several places.)
     if (slots_missed_in_row_ == 0 && seen.width() < expected_ / 2) {
         if (const auto ready = fit(seen, ranges + 1)) {
             ++slots_missed_in_row_;
@@ -80,7 +81,8 @@ TimeBracket ReadyTracker::observe(const TimeBracket& seen, std::uint32_t ranges)
     return relearn(seen, ranges);
 }
 
-/// Takes `seen` as the ready time `slots` places on; empty, and nothing changed, if it contradicts the grid.
+/// Takes `seen` as the ready time `slots` places later. Empty, and nothing is changed, if it contradicts the
+/// grid.
 std::optional<TimeBracket> ReadyTracker::fit(const TimeBracket& seen, std::uint32_t slots) noexcept {
     const TimeBracket place = grid_after(slots);
     const auto ready = intersection(seen, widened(place, policy_.ready_jitter));
@@ -92,8 +94,8 @@ std::optional<TimeBracket> ReadyTracker::fit(const TimeBracket& seen, std::uint3
     return ready;
 }
 
-/// Begins a new grid where the sensor was seen now. Its period is the expected one again; or it may be twice
-/// that, if a range was due in between and did not come.
+/// Begins a new grid at the present range. Its period is the expected one again, or may be twice that if a
+/// range was due in between and did not come.
 TimeBracket ReadyTracker::relearn(const TimeBracket& seen, std::uint32_t ranges) noexcept {
     TimeBracket ready = seen;
     const TimeBracket predicted = *predict(ranges);
@@ -114,13 +116,13 @@ TimeBracket ReadyTracker::relearn(const TimeBracket& seen, std::uint32_t ranges)
 void ReadyTracker::refine_period() noexcept {
     const auto slots = static_cast<std::int64_t>(window_slots_);
     const PeriodQ8 drift = longest_q8_ * kDriftPerWindowPpm / 1'000'000;
-    // The window tells its average; the period of now may have moved on.
+    // The window gives its average; the present period may have changed.
     const PeriodQ8 shortest = elapsed(window_start_.latest, grid_->earliest).count() * kQ8 / slots - drift;
     const PeriodQ8 longest = elapsed(window_start_.earliest, grid_->latest).count() * kQ8 / slots + 1 + drift;
     shortest_q8_ = std::max(shortest_q8_, shortest);
     longest_q8_ = std::min(longest_q8_, longest);
-    // By induction over the window the grid never lies further from its start than `slots` of the longest
-    // period, so what the window calls the shortest stays below it; rounding costs less than the drift adds.
+    // By induction over the window the grid is never further from its start than `slots` of the longest
+    // period, so the shortest period by the window stays below it. Rounding costs less than the drift adds.
     assert(shortest_q8_ <= longest_q8_);
     const bool is_start_outdone = window_start_.width() > 2 * grid_->width();
     if (window_slots_ < kWindowSlots && !is_start_outdone) return;

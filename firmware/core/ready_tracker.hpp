@@ -1,11 +1,12 @@
-// When did the sensor finish this range, and when will it finish the next? A sensor's own oscillator is 6-7 %
-// off the nominal and differs from part to part, so its rhythm is measured by when data was seen to be ready.
+// When the sensor finished a range, and when it will finish the next. A sensor's own oscillator is 6-7 % off
+// the nominal and differs from part to part, so its rhythm is measured from the times at which data was seen
+// to be ready.
 //
 // The sensor starts its ranges by a timer: ready times lie on an even grid, each within some jitter that does
-// not add up. Everything is kept as an interval that certainly holds the truth as long as this is so: a poll
-// that saw "not ready" bounds the ready time from below, one that saw "ready" from above, and the grid
-// carries both bounds over to the next range. So a reading that was polled late, because the bus was taken,
-// still has a well-known time.
+// not add up. Every estimate is an interval that contains the true value as long as this holds. A poll that
+// found "not ready" bounds the ready time from below, one that found "ready" from above, and the grid carries
+// both bounds over to the next range. So a reading that was polled late because the bus was busy still has a
+// well-known time.
 #pragma once
 
 #include <cstdint>
@@ -26,27 +27,27 @@ class ReadyTracker {
   public:
     explicit ReadyTracker(const Policy& policy) noexcept;
 
-    /// Ranging starts anew, with a period within `uncertainty_permille` of `expected`.
+    /// Ranging starts again, with a period within `uncertainty_permille` of `expected`.
     void restart(Microseconds expected, std::int32_t uncertainty_permille) noexcept;
 
-    /// Ranging goes on, but when the last range was ready is not known any more.
+    /// Ranging continues, but the ready time of the last range is not known any more.
     void forget() noexcept;
 
-    /// Where the ready time of the `ranges`-th range after the last observed one lies; empty before the
+    /// The bracket of the ready time of the `ranges`-th range after the last observed one; empty before the
     /// first.
     [[nodiscard]] std::optional<TimeBracket> predict(std::uint32_t ranges) const noexcept;
 
-    /// The `ranges`-th range after the last observed one became ready within `seen`. Returns where, by all
-    /// that is known: `seen` and the prediction together, or `seen` alone where they contradict each other;
-    /// the rhythm is then learnt again.
+    /// The `ranges`-th range after the last observed one became ready within `seen`. Returns the bracket by
+    /// all that is known: `seen` and the prediction together. If they contradict each other, returns `seen`
+    /// and learns the rhythm again.
     TimeBracket observe(const TimeBracket& seen, std::uint32_t ranges) noexcept;
-    /// The same range was ready within `seen`, which holds whether the sensor kept its rhythm or not; that it
-    /// did must not be relied on. The rhythm is learnt again.
+    /// The same range was ready within `seen`, which holds whether or not the sensor kept its rhythm; that it
+    /// did must not be assumed. The rhythm is learned again.
     TimeBracket relearn(const TimeBracket& seen, std::uint32_t ranges) noexcept;
 
-    /// The period as far as it is known, measured or not.
+    /// The best estimate of the period, measured or not.
     [[nodiscard]] Microseconds period() const noexcept;
-    /// The period once `trim_edges_min` ready times were observed since the start.
+    /// The period, once `trim_edges_min` ready times were observed since the start.
     [[nodiscard]] std::optional<MeasuredPeriod> measured_period() const noexcept;
 
   private:
@@ -62,7 +63,7 @@ class ReadyTracker {
 
     const Policy& policy_;
     Microseconds expected_{0};
-    std::optional<TimeBracket> grid_;  ///< where the last observed range's place on the grid lies
+    std::optional<TimeBracket> grid_;  ///< bracket of the last observed range's place on the grid
     TimeBracket window_start_;
     std::uint32_t window_slots_ = 0;
     std::uint32_t observed_ = 0;

@@ -1,5 +1,5 @@
-// What to do about a sensor that failed, and when: first a restart, if it still answers, then XSHUT cycles,
-// at once and then at growing distance. It never gives up and never hurries.
+// What to do about a sensor that failed, and when: first a restart if it still answers, then XSHUT cycles, at
+// once and then at growing intervals. It never gives up.
 #pragma once
 
 #include <cstdint>
@@ -23,14 +23,14 @@ class Recovery {
   public:
     explicit Recovery(const Policy& policy) noexcept : policy_(policy) {}
 
-    /// What to do about a failure at `now`. `can_restart`: the sensor answers and was ranging.
+    /// The step after a failure at `now`. `can_restart`: the sensor answers and was ranging.
     [[nodiscard]] RecoveryPlan on_failure(bool can_restart, NodeTime now) noexcept;
-    /// A failure was not followed by enough proven readings yet.
+    /// Whether a failure was not yet followed by enough proven readings.
     [[nodiscard]] bool is_under_way() const noexcept { return failures_ > 0; }
-    /// A reading that proves that the sensor measures. Enough of them in a row and the next failure counts as
-    /// the first.
+    /// A reading that proves that the sensor measures. After enough of them in a row the next failure counts
+    /// as the first.
     void on_proven_reading() noexcept;
-    /// An attempt from scratch on somebody's order.
+    /// An attempt from scratch was commanded.
     void reset() noexcept;
 
   private:

@@ -18,7 +18,7 @@ bool Reflex::begins(const Reading& reading, NodeTime now) noexcept {
     return reading.range_mm < limit_mm_ && std::exchange(is_armed_, false);
 }
 
-/// Far for long is far for long enough: an older time would be taken for a future one after the clock's wrap.
+/// Limits the age of `far_since_`: an older time would look like a future one after the clock's wrap.
 void Reflex::update(NodeTime now) noexcept {
     if (far_since_ && elapsed(*far_since_, now) > policy_.reflex_rearm) {
         far_since_ = now - policy_.reflex_rearm;

@@ -1,6 +1,6 @@
-// Has something come too close to a sensor? Told once an event: it is over only when the sensor has seen
-// nothing near its limit for a while. Only a hit counts as close, and only a hit farther off, or a look at
-// nothing, as far: a reading that is a fault says neither.
+// Detects that something has come too close to a sensor. Each event is reported once; it is over when the
+// sensor has seen nothing near its limit for a while. Only a hit counts as close. Only a hit farther off, or
+// a reading without a target, counts as far; a reading with a fault counts as neither.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ class Reflex {
     /// `limit_mm` 0: never.
     Reflex(std::uint16_t limit_mm, const Policy& policy) noexcept : limit_mm_(limit_mm), policy_(policy) {}
 
-    /// Every accepted reading, as it comes. True if an event begins with it. O(1).
+    /// Takes every accepted reading, in order. True if an event begins with it. O(1).
     [[nodiscard]] bool begins(const Reading& reading, NodeTime now) noexcept;
 
-    /// The event was not told in time: the next reading below the limit begins one.
+    /// The event was not sent in time: the next reading below the limit begins a new one.
     void rearm() noexcept { is_armed_ = true; }
 
     /// Call at least every 35 minutes, with or without readings.

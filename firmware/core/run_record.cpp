@@ -13,7 +13,7 @@ namespace {
 using wire::FaultKind;
 using wire::ResetCause;
 
-constexpr std::uint32_t kLayout = 0x4F53'4B02;  // memory of another layout is no record
+constexpr std::uint32_t kLayout = 0x4F53'4B02;  // memory with another layout holds no record
 
 // In byte 1 of the flags.
 constexpr std::uint32_t kFaultIsNew = 1;
@@ -109,7 +109,7 @@ void save(const RunRecord& record, KeptMemory& memory) noexcept {
     words[ended_last] = record.ended_uptime_ms[0];
     words[ended_before] = record.ended_uptime_ms[1];
     words[crc] = crc_of(words);
-    // Volatile: both are written, and one is done before the other begins.
+    // Volatile: both copies are written, and one is done before the other begins.
     for (KeptMemory::Copy& copy : memory.copies) {
         for (std::size_t i = 0; i < words.size(); ++i)
             static_cast<volatile std::uint32_t&>(copy[i]) = words[i];
@@ -127,7 +127,7 @@ void note_fault(KeptMemory& memory, FaultKind fault, std::uint32_t where) noexce
 }
 
 RunStart begin_run(const RunRecord& last, ResetCause hardware, const RunRules& rules) noexcept {
-    // After power-on memory may still hold what it held: it is of no run any more.
+    // After power-on the memory may still have its old content, which belongs to no run any more.
     if (hardware == ResetCause::power_on) return {.record = {}, .cause = hardware};
 
     RunStart start{.record = last, .cause = last.is_fault_new ? ResetCause::fault : hardware};
@@ -150,7 +150,7 @@ RunStart begin_run(const RunRecord& last, ResetCause hardware, const RunRules& r
     record.ended_uptime_ms = {last.uptime_ms, last.ended_uptime_ms[0]};
     if (last.mode == RunMode::retry && record.retries < 255) ++record.retries;
     record.mode = mode_after_fault(record, rules);
-    // A supply that bounces is no program that fails: with it, the node says so itself.
+    // An unstable supply is not a failing program: while the supply holds, the node reports it itself.
     const bool was_supply = start.cause == ResetCause::brown_out;
     start.is_start_up_failing = last.is_starting && !was_supply && record.mode == RunMode::safe;
     return start;

@@ -14,8 +14,8 @@ using wire::CalibrationOutcome;
 using wire::SensorFault;
 using wire::SensorState;
 
-// A shorter period than this beyond the budget makes the device skip every second start slot (UM2510 3.3;
-// the driver refuses it too).
+// A period shorter than the budget plus this makes the device skip every second start slot (UM2510 3.3; the
+// driver also refuses it).
 constexpr Microseconds kPeriodMargin{5'000};
 
 SensorState state_after(SensorFault fault, bool has_ever_answered) noexcept {
@@ -85,7 +85,7 @@ void Sensor::on_overlooking_more(NodeTime now) {
 }
 
 bool Sensor::order_calibration(const CalibrationOrder& order, NodeTime now) {
-    // What such a part measures is no measurement.
+    // What such a part measures is not usable.
     if (device_.read_back().is_distrusted()) return false;
     if (calibration_ordered_ || !vl53l1x::CalibrationRun::is_target_supported(order.target_mm)) return false;
     order_reinitialise(now);
@@ -264,8 +264,8 @@ BusUse Sensor::advance_ranging(NodeTime now) {
     return mode_ == Mode::ranging ? result.bus : BusUse::releases;
 }
 
-/// A range that failed in the part's own opinion is told, with its status, and proves nothing. One may be an
-/// accident; so many in a row are a part that needs a new start, or a new part.
+/// A range that the part itself reports as failed is sent, with its status, and proves nothing. A single one
+/// may be an accident; this many in a row mean a part that needs a new start, or a new part.
 void Sensor::on_result(NodeTime now) {
     if (range_status(ranging_.reading().device_status).status != RangeStatus::hardware_fail) {
         hardware_fails_in_row_ = 0;
@@ -286,12 +286,12 @@ void Sensor::on_reading() {
         recovery_.on_proven_reading();
     }
     if (ranging_.is_proven() && !recovery_.is_under_way()) mismatches_in_row_ = 0;
-    // A sensor that froze gives one first result after each restart: only the second proves anything.
+    // A frozen sensor gives one first result after each restart: only the second proves that it measures.
     if (ranging_.is_proven() || state_ == SensorState::starting) state_ = SensorState::ranging;
 }
 
-/// It ranges, but nobody knows when. For a while after a slip that is so; for long it is a sensor whose ready
-/// pin, or rhythm, cannot be followed.
+/// It ranges at unknown times. After a slip this is normal for a while; for longer, the ready pin or the
+/// rhythm of the sensor cannot be followed.
 void Sensor::on_undated(NodeTime now) {
     is_settled_ = true;
     ++counts_.rejected;
@@ -299,7 +299,7 @@ void Sensor::on_undated(NodeTime now) {
     if (++undated_in_row_ >= policy_.undated_until_failure) give_up_ranging(SensorFault::stale_stream, now);
 }
 
-/// It answers, but what it says is of no use: only a new bring-up may help.
+/// It answers, but the answers are of no use: only a new bring-up may help.
 void Sensor::give_up_ranging(SensorFault fault, NodeTime now) {
     device_.abandon();
     ranging_.abandon();
@@ -314,8 +314,8 @@ void Sensor::on_refused() {
     if (refused_in_row_ == policy_.rejections_until_degraded) state_ = SensorState::degraded;
 }
 
-/// It ranges, but looks elsewhere or means another distance than configured. That it ranges proves nothing:
-/// after the next failure it is left alone for longer.
+/// It ranges, but looks elsewhere or measures another distance than configured. So its ranging proves
+/// nothing: after the next failure it is left alone for longer.
 void Sensor::on_withheld() {
     is_settled_ = true;
     fault_ = SensorFault::config_mismatch;
@@ -335,7 +335,7 @@ void Sensor::on_failure(wire::SensorFault fault, bool can_restart, NodeTime now)
     mismatches_in_row_ = static_cast<std::uint8_t>(std::min(mismatches, 255));
     if (!recovery_.is_under_way()) has_failed_ = true;
     plan_ = recovery_.on_failure(can_restart, now);
-    // Whoever may be at the default address unasked waits in reset.
+    // A sensor that may be at the default address unexpectedly waits in reset.
     if (plan_.step == RecoveryStep::xshut_cycle) bring_up_.hold_in_reset();
     mode_ = Mode::awaiting_recovery;
 }
@@ -344,17 +344,17 @@ void Sensor::isolate(NodeTime now) {
     device_.abandon();
     ranging_.abandon();
     calibration_.abandon();
-    // Hours may pass, and the target with them.
+    // Hours may pass, and the target may be gone.
     if (calibration_ordered_) end_calibration({.outcome = CalibrationOutcome::device_failed});
     if (mode_ != Mode::awaiting_recovery) {
         on_failure(SensorFault::bus_error, false, now);
-        is_bus_suspect_ = false;  // it is known
+        is_bus_suspect_ = false;  // it is already known
     }
     fault_ = SensorFault::bus_error;
     state_ = state_after(fault_, has_ever_answered_);
     plan_.step = RecoveryStep::xshut_cycle;
     bring_up_.hold_in_reset();
-    // What fell due meanwhile stays due: half an hour later its time would lie in the future.
+    // What became due meanwhile stays due: half an hour later its time would lie in the future.
     plan_.at = later_of(plan_.at, now);
     if (reinitialise_ordered_) reinitialise_ordered_ = now;
 }
@@ -365,7 +365,7 @@ void Sensor::recover(NodeTime now) {
         return;
     }
     ranging_.begin_restart(now);
-    // An order to stop may have come while the read that failed was under way, or since.
+    // A stop may have been ordered during the read that failed, or since.
     if (!is_ordered_to_range_) ranging_.request_stop(now);
     mode_ = Mode::ranging;
 }

@@ -1,5 +1,5 @@
-// One sensor's life: brought up, ranging, stopped by order, or in recovery after a failure; and what the node
-// tells about it.
+// The life of one sensor: brought up, ranging, stopped by order, or in recovery after a failure; and what the
+// node reports about it.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@
 
 namespace octoskin::node {
 
-/// What a sensor needs of its surroundings; all of it outlives the sensor.
+/// The surroundings that a sensor needs; all of them outlive the sensor.
 struct SensorSurroundings {
     i2c::Bus& bus;
     DefaultAddress& default_address;
@@ -32,14 +32,14 @@ struct SensorSurroundings {
     const PhaseClock& clock;
 };
 
-/// Since start; the wire carries them modulo or saturated.
+/// Since start; on the wire they are modulo or saturated.
 struct SensorCounts {
-    std::uint32_t rejected = 0;         ///< results that did not become readings, for whatever reason
-    std::uint32_t reads_disagreed = 0;  ///< of these: never read twice alike
+    std::uint32_t rejected = 0;         ///< results that did not become readings, for any reason
+    std::uint32_t reads_disagreed = 0;  ///< of these: the two reads never agreed
     std::uint32_t undated = 0;          ///< of these: time or zone not known well enough
-    std::uint32_t withheld = 0;  ///< of these: a register that decides the range will not take its value
+    std::uint32_t withheld = 0;  ///< of these: a register that decides the range does not keep its value
     std::uint32_t suspect = 0;   ///< readings sent while a register may have been wrong
-    std::uint32_t restarts = 0;  ///< attempts to bring it back
+    std::uint32_t restarts = 0;  ///< attempts to recover it
 };
 
 class Sensor {
@@ -49,77 +49,79 @@ class Sensor {
     Sensor(const Sensor&) = delete;
     Sensor& operator=(const Sensor&) = delete;
 
-    // --- orders; they take effect as soon as the transfers under way are over
-    /// After a long rest it is brought up anew: a part follows its temperature only while it ranges.
+    // --- orders; they take effect once the transfers under way have ended
+    /// After a long rest the sensor is brought up again: a part follows its temperature only while it ranges.
     void order_start(NodeTime now);
     void order_stop(NodeTime now);
     void order_reinitialise(NodeTime now);
-    /// The verification of the node's sensors overlooks more than before: one that failed or was withheld for
-    /// no other reason is brought up, or ranges, at once.
+    /// The verification of the node's sensors overlooks more than before. A sensor that failed or was
+    /// withheld only for this reason is brought up, or ranges, at once.
     void on_overlooking_more(NodeTime now);
-    /// Brings it up anew, calibrates it, and brings it up once more, as configured: nothing of it stays.
-    /// Returns whether it is going to; not for a target that the driver refuses, nor while one is under way.
+    /// Brings the sensor up, calibrates it, and brings it up again as configured: nothing of the calibration
+    /// is kept. False if the driver refuses the target, if its readings are withheld, or if a calibration is
+    /// already ordered.
     [[nodiscard]] bool order_calibration(const CalibrationOrder& order, NodeTime now);
-    /// Empty: the configured period. Returns whether the period fits the timing budget; if not, nothing is
-    /// changed.
+    /// Empty: the configured period. False, and nothing is changed, if the period does not fit the timing
+    /// budget.
     [[nodiscard]] bool order_period(std::optional<Microseconds> period, NodeTime now);
 
     // --- work
-    /// The bus's data-ready line fell: perhaps for this sensor.
+    /// The bus's data-ready line fell, perhaps for this sensor.
     void on_hint(NodeTime now) noexcept {
         if (mode_ == Mode::ranging) ranging_.on_hint(now);
     }
-    /// Whether it ranges without being read by hints: while it is brought up or calibrated. The line falls
-    /// for it all the same.
+    /// Whether it ranges without being read by hints: while it is brought up or calibrated. Its data also
+    /// pulls the line.
     [[nodiscard]] bool ranges_unasked() const noexcept {
         return mode_ == Mode::bringing_up || mode_ == Mode::calibrating;
     }
-    /// Whether a hint was followed and data was there; told once.
+    /// Whether a hint was followed and data was there; true once.
     [[nodiscard]] bool take_confirmation() noexcept { return ranging_.take_confirmation(); }
-    /// When the bus is wanted; empty while there is nothing to wait for. Asked of every sensor at every turn.
+    /// When the bus is needed; empty while there is nothing to wait for. Called for every sensor in every
+    /// turn.
     [[nodiscard]] std::optional<NodeTime> due() const noexcept {
         const bool is_only_ranging = mode_ == Mode::ranging && !reinitialise_ordered_;
         return is_only_ranging ? ranging_.due() : due_otherwise();
     }
-    /// When it is due for what must not come late; empty if it is for something else, or for nothing. Asked
-    /// of every sensor at every turn.
+    /// When it is due for something that must not come late; empty if it is due for something else, or for
+    /// nothing. Called for every sensor in every turn.
     [[nodiscard]] std::optional<NodeTime> punctual_due() const noexcept {
         if (mode_ != Mode::ranging) return std::nullopt;
         return ranging_.punctual_due();
     }
-    /// Whether what it must be punctual for is its start.
+    /// Whether it must be punctual for its start.
     [[nodiscard]] bool awaits_start() const noexcept { return ranging_.awaits_start(); }
-    /// Whether what it is due for can wait for as long as others must be punctual.
+    /// Whether what it is due for can wait while others must be punctual.
     [[nodiscard]] bool can_wait(NodeTime now) const noexcept {
         return mode_ == Mode::ranging && ranging_.is_early(now);
     }
-    /// Whether somebody who must be punctual may come between its transfers.
+    /// Whether a sensor that must be punctual may come between its transfers.
     [[nodiscard]] bool may_be_interrupted() const noexcept { return ranging_.may_be_interrupted(); }
-    /// One step, with the bus free or taken by this sensor's own transfer.
+    /// One step, while the bus is free or used by this sensor's own transfer.
     [[nodiscard]] BusUse advance(NodeTime now);
-    /// The reading that the last step accepted; told once.
+    /// The reading that the last step accepted; returned once.
     [[nodiscard]] std::optional<Reading> take_reading() noexcept {
         return reading_ ? std::exchange(reading_, std::nullopt) : std::nullopt;
     }
-    /// How the calibration ended that was ordered; told once.
+    /// How the ordered calibration ended; returned once.
     [[nodiscard]] std::optional<CalibrationResult> take_calibration() noexcept;
-    /// Whether it failed, having worked before or for the first time; told once.
+    /// Whether it failed for the first time, or after it had worked; true once.
     [[nodiscard]] bool take_failure() noexcept { return std::exchange(has_failed_, false); }
-    /// Whether the last failure may be the whole bus's; told once.
+    /// Whether the last failure may be one of the whole bus; true once.
     [[nodiscard]] bool take_bus_suspicion() noexcept;
 
-    /// Puts the sensor in reset, whatever it is doing, because somebody holds the bus; no transfer may be in
-    /// flight. It counts as failed, and comes back through XSHUT once it is asked again. Call it at every
-    /// attempt to free the bus that fails, at least every 35 minutes.
+    /// Puts the sensor in reset, whatever its state, because a device holds the bus; no transfer may be in
+    /// flight. The sensor counts as failed, and comes back through XSHUT once it is advanced again. Call this
+    /// at every failed attempt to free the bus, at least every 35 minutes.
     void isolate(NodeTime now);
 
     // --- health
     [[nodiscard]] wire::SensorState state() const noexcept { return state_; }
     [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
-    /// Not ranging as configured, though it should, and not for being brought up by order or for the first
-    /// time. Also while a register will not take its value.
+    /// Not ranging as configured, though it should, except while it is brought up by order or for the first
+    /// time. Also while a register does not keep its value.
     [[nodiscard]] bool is_degraded() const noexcept;
-    /// Has ended its first bring-up, well or badly.
+    /// Whether its first bring-up has ended, successfully or not.
     [[nodiscard]] bool is_settled() const noexcept { return is_settled_; }
     [[nodiscard]] i2c::Address address() const noexcept { return config_.address; }
     [[nodiscard]] bool is_period_overridden() const noexcept { return is_period_overridden_; }
@@ -127,10 +129,10 @@ class Sensor {
     [[nodiscard]] std::int32_t period_error_permille() const noexcept {
         return ranging_.period_error_permille();
     }
-    /// A register that is not as written, and what there is to do about it: one that will not take its value,
-    /// or the newest that differed in three or more attempts in a row, alike or not. Empty if there is none.
+    /// The register to report: one that does not keep its value, or the newest that differed in three or more
+    /// attempts in a row, alike or not. Empty if there is none.
     [[nodiscard]] std::optional<vl53l1x::RegisterDifference> register_to_tell() const noexcept;
-    /// What a person at the node is told of a sensor that is degraded.
+    /// What a person at the node is shown of a degraded sensor.
     struct Trouble {
         wire::SensorFault fault = wire::SensorFault::none;
         std::optional<vl53l1x::RegisterDifference> difference;
@@ -140,7 +142,7 @@ class Sensor {
         if (!is_degraded()) return std::nullopt;
         return Trouble{.fault = fault_, .difference = register_to_tell()};
     }
-    /// Whether it was ever given its address before its boot was over.
+    /// Whether it was ever given its address before the end of its boot.
     [[nodiscard]] bool was_boot_late() const noexcept { return bring_up_.was_boot_late(); }
     [[nodiscard]] const SensorCounts& counts() const noexcept { return counts_; }
     [[nodiscard]] const vl53l1x::ReadBack& read_back() const noexcept { return device_.read_back(); }
@@ -183,8 +185,8 @@ class Sensor {
     RecoveryPlan plan_;
     bool is_ordered_to_range_ = true;
     std::optional<NodeTime> reinitialise_ordered_;
-    NodeTime rest_due_;             ///< when a rest becomes long, or was ended by an order after it had
-    bool has_rested_long_ = false;  ///< so that its temperature may have changed: noted before time wraps
+    NodeTime rest_due_;             ///< when a rest becomes long, or when an order ended a long rest
+    bool has_rested_long_ = false;  ///< its temperature may have changed; recorded before the clock wraps
     bool is_period_overridden_ = false;
 
     wire::SensorState state_ = wire::SensorState::starting;
@@ -196,7 +198,7 @@ class Sensor {
     std::uint8_t refused_in_row_ = 0;
     std::uint8_t hardware_fails_in_row_ = 0;
     std::uint8_t undated_in_row_ = 0;
-    std::uint8_t mismatches_in_row_ = 0;  ///< attempts that ended with a register that differed
+    std::uint8_t mismatches_in_row_ = 0;  ///< attempts that ended with a register difference
     SensorCounts counts_;
     std::optional<Reading> reading_;
 };

@@ -1,4 +1,4 @@
-// The driver's errors as the wire names them.
+// The driver's errors as faults of the wire.
 #pragma once
 
 #include "common/wire/messages.hpp"

@@ -1,4 +1,4 @@
-// An I2C bus as the sensors that share it see it: busy also while somebody else's poll goes first.
+// An I2C bus as the sensors that share it see it: also busy while another sensor's poll goes first.
 #pragma once
 
 #include "common/time.hpp"
@@ -8,9 +8,9 @@ namespace octoskin::node {
 
 class SharedBus final : public i2c::Bus {
   public:
-    /// `bus` must outlive this one.
+    /// `bus` must outlive this object.
     explicit SharedBus(i2c::Bus& bus) noexcept : bus_(bus) {}
-    /// While held, nobody begins a transfer; one in flight goes on.
+    /// While held, no sensor begins a transfer; one in flight continues.
     void hold(bool is_held) noexcept { is_held_ = is_held; }
 
     [[nodiscard]] bool is_busy() const override { return is_held_ || bus_.is_busy(); }

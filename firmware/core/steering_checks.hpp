@@ -1,5 +1,5 @@
-// When which of the registers that scale, steer or time a sensor's ranges is read back, and how many readings
-// rest on registers that were last seen to be right before them.
+// When to read back which of the registers that scale, steer or time a sensor's ranges, and how many readings
+// have been accepted since those registers were last correct.
 #pragma once
 
 #include <array>
@@ -11,12 +11,12 @@
 
 namespace octoskin::node {
 
-/// The groups take turns, so that each reading costs about the same: 51 bits of bus on average.
+/// The groups take turns, so that each reading costs about the same: 51 bits on the bus on average.
 class SteeringChecks {
   public:
     explicit SteeringChecks(const Policy& policy) noexcept : policy_(policy) {}
 
-    /// The whole configuration was just read back, and right.
+    /// The whole configuration was just read back and is correct.
     void restart() noexcept {
         readings_.fill(0);
         readings_since_check_ = 0;
@@ -31,13 +31,13 @@ class SteeringChecks {
     }
     /// The group to read back next.
     [[nodiscard]] std::size_t group() const noexcept { return group_; }
-    /// It was right.
+    /// It was correct.
     void on_clean() noexcept {
         readings_[group_] = 0;
         readings_since_check_ = 0;
         group_ = (group_ + 1) % readings_.size();
     }
-    /// Readings since that group was last seen to be right.
+    /// Readings since that group was last correct.
     [[nodiscard]] std::uint32_t suspects() const noexcept { return readings_[group_]; }
 
   private:

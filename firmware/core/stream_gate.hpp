@@ -1,4 +1,4 @@
-// Has the sensor measured anew? The stream count of a result, judged against the last one.
+// Whether the sensor has measured again: the stream count of a result, compared with the last one.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace octoskin::node {
 
-/// Steps further than this are not told from steps back: the ring 128..255 has 128 places.
+/// More steps than this cannot be distinguished from steps back: the ring 128..255 has 128 places.
 inline constexpr std::uint8_t kStreamStepsMax = 63;
 
-/// How many results the count moved from `previous` to `current`, 1..kStreamStepsMax; empty if it did not
-/// move, moved back or further than that. The count runs 0, 1, ..., 255, 128, ..., 255, 128 (UM2356), so
-/// 0..127 come only once after a start.
+/// By how many results the count moved from `previous` to `current`, 1..kStreamStepsMax; empty if it did not
+/// move, moved back or moved further. The count runs 0, 1, ..., 255, 128, ..., 255, 128 (UM2356), so 0..127
+/// come only once after a start.
 [[nodiscard]] std::optional<std::uint8_t> stream_steps(std::uint8_t previous, std::uint8_t current) noexcept;
 
 /// Whether `gate` lets a result with stream count `current` pass after one with `previous`.

@@ -38,7 +38,7 @@ struct TimeBracket {
     return {bracket.earliest - by, bracket.latest + by};
 }
 
-/// Where both hold; empty if they contradict each other.
+/// The common part; empty if the two contradict each other.
 [[nodiscard]] constexpr std::optional<TimeBracket> intersection(const TimeBracket& a,
                                                                 const TimeBracket& b) noexcept {
     const TimeBracket both{later_of(a.earliest, b.earliest), earlier_of(a.latest, b.latest)};

@@ -1,4 +1,4 @@
-// Limits a node's own frames, so that a defect cannot make it a babbling one.
+// Limits a node's own frames, so that a defect cannot make it flood the bus.
 #pragma once
 
 #include <algorithm>
@@ -23,12 +23,11 @@ class TokenBucket {
         filled_ = now;
     }
     [[nodiscard]] bool has_token() const noexcept { return level_ >= kToken; }
-    /// Whether one would be left for what goes first, the heartbeat: however much else there is to say, it
-    /// must not wait for a token.
+    /// Whether a token would be left for the heartbeat, which goes first and must not wait for one.
     [[nodiscard]] bool has_spare_token() const noexcept { return level_ >= 2 * kToken; }
     /// Only while `has_token()`.
     void take() noexcept { level_ -= kToken; }
-    /// How long until a spare token is there.
+    /// The time until there is a spare token.
     [[nodiscard]] Microseconds wait() const noexcept {
         if (has_spare_token()) return Microseconds{0};
         return Microseconds{(2 * kToken - level_ + per_second_ - 1) / per_second_};

@@ -1,5 +1,6 @@
-// Which zone was a range taken in? A zone written while the sensor ranges takes effect with the next range
-// (UM2555), so a reading carries the zone in force when its range began; too close to a write nobody knows.
+// Which zone a range was taken in. A zone written while the sensor ranges takes effect with the next range
+// (UM2555), so a reading has the zone in force when its range began. Too close to a write the zone is
+// unknown.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +15,9 @@ class ZoneCycle {
   public:
     ZoneCycle(std::uint8_t zone_count, Microseconds guard) noexcept;
 
-    /// The sensor was configured anew, with zone 0.
+    /// The sensor was configured again, with zone 0.
     void restart() noexcept;
-    /// Ranging starts: the zone last written is in force, however long ago that was.
+    /// Ranging starts: the zone last written is in force, however long ago it was written.
     void settle() noexcept;
 
     [[nodiscard]] bool is_cycling() const noexcept { return zone_count_ > 1; }
@@ -24,14 +25,14 @@ class ZoneCycle {
     [[nodiscard]] std::uint8_t current() const noexcept { return after_; }
     /// The zone to write next.
     [[nodiscard]] std::uint8_t next() const noexcept;
-    /// Whether a write begun at `now` is over, guard included, before the next range begins.
+    /// Whether a write begun at `now` ends, with the guard, before the next range begins.
     [[nodiscard]] bool fits_before(NodeTime next_range_begin, NodeTime now) const noexcept;
 
-    /// `next()` was written some time within `when`, and from there on is in force.
+    /// `next()` was written within `when`, and is in force from then on.
     void written(const TimeBracket& when) noexcept;
 
-    /// A range was judged that began at `earliest` or later; all that are judged from now on begin later. A
-    /// write from before it is settled: kept for half an hour, its time would lie in the future.
+    /// A range that began at `earliest` or later was judged; all later ones begin later. A write from before
+    /// it is settled: kept for half an hour, its time would lie in the future.
     void note_range(NodeTime earliest) noexcept;
 
     /// The zone of a range that began within `begin`; `wire::kZoneUnknown` within the guard of a write.

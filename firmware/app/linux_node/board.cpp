@@ -51,8 +51,8 @@ node::Policy policy_for(const Arguments& arguments) {
 Result<std::unique_ptr<Board>, StartFailure> Board::open(const Arguments& arguments, const NodeConfig& config,
                                                          const node::Identity& identity,
                                                          node::KeptMemory& kept) {
-    auto xshut =
-        linux_port::XshutOutputs::request(arguments.xshut);  // first: sensors are in reset from here on
+    auto xshut = linux_port::XshutOutputs::request(
+        arguments.xshut);  // first, so that all sensors are in reset from here on
     if (!xshut) return unexpected(xshut.error());
     auto data_ready = linux_port::DataReadyInputs::request(arguments.data_ready);
     if (!data_ready) return unexpected(data_ready.error());
@@ -74,7 +74,7 @@ Board::Board(const Arguments& arguments, const NodeConfig& config, const node::I
       node_(config, identity, ports(kept), node_now(), policy_) {}
 
 Board::~Board() {
-    threads_.clear();  // they tell of their ends by the descriptor
+    threads_.clear();  // the threads write to the descriptor
     ::close(transfers_ended_);
 }
 

@@ -1,4 +1,4 @@
-// A Linux board and its node: opens the devices, wires them, turns the loop.
+// A Linux board and its node: opens the devices, connects them to the node, and runs the loop.
 #pragma once
 
 #include <array>
@@ -24,11 +24,11 @@ class Board {
   public:
     enum class Ending : std::uint8_t {
         stopped,  ///< by a signal
-        reset,    ///< the host has ordered it
+        reset,    ///< ordered by the host
     };
 
-    /// All devices but the CAN interface must be there. `kept` outlives boards: what a microcontroller keeps
-    /// over a reset.
+    /// Every device except the CAN interface must exist. `kept` outlives boards: it corresponds to the memory
+    /// that a microcontroller keeps over a reset.
     [[nodiscard]] static Result<std::unique_ptr<Board>, linux_port::StartFailure> open(
         const Arguments& arguments, const NodeConfig& config, const node::Identity& identity,
         node::KeptMemory& kept);
@@ -36,15 +36,16 @@ class Board {
     Board(const Board&) = delete;
     Board& operator=(const Board&) = delete;
 
-    /// Until `stop`, a descriptor, is readable. `manager` is told of each turn that has ended.
+    /// Runs the loop until the descriptor `stop` is readable or the host orders a reset. Reports each
+    /// completed turn to `manager`.
     [[nodiscard]] Ending run(int stop, Journal& journal, linux_port::ServiceManager& manager);
 
     struct Left {
         std::size_t xshut_refused = 0;   ///< lines that the kernel refused to set low
-        std::vector<std::string> stuck;  ///< buses with a transfer that does not come back within a second
+        std::vector<std::string> stuck;  ///< buses with a transfer that stays in the kernel for over a second
     };
-    /// After `run`: all sensors go into reset, and transfers that are in the kernel come back. With a stuck
-    /// bus the board cannot be destroyed: the destructor would wait for it.
+    /// Call after `run`. Puts all sensors into reset and waits, 1 s in all, for the transfers in the kernel.
+    /// With a stuck bus, do not destroy the board: the destructor would block.
     [[nodiscard]] Left end();
 
   private:
@@ -56,7 +57,7 @@ class Board {
     Board(const Arguments& arguments, const NodeConfig& config, const node::Identity& identity,
           node::KeptMemory& kept, Devices devices);
     [[nodiscard]] node::Ports ports(node::KeptMemory& kept);
-    /// False: stop.
+    /// False if the loop must stop.
     [[nodiscard]] bool wait(int stop, Microseconds sleep_max);
     void turn();
     [[nodiscard]] NodeTime wake_time(NodeTime now) const;

@@ -1,4 +1,4 @@
-// The configuration block of a Linux node: read, checked, and held against what the command line offers.
+// Reads the configuration block of a Linux node and checks it, also against the command line.
 #pragma once
 
 #include "common/config/node_config.hpp"
@@ -10,8 +10,8 @@ namespace octoskin::linux_node {
 
 inline constexpr std::uint8_t kBoardType = 2;  // hw/boards/linux_board.yaml
 
-/// Refused: a file that is not there; no whole block; one for another type of board; a bus, an XSHUT line or
-/// a data-ready line that the command line does not name.
+/// Errors: the file does not exist; it is not a complete valid block; the block is for another type of board;
+/// the block uses a bus, an XSHUT line or a data-ready line that the command line does not name.
 [[nodiscard]] Result<NodeConfig, linux_port::StartFailure> load_configuration(const Arguments& arguments);
 
 }  // namespace octoskin::linux_node

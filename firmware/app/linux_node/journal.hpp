@@ -1,4 +1,4 @@
-// What a Linux node tells a person, a line each on standard error: what it is, and whatever changes.
+// Log of a Linux node, one line per event on standard error: its identity at the start, then each change.
 #pragma once
 
 #include <array>
@@ -14,13 +14,14 @@
 
 namespace octoskin::linux_node {
 
-/// One line, with the program's name. Never waits for what reads it; at the end of the program for 1 s.
+/// Writes one line, prefixed with the program's name. Never waits for the reader; the end of the program
+/// waits up to 1 s.
 void say(const std::string& what);
 
 class Journal {
   public:
     void started(const NodeConfig& config, const std::string& can, std::uint32_t build_id);
-    /// Call at every turn: says what has changed since the last one.
+    /// Call once per turn of the loop. Writes a line for each change since the last call.
     void update(const node::Node& node, const linux_port::CanInterface& can,
                 const linux_port::XshutOutputs& xshut, const linux_port::DataReadyInputs& data_ready);
 
@@ -29,13 +30,14 @@ class Journal {
 
     std::optional<wire::NodeState> state_;
     std::size_t alike_told_ = 0;
-    std::array<std::optional<node::Sensor::Trouble>, kNodeSensorsMax> troubles_{};  ///< told, by sensor
+    std::array<std::optional<node::Sensor::Trouble>, kNodeSensorsMax>
+        troubles_{};  ///< last reported, by sensor
     std::string trouble_;
     node::CanState can_state_ = node::CanState::active;
     std::uint8_t ignored_data_ready_ = 0;
     std::uint64_t unconfirmed_ = 0;
     std::uint64_t xshut_failures_ = 0;
-    std::size_t data_ready_gone_ = 0;  ///< so many have been said
+    std::size_t data_ready_gone_ = 0;  ///< number already reported
 };
 
 }  // namespace octoskin::linux_node

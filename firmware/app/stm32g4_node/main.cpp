@@ -1,4 +1,4 @@
-// The node on a NUCLEO-G474RE: builds the parts, wires them, loops.
+// The node on a NUCLEO-G474RE: constructs the parts, connects them, and runs the loop.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -32,12 +32,12 @@
 namespace octoskin::stm32g4 {
 namespace {
 
-// For whoever flashes: the linker keeps it, nobody here reads it.
+// Read by the flashing program from the image, not by this program; the linker must keep it.
 [[gnu::used, gnu::section(".identity")]] constexpr auto kIdentity = image_identity(kNodeConfigLayout);
 
 constexpr std::uint8_t kBoardType = 1;  // hw/boards/nucleo_g474re.yaml
 
-constexpr Microseconds kSayMax{40'000};  // two lines and a half
+constexpr Microseconds kSayMax{40'000};  // time for two and a half lines of text
 constexpr Microseconds kSecond{1'000'000};
 constexpr std::uint32_t kRestTurnsPerSecond = 50;
 
@@ -60,7 +60,7 @@ constinit std::optional<node::Node> the_node;
 constinit bool is_crystal_missed = false;
 constinit NodeTime look_for_crystal_at;
 
-/// Without the crystal it was said already.
+/// A missing crystal was already reported, so `can_dead` is not reported then.
 void enter_can(const std::optional<CanRates>& rates, const Clocks& clocks) {
     can_entry.begin(rates, config.node_id, clocks.can_hz, timer.now());
     if (clocks.can_hz != 0 && !can.is_started() && !can.is_listening()) report.can_dead();
@@ -76,7 +76,8 @@ void start_buses(const Clocks& clocks) {
     enter_can(has_rates ? std::optional(rates_of(config)) : std::nullopt, clocks);
     if (timing && has_rates && config.board_type == kBoardType) return report.config_accepted(config);
     report.config_unsuitable(config);
-    // Not valid: the node does not range, and says so. (A wrong board type it finds by itself.)
+    // An `i2c_hz` of 0 makes the configuration invalid: the node does not range and reports it. The node
+    // itself detects a wrong board type.
     if (!timing || !has_rates) config.i2c_hz = 0;
 }
 
@@ -92,7 +93,7 @@ void load_configuration(const Clocks& clocks) {
     }
 }
 
-/// What is said is said before anything else is tried: what failed may fail again at once.
+/// Waits, at most `kSayMax`, until all text has been sent: the next step may fail as the last one did.
 void finish_saying() {
     const NodeTime begun = timer.now();
     while (!serial.is_quiet() && elapsed(begun, timer.now()) < kSayMax) {
@@ -112,8 +113,9 @@ bool has_event() {
                        [](const I2cController& controller) { return controller.has_ended(); });
 }
 
-/// Interrupts that move a byte wake the core, but not the loop. Masked while it looks: what comes between the
-/// look and the sleep ends the sleep at once.
+/// Sleeps until `wake` or an event. Interrupts that only move a byte wake the core, but do not end the wait.
+/// Interrupts are masked between the check and the sleep; one that becomes pending in between ends the sleep
+/// at once.
 void sleep_until(NodeTime wake) {
     timer.wake_at(wake);
     while (true) {
@@ -123,8 +125,8 @@ void sleep_until(NodeTime wake) {
     }
 }
 
-/// Start-up itself failed again and again: keeps still, with as little as can tell a person. CAN, buses and
-/// sensors are left as the reset left them.
+/// Start-up failed repeatedly: waits with only the light and the serial port active. CAN, buses and sensors
+/// stay as the reset left them.
 void rest(const std::optional<Fault>& last, std::uint32_t seconds) {
     timer.start(kInternalHz);
     start_telling(kInternalHz);
@@ -173,8 +175,8 @@ void start() {
     the_node.emplace(config, identity, ports, timer.now());
 }
 
-/// A node without its crystal is silent, so that nothing is lost by starting anew once it runs. That counts
-/// as a reset by a fault: a crystal that comes and goes leads to safe mode, in which nobody looks for it.
+/// A node without its crystal is silent on CAN, so a reset loses nothing once the crystal runs. The reset
+/// counts as one by a fault: an unstable crystal ends in safe mode, in which the crystal is not checked.
 void look_for_crystal(NodeTime now) {
     if (!is_crystal_missed || !is_reached(look_for_crystal_at, now)) return;
     look_for_crystal_at = now + kSecond;
@@ -185,8 +187,8 @@ void look_for_crystal(NodeTime now) {
     record_and_reset({.kind = wire::FaultKind::clock_fault});
 }
 
-/// When something must be done even if no event comes. At most 20 ms away, for the watchdog's sake. Should
-/// that wake-up be missed, the watchdog itself is what helps: it has a clock of its own.
+/// Next time at which the loop must run without an event, at most 20 ms ahead because of the watchdog. If
+/// this wake-up is missed, the watchdog resets the chip: it has its own clock.
 NodeTime wake_time(NodeTime light_due) {
     const NodeTime now = timer.now();
     NodeTime wake = node::earlier_of(light_due, the_node->wake_time(now));

@@ -1,5 +1,4 @@
-// Tells a person at the board how it is: lines on the serial port, each said once when something happens, and
-// the light's flashes.
+// Reports the board's state to a person: one line on the serial port per event, and the flashes of the light.
 #pragma once
 
 #include <array>
@@ -24,18 +23,18 @@ class Report {
 
     void started(std::uint32_t build_id, wire::ResetCause cause, const Clocks& clocks);
     void fault(const Fault& fault);
-    /// Start-up failed too often: nothing more happens for so long.
+    /// Start-up failed too often: the board waits for `seconds`.
     void start_up_failing(std::uint32_t seconds);
-    /// The crystal that was missed runs now: the chip is about to be reset.
+    /// The missing crystal now runs: the chip is about to be reset.
     void crystal_runs();
     void config_accepted(const NodeConfig& config);
     void config_refused(NodeConfigError error);
-    /// Whole, but not for this board, or with rates that it cannot make.
+    /// The block is complete, but for another board, or with rates that this board cannot generate.
     void config_unsuitable(const NodeConfig& config);
-    /// The controller does not follow its orders: silent until it does.
+    /// The CAN controller does not respond: CAN is silent until it does.
     void can_dead();
 
-    /// Says what changed since the last call.
+    /// Reports each change since the last call.
     void update(const node::Node& node, const CanController& can, NodeTime now);
 
   private:
@@ -53,9 +52,10 @@ class Report {
     std::uint32_t can_failed_ = 0;
     CanCounts told_;
     node::Pause losses_pause_;
-    std::array<std::optional<node::Sensor::Trouble>, kNodeSensorsMax> troubles_{};  ///< told, by sensor
+    std::array<std::optional<node::Sensor::Trouble>, kNodeSensorsMax>
+        troubles_{};  ///< last reported, by sensor
     std::size_t alike_told_ = 0;
-    bool has_trouble_ = false;  ///< any of them, at the last look
+    bool has_trouble_ = false;  ///< any sensor, at the last check
     node::Pause sensors_pause_;
 };
 

@@ -1,5 +1,5 @@
-// What a driver needs of an I2C bus: one transfer in flight, never a wait. Ports implement it (interrupt or
-// DMA driven on the STM32, a thread per bus on Linux), and so does the simulated bus.
+// Interface between a device driver and an I2C bus. A bus has one transfer in flight and no call waits.
+// Implemented by the ports (interrupts on the STM32, a thread per bus on Linux) and by the simulated bus.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@ namespace octoskin::i2c {
 /// 7-bit address, never the shifted 8-bit form.
 using Address = std::uint8_t;
 
-/// `write`, then, if `read` is not empty, a repeated start and `read`. Both must outlive the transfer.
+/// Writes `write`. If `read` is not empty, a repeated start and the read follow. Both buffers must outlive
+/// the transfer.
 struct Transfer {
     Address address = 0;
     std::span<const std::uint8_t> write;
@@ -21,11 +22,11 @@ struct Transfer {
 };
 
 enum class TransferError : std::uint8_t {
-    nack_address,      ///< nobody at that address
+    nack_address,      ///< no device acknowledges the address
     nack_data,         ///< the device refused a byte of the index or data
     timeout,           ///< not done at the deadline (clock stretched, interrupt lost); the bus was reset
     arbitration_lost,  ///< SDA read back low where it was driven high
-    bus_stuck,         ///< SDA or SCL held low before the start, and 9 clocks did not free it
+    bus_stuck,         ///< SDA or SCL was low before the start and stayed low after 9 clocks
 };
 
 enum class TransferState : std::uint8_t { idle, pending, done, failed };
@@ -36,25 +37,25 @@ class Bus {
     Bus(const Bus&) = delete;
     Bus& operator=(const Bus&) = delete;
 
-    /// True while a transfer is in flight (submitted, and its end not yet fetched by `poll`).
+    /// True from `submit` until `poll` has returned the end of the transfer.
     [[nodiscard]] virtual bool is_busy() const = 0;
 
-    /// Starts a transfer. Calling it while busy is a programmer's mistake. At `deadline` the transfer is
-    /// given up with `timeout`. Returns at once.
+    /// Starts a transfer and returns at once. Precondition: not busy. At `deadline` the transfer is given up
+    /// with the error `timeout`.
     virtual void submit(const Transfer& transfer, NodeTime now, NodeTime deadline) = 0;
 
-    /// How the transfer in flight stands at `now`. `done` and `failed` are told once and leave the bus idle;
-    /// after `failed`, `error()` tells why. `idle` if nothing was submitted.
+    /// State of the transfer in flight at `now`. `done` and `failed` are returned once and leave the bus
+    /// idle. After `failed`, `error()` gives the reason. `idle` if nothing was submitted.
     [[nodiscard]] virtual TransferState poll(NodeTime now) = 0;
     [[nodiscard]] virtual TransferError error() const = 0;
 
     /// Frees a bus that a device holds: up to 9 clocks and a STOP, then a reset of the controller. A transfer
-    /// in flight is dropped; its owner's next `poll` finds the bus idle. At most 1 ms. Returns whether both
-    /// lines read high afterwards.
+    /// in flight is dropped; the next `poll` of its owner returns `idle`. Takes at most 1 ms. Returns whether
+    /// both lines read high afterwards.
     virtual bool recover() = 0;
 
   protected:
-    // Not virtual: nobody owns a bus through this interface, and firmware must not pull in operator delete.
+    // Not virtual: no object is deleted through this interface, and firmware must not link operator delete.
     ~Bus() = default;
 };
 

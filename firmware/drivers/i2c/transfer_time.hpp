@@ -1,4 +1,4 @@
-// How long a transfer lasts on the wire, and when to stop waiting for it.
+// Duration of a transfer on the wire, and the deadline derived from it.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace octoskin::i2c {
 
-/// Clock periods of a transfer without clock stretching: every byte is 8 bits and an acknowledge, START and
-/// STOP count one each, and a read behind a write costs a repeated START and a second address byte.
+/// Clock periods of a transfer without clock stretching. Each byte takes 8 bits and an acknowledge; START and
+/// STOP take one each. A read after a write adds a repeated START and a second address byte.
 [[nodiscard]] constexpr std::uint32_t bit_count(std::size_t bytes_written, std::size_t bytes_read) noexcept {
     const auto written = static_cast<std::uint32_t>(bytes_written);
     const auto read = static_cast<std::uint32_t>(bytes_read);
@@ -22,8 +22,8 @@ namespace octoskin::i2c {
     return bit_count(transfer.write.size(), transfer.read.size());
 }
 
-/// The time a transfer may take before it is given up: three times its nominal time, for parts and ports that
-/// stretch the clock, plus `lateness` for an interrupt or a thread that comes late. `bus_hz` > 0.
+/// Time after which a transfer is given up: three times its nominal time, for devices and ports that stretch
+/// the clock, plus `lateness` for a late interrupt or thread. `bus_hz` > 0.
 [[nodiscard]] constexpr Microseconds time_limit(const Transfer& transfer, std::uint32_t bus_hz,
                                                 Microseconds lateness = Microseconds{1'000}) noexcept {
     const std::uint64_t nominal_us = (std::uint64_t{bit_count(transfer)} * 1'000'000 + bus_hz - 1) / bus_hz;

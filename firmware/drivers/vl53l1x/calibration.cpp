@@ -10,19 +10,19 @@ namespace octoskin::vl53l1x {
 namespace {
 
 constexpr Microseconds kPollEvery{1'000};
-constexpr Microseconds kReadAgainAfter{10'000};  // ten of these outlast a range that makes no sense
+constexpr Microseconds kReadAgainAfter{10'000};  // ten of these last longer than one implausible range
 constexpr Microseconds kRangeWithinMin{2'000'000};
 constexpr std::int64_t kRangeWithinPeriods = 3;
 
-// Read-back runs: kRegisterRuns.
+// Indices into kRegisterRuns.
 constexpr std::size_t kOffsetRun = 0;
 constexpr std::size_t kCrosstalkRun = 4;
 static_assert(kRegisterRuns[kOffsetRun].first == 0x1E && kRegisterRuns[kCrosstalkRun].first == 0x16);
 
-/// 127 kcps in 512ths: what a rig file takes.
+/// 127 kcps in units of 1/512 kcps: the maximum of a rig file.
 constexpr std::int64_t kCrosstalkRawMax = std::int64_t{127} * 512;
 
-/// To the nearest, halves away from zero.
+/// Rounds to the nearest integer, halves away from zero.
 std::int64_t divided(std::int64_t dividend, std::int64_t divisor) noexcept {
     const std::int64_t half = dividend < 0 ? -divisor / 2 : divisor / 2;
     return (dividend + half) / divisor;
@@ -90,7 +90,7 @@ Progress CalibrationRun::poll(NodeTime now) {
                 resume_at_ = now + kReadAgainAfter;
                 return Progress::busy;
             }
-            // One that was stopping for another reason keeps that reason.
+            // A run that is already stopping keeps its first error.
             if (!has_failed_) error_ = CalibrationError::device;
             return end(Progress::failed);
         case Progress::idle:
@@ -108,7 +108,7 @@ void CalibrationRun::start_step(Step step) {
             break;
         case Step::checking:
         case Step::checking_again:
-            // What is measured under another offset or crosstalk than 0 would be off by that, and be kept.
+            // A nonzero offset or crosstalk left in the sensor would shift the result by its own value.
             device_.begin_verify(quantity_ == Quantity::offset ? kOffsetRun : kCrosstalkRun);
             break;
         case Step::starting:
@@ -171,8 +171,8 @@ Progress CalibrationRun::on_range(NodeTime now) {
     return pause(now);
 }
 
-/// Two reads of one result that differ, or bytes that make no sense: the result is still there, to be read
-/// again.
+/// The two reads of a result differ, or the block is implausible. The sensor still holds the result, so it
+/// can be read again.
 bool CalibrationRun::drops_read() noexcept {
     const Error error = device_.error();
     if (step_ != Step::ranging) return false;
@@ -185,10 +185,10 @@ Progress CalibrationRun::pause(NodeTime now) {
     return Progress::busy;
 }
 
-/// False if it tells nothing new.
+/// False if the measurement is a repetition.
 bool CalibrationRun::add(const Measurement& measurement) noexcept {
     if (measurement.stream_count == 0) return true;              // no wrap check
-    if (measurement.stream_count == stream_last_) return false;  // the same once more: the sensor has stopped
+    if (measurement.stream_count == stream_last_) return false;  // repeated: the sensor has stopped
     stream_last_ = measurement.stream_count;
     if (measurement.device_status != kDeviceStatusComplete) {
         ++ranges_invalid_;
@@ -205,7 +205,7 @@ bool CalibrationRun::compute() noexcept {
     const std::int64_t target_sum_mm = std::int64_t{kRanges} * target_mm_;
     const std::int64_t shortfall_mm = target_sum_mm - range_sum_mm_;
     if (quantity_ == Quantity::offset) {
-        // The sensor adds it before the driver applies the gain factor, which would shrink it too.
+        // The sensor adds the offset before the driver applies the gain factor, so divide by the gain.
         const std::int64_t dividend = device_.applies_gain_factor() ? 2048 : 1;
         const std::int64_t divisor = device_.applies_gain_factor() ? 2011 : 1;
         const std::int64_t quarters = divided(4 * shortfall_mm * dividend, kRanges * divisor);
@@ -213,8 +213,8 @@ bool CalibrationRun::compute() noexcept {
         offset_quarter_mm_ = static_cast<std::int16_t>(quarters);
         return true;
     }
-    // 512 * signal in kcps * (1 - range / target) / SPADs, with the signal in 128ths of Mcps and the SPADs in
-    // 256ths. There are SPADs: the driver refuses a complete range without.
+    // 512 * signal in kcps * (1 - range / target) / SPADs. The signal is in 1/128 Mcps, the SPAD count in
+    // 1/256. The SPAD sum is not 0: the driver refuses a complete range without SPADs.
     const std::int64_t signal_per_spad = 1'024'000 * signal_sum_ / spads_sum_;
     const std::int64_t raw =
         divided(signal_per_spad * std::max<std::int64_t>(shortfall_mm, 0), target_sum_mm);

@@ -1,7 +1,7 @@
-// Finds a part's offset, or the crosstalk of its cover glass, from 50 ranges to a target at a known range, as
-// ST's ULD 3.5.2 does (VL53L1X_CalibrateOffset, _CalibrateXtalk; UM2510 section 4), without its waits and its
-// 16-bit overflows. The results are what a rig's device_offset_mm and crosstalk_kcps hold, as `Settings` has
-// them.
+// Measures the offset of a sensor, or the crosstalk of its cover glass, from 50 ranges to a target at a known
+// distance. Method: ST's ULD 3.5.2 (VL53L1X_CalibrateOffset, _CalibrateXtalk; UM2510 section 4), without its
+// waits and its 16-bit overflows. The results have the units of `Settings`; a rig file holds them as
+// device_offset_mm and crosstalk_kcps.
 #pragma once
 
 #include <cstdint>
@@ -13,50 +13,51 @@
 namespace octoskin::vl53l1x {
 
 enum class CalibrationError : std::uint8_t {
-    device,              ///< an operation of the device failed: see its `error()`
+    device,              ///< an operation of the device failed; see its `error()`
     unsupported_target,  ///< 0, or beyond `CalibrationRun::kTargetMax_mm`
     no_result,           ///< no range for 2 s, or for 3 periods if that is longer
     no_target,           ///< too many ranges without a valid result
-    out_of_range,        ///< the offset does not fit its 13 bits
+    out_of_range,        ///< the offset exceeds its 13 bits, or the crosstalk 127 kcps
 };
 
-/// One device, configured and stopped, offset before crosstalk. Not thread-safe; no call waits; ends within
-/// 60 ranges, each given up after 2 s, or 3 periods if that is longer. A read that makes no sense is dropped
-/// and its range read again. The part ranges with the new value from then on; after a failure with
-/// none.
+/// Calibrates one device, which must be configured and stopped. Calibrate the offset before the crosstalk. No
+/// call waits; not thread-safe. A run ends within 60 ranges; each range may take 2 s, or 3 periods if that is
+/// longer. An implausible read is dropped and repeated, at most `kReadsDroppedMax` times. After success the
+/// sensor ranges with the new value, after a failure with 0.
 class CalibrationRun {
   public:
     static constexpr std::uint16_t kTargetMax_mm = 4'000;
     static constexpr std::uint8_t kRanges = 50;
     static constexpr std::uint8_t kRangesInvalidMax =
-        10;  ///< the first one, without wrap check, is none of them
+        10;  ///< the first range, without wrap check, is not counted
     static constexpr std::uint8_t kReadsDroppedMax = 10;
 
-    /// `period`: between the device's ranges, as it was configured.
+    /// `period`: time between the ranges of the device, as configured.
     CalibrationRun(Device& device, Microseconds period) noexcept;
 
     [[nodiscard]] static constexpr bool is_target_supported(std::uint16_t target_mm) noexcept {
         return target_mm > 0 && target_mm <= kTargetMax_mm;
     }
 
-    /// UM2510: a grey target (17 %) at 140 mm, in the dark. `target_mm` from the sensor's front.
+    /// UM2510: a grey target (17 %) at 140 mm, in the dark. `target_mm`: distance from the front of the
+    /// sensor.
     void begin_offset(std::uint16_t target_mm);
-    /// UM2510: a grey target (17 %) where ranges begin to fall short, in the dark. Crosstalk that lengthens
-    /// ranges does not exist: such a result is 0.
+    /// UM2510: a grey target (17 %) at the distance where ranges begin to be too short, in the dark.
+    /// Crosstalk cannot lengthen a range: if the ranges are too long, the result is 0.
     void begin_crosstalk(std::uint16_t target_mm);
 
-    /// The device was abandoned, or is going to be: nothing comes of this run.
+    /// Ends the run without a result, for a device that is or will be abandoned.
     void abandon() noexcept;
 
-    /// As a device's. Poll the device through this only.
+    /// As `Device::poll`. During a run, do not poll the device itself.
     [[nodiscard]] Progress poll(NodeTime now);
     [[nodiscard]] CalibrationError error() const noexcept { return error_; }
-    /// The earliest time at which `poll` has something to do; empty if as soon as the bus is free.
+    /// The earliest time at which `poll` has work to do; empty: as soon as the bus is free.
     [[nodiscard]] std::optional<NodeTime> wake_time() const noexcept {
         return resume_at_ ? resume_at_ : device_.wake_time();
     }
 
-    /// After `done`; the other one is 0.
+    /// Valid after `done`. The value that was not calibrated is 0.
     [[nodiscard]] std::int16_t offset_quarter_mm() const noexcept { return offset_quarter_mm_; }
     [[nodiscard]] std::uint16_t crosstalk_raw() const noexcept { return crosstalk_raw_; }
 
@@ -93,7 +94,7 @@ class CalibrationRun {
     bool has_failed_ = false;
     bool has_waited_ = false;
     NodeTime last_result_{};
-    std::optional<NodeTime> resume_at_;  ///< then the next poll for a range
+    std::optional<NodeTime> resume_at_;  ///< time of the next poll for a range
 
     std::uint8_t ranges_ = 0;
     std::uint8_t ranges_invalid_ = 0;

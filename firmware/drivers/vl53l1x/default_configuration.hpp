@@ -1,6 +1,6 @@
 // The 91 bytes at 0x2D..0x87 that ST's drivers write before the first range: ST ULD 3.5.2,
-// VL51L1X_DEFAULT_CONFIGURATION (identical in ULD 3.5.0, 3.5.1 and 1.0.1). After them the part is in long
-// mode, 100 ms budget, 100 ms period, 16 x 16 SPADs. ST marks most of them as not for the user to change.
+// VL51L1X_DEFAULT_CONFIGURATION (identical in ULD 3.5.0, 3.5.1 and 1.0.1). They select long mode, 100 ms
+// budget, 100 ms period and 16 x 16 SPADs. ST marks most of them as not for the user to change.
 #pragma once
 
 #include <array>
@@ -23,7 +23,8 @@ inline constexpr std::array<std::uint8_t, 91> kDefaultConfiguration{
     // VCSEL, phase calibration (0x4B: long mode), dynamic SPAD selection
     /* 0x47 */ 0x0B, 0x00, 0x00, 0x02, 0x0A, 0x21, 0x00, 0x00, 0x05, 0x00, 0x00, 0x00, 0x00,
     /* 0x54 */ 0xC8, 0x00, 0x00, 0x38, 0xFF, 0x01,
-    // time-outs and VCSEL periods; 0x5F was 0xDB before ULD 1.0.2, whose budget ST's own table did not know
+    // time-outs and VCSEL periods. 0x5F was 0xDB before ULD 1.0.2; ST's own budget table has no entry for
+    // that value.
     /* 0x5A */ 0x00, 0x08, 0x00, 0x00, 0x01, 0xCC, 0x0F, 0x01, 0xF1, 0x0D,
     // sigma limit 90 mm, signal limit 1.0 Mcps, valid phase 1.0..23.0
     /* 0x64 */ 0x01, 0x68, 0x00, 0x80, 0x08, 0xB8, 0x00, 0x00,
@@ -36,7 +37,7 @@ inline constexpr std::array<std::uint8_t, 91> kDefaultConfiguration{
     // clang-format on
 };
 
-/// What of it depends on the board.
+/// Settings of the pads that depend on the board.
 struct PadOptions {
     bool is_io_2v8 = true;                ///< SDA, SCL and GPIO1 are pulled up to AVDD rather than to 1.8 V
     bool is_interrupt_active_low = true;  ///< level of GPIO1 when data is ready
@@ -47,7 +48,7 @@ struct PadOptions {
     return is_active_low ? 0x11 : 0x01;
 }
 
-/// The byte for `index`, 0x2D..0x87.
+/// The byte for register `index`, 0x2D..0x87.
 [[nodiscard]] constexpr std::uint8_t default_configuration(reg::Index index,
                                                            const PadOptions& pads) noexcept {
     switch (index) {

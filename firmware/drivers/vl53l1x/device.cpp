@@ -1,4 +1,4 @@
-// Runs the tables of method.hpp: stage by stage, transfer by transfer, none without a deadline.
+// Runs the tables of method.hpp: stage by stage, transfer by transfer. Each transfer has a deadline.
 #include "firmware/drivers/vl53l1x/device.hpp"
 
 #include <algorithm>
@@ -10,10 +10,9 @@
 namespace octoskin::vl53l1x {
 namespace {
 
-// The others on the bus hold it for one transfer at a time; a bus that stays taken for so long is not coming
-// back.
+// Other devices hold the bus for one transfer at a time. A bus that stays busy for this long has failed.
 constexpr Microseconds kBusAwaitedMax{250'000};
-// A bus ends every transfer at its deadline. One that does not is given up a little later.
+// A bus ends every transfer at its deadline. A transfer that is still pending this much later is given up.
 constexpr Microseconds kDeadlineGrace{5'000};
 
 }  // namespace
@@ -49,7 +48,7 @@ void Device::begin_refused() {
 }
 
 void Device::proceed(NodeTime now) {
-    while (progress_ == Progress::busy && step_ == step_count_) {  // once per stage at most
+    while (progress_ == Progress::busy && step_ == step_count_) {  // at most one iteration per stage
         if (stage_ == stages_.size()) {
             progress_ = Progress::done;
         } else {
@@ -139,7 +138,7 @@ void Device::collect(NodeTime now) {
             is_in_flight_ = false;
             on_transfer_failed(bus_.error(), now);
             return;
-        case i2c::TransferState::idle:  // the bus was recovered under it
+        case i2c::TransferState::idle:  // `recover` dropped the transfer
             is_in_flight_ = false;
             on_transfer_failed(i2c::TransferError::timeout, now);
             return;
@@ -182,7 +181,7 @@ void Device::on_transfer_failed(i2c::TransferError error, NodeTime now) {
     }
     count_i2c_error();
     if (!was_retried_) {
-        was_retried_ = true;  // the step stands as it was: `proceed` submits it again
+        was_retried_ = true;  // the step is unchanged, and `proceed` submits it again
         return;
     }
     fail(is_refused ? Error::no_answer : Error::bus_error);

@@ -1,6 +1,6 @@
-// The VL53L1X driver: a state machine that never waits. An operation is begun, then polled until it is done
-// or has failed; each poll starts at most one transfer, and only if the bus is free, so any number of devices
-// share a bus. method.hpp says what each operation does, as a table; device.cpp runs the tables.
+// The VL53L1X driver: a state machine without waits. The caller begins an operation, then polls until it is
+// done or has failed. Each poll starts at most one transfer, and only if the bus is free, so any number of
+// devices share a bus. method.hpp defines each operation as a table; device.cpp runs the tables.
 #pragma once
 
 #include <array>
@@ -25,68 +25,70 @@ inline constexpr i2c::Address kDefaultAddress = 0x29;
 
 enum class Progress : std::uint8_t { idle, busy, done, failed };
 
-/// One sensor. Not thread-safe; no call waits; every operation ends (done or failed) within a stated time if
-/// `poll` is called at least every millisecond and the bus is free. One operation at a time: beginning one
-/// while busy is a programmer's mistake. A transfer that fails is repeated once; the second failure ends the
-/// operation. The times are for 400 kHz and a bus that works.
+/// One sensor. Not thread-safe; no call waits. One operation at a time: precondition of every `begin_...` is
+/// not busy. Every operation ends (done or failed) within its stated time if `poll` is called at least every
+/// millisecond and the bus is free. A failed transfer is repeated once; the second failure ends the
+/// operation. The stated times hold for 400 kHz and a working bus.
 class Device {
   public:
     /// `bus` must outlive the device.
     Device(i2c::Bus& bus, const Options& options) noexcept
         : bus_(bus), options_(options), read_back_(*options.verification) {}
-    // Transfers in flight point into the device.
+    // A transfer in flight points into the device.
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 
     // --- bring-up
-    /// Reads the identification at `address` and remembers it as the live address. <= 5 ms.
+    /// Reads the identification at `address`, which becomes the live address. <= 5 ms.
     void begin_probe(i2c::Address address);
-    /// Writes the new address at the live one, then reads the id back at the new address. <= 10 ms.
+    /// Writes the new address, then reads the identification there. <= 10 ms.
     void begin_set_address(i2c::Address address);
-    /// Resets the part without XSHUT: it forgets everything, its address too, and is back at 0x29 with
-    /// `probe`'s check passed. Nobody else may be at 0x29. <= 500 ms, about 3 ms.
+    /// Resets the sensor without XSHUT. The sensor loses all settings, including its address, and returns to
+    /// 0x29, where the identification is checked. No other device may be at 0x29. <= 500 ms, typically 3 ms.
     void begin_soft_reset();
-    /// Waits at 0x29 for the firmware's boot, <= 5 ms, or if `is_patient` <= 100 ms: `boot_timeout` if it is
-    /// not over by then. `done` also if nobody answers there: that is for whoever probes to say.
+    /// Waits at 0x29 for the firmware's boot, <= 5 ms, or <= 100 ms if `is_patient`; then `boot_timeout`.
+    /// Also `done` if no device answers: the following probe detects that.
     void begin_await_boot_at_default(bool is_patient);
-    /// Waits for the firmware's boot, <= 500 ms: bit 0 of the status, since real parts answer 0x02 first.
+    /// Waits for the firmware's boot, <= 500 ms. Tests bit 0 of the status only, since real sensors first
+    /// answer 0x02.
     void begin_await_boot();
     /// Writes the default configuration and starts the first range, without waiting for boot. <= 10 ms in
     /// bursts, 100 ms otherwise.
     void begin_load_configuration();
-    /// Both of these, and the factory's offset read in between if so set. Ends once the first range is
-    /// started: about 100 ms later it is collected by `begin_finish_initialise`, so that a fleet ranges at
-    /// once.
+    /// Waits for boot, then loads the configuration; in between reads the factory offset if the options say
+    /// so. Ends when the first range has started. `begin_finish_initialise` collects that range about 100 ms
+    /// later, so that many sensors range at the same time.
     void begin_initialise();
-    /// Waits for the first data ready (<= 1 s), clears, stops, sets the VHV loop bound and start.
+    /// Waits for the first data ready (<= 1 s), clears, stops, and sets the VHV loop bound and start.
     void begin_finish_initialise();
 
-    // --- settings, while stopped; each fails with `unsupported_config` before anything is written if it
-    // breaks a limit
-    /// Stops, and applies all settings, in ST's order: mode, budget, period, ROI, limits, offset, crosstalk;
-    /// readings carry the gain factor from then on if it is set. <= 20 ms.
+    // --- settings, while stopped. An operation whose argument breaks a limit fails with `unsupported_config`
+    // and writes nothing.
+    /// Stops, and applies all settings in ST's order: mode, budget, period, ROI, limits, offset, crosstalk.
+    /// Later readings carry the gain factor if it is set. <= 20 ms.
     void begin_configure(const Settings& settings);
-    /// The budget stays, and must be one that the new mode supports.
+    /// The budget does not change; the new mode must support it.
     void begin_set_distance_mode(DistanceMode mode);
     void begin_set_timing_budget(std::uint16_t budget_ms);
-    /// `nominal * 1.075` of the part's own oscillator value; also for trimming it to what the part really
-    /// does, finer than the milliseconds of `Settings`, for which reason the budget is not compared.
+    /// Writes `nominal * 1.075` in units of the sensor's oscillator. Also used to trim the period to the
+    /// measured one, in steps finer than the milliseconds of `Settings`. For that reason the period is not
+    /// checked against the budget.
     void begin_set_inter_measurement(Microseconds nominal);
     void begin_set_sigma_limit(std::uint16_t quarter_mm);
     void begin_set_signal_limit(std::uint16_t mcps_9_7);
     void begin_set_offset(std::int16_t quarter_mm);
     void begin_set_crosstalk(std::uint16_t kcps_per_spad_7_9);
     void begin_set_interrupt_polarity(bool is_active_low);
-    /// Interrupts only for ranges in a window. Whether the results are gated too is not documented.
+    /// Interrupts only for ranges in a window. Whether the window also gates the results is not documented.
     void begin_set_range_threshold(const RangeThreshold& threshold);
     /// Interrupts for every sample again, as after initialising.
     void begin_set_interrupt_on_every_sample();
-    /// ST's SetROI: the size, with the centre put to the part's own optical centre, or to 199 for a side over
-    /// 10.
+    /// ST's SetROI: sets the size. The centre becomes the sensor's own optical centre, or SPAD 199 for a side
+    /// over 10.
     void begin_set_roi_size(std::uint8_t width, std::uint8_t height);
     void begin_set_roi_centre(std::uint8_t spad);
-    /// Writes centre and, if it differs from the last one written, size of the region of interest. Allowed
-    /// while ranging: it takes effect with the next range. One transfer, two for a new size without bursts.
+    /// Writes the centre and, if it changed, the size of the region of interest. Allowed while ranging: takes
+    /// effect with the next range. One transfer; two for a new size without bursts.
     void begin_set_zone(const Roi& roi);
 
     // --- ranging
@@ -94,100 +96,101 @@ class Device {
     void begin_start();
     /// Clears, then starts one range.
     void begin_start_single();
-    /// Stops after the current range: one more result may come.
+    /// Stops after the current range: one more result may follow.
     void begin_stop();
     /// Stops at once.
     void begin_abort();
-    /// Polls data ready once, if it is ready reads the result block (twice if so set) and clears the
-    /// interrupt; done with or without a measurement: see `has_measurement`. <= 5 ms. `confirms_ready`: if it
-    /// is ready, asks once more, where nothing else would tell a bit flipped in one poll: of the first result
-    /// of a run, and while little is known of when data becomes ready.
+    /// Polls data ready once. If ready, reads the result block (twice if the options say so) and clears the
+    /// interrupt. Done with or without a measurement: see `has_measurement`. <= 5 ms.
+    /// `confirms_ready`: a positive poll is repeated, against a bit flipped on the bus. Needed where no other
+    /// check exists: for the first result of a run, and while the time of data ready is not well known.
     void begin_read(bool confirms_ready = false);
-    /// The last `begin_read` found data ready, and asked again not ready: one answer was altered, and nobody
-    /// knows which.
+    /// The last `begin_read` polled ready and, repeated, not ready: one of the two answers was altered on the
+    /// bus.
     [[nodiscard]] bool have_polls_disagreed() const noexcept { return have_polls_disagreed_; }
-    /// From such a `begin_read` until data was ready twice: what comes in between is doubt about when.
+    /// From a `begin_read` with `confirms_ready` until a positive poll has been repeated. Meanwhile the time
+    /// of data ready is uncertain.
     [[nodiscard]] bool is_confirming_ready() const noexcept { return is_confirming_ready_; }
-    /// Ranges once with a full search of the VHV voltage; for a part that was stopped while its temperature
-    /// moved by more than 8 degrees. <= 1 s + one period; only while stopped.
+    /// Ranges once with a full search of the VHV voltage, for a sensor that was stopped while its temperature
+    /// changed by more than 8 degrees. <= 1 s + one period; only while stopped.
     void begin_update_temperature();
-    /// Reads 1 <= count <= 4 bytes at `index` for supervision; `register_bytes()` afterwards.
+    /// Reads 1 <= count <= 4 bytes at `index`, for supervision. Result: `register_bytes()`.
     void begin_read_register(reg::Index index, std::uint8_t count);
 
     // --- supervision
-    /// Reads one of `kRegisterRuns` back and compares it with what was written since the configuration was
-    /// loaded, and with the factory's offset; what else was not written it learns. A difference is read
-    /// again; if it is still there, the end is `config_mismatch`: initialise the sensor. Also while ranging.
-    /// One transfer, two if it differs, none if the verification is switched off: <= 3 ms.
+    /// Reads back one of `kRegisterRuns`. Compares it with the values written since the configuration was
+    /// loaded and with the factory offset; registers never written are recorded. A difference is read again.
+    /// If it persists, the operation fails with `config_mismatch`: initialise the sensor. Allowed while
+    /// ranging. <= 3 ms: one transfer, two if it differs, none if the verification is off.
     void begin_verify(std::size_t run);
-    /// The same of what the last `begin_set_zone` wrote.
+    /// As `begin_verify`, for the registers of the last `begin_set_zone`.
     void begin_verify_zone();
 
     // --- progress
-    /// Advances the operation. `done` and `failed` are told once, then `idle`.
+    /// Advances the operation. `done` and `failed` are returned once, then `idle`.
     [[nodiscard]] Progress poll(NodeTime now);
-    /// The operation is over, and its end will not be told: for a part that was taken away. Not while a
-    /// transfer is in flight.
+    /// Ends the operation without a result, for a sensor that was taken away. Precondition: no transfer in
+    /// flight.
     void abandon() noexcept { progress_ = Progress::idle; }
-    /// From `begin_...` until its end has been told.
+    /// From `begin_...` until `poll` has returned the end.
     [[nodiscard]] bool is_busy() const noexcept { return progress_ != Progress::idle; }
-    /// After `failed`.
+    /// Valid after `failed`.
     [[nodiscard]] Error error() const noexcept { return error_; }
-    /// Why the last transfer that failed did.
+    /// Reason of the last failed transfer.
     [[nodiscard]] i2c::TransferError transfer_error() const noexcept { return transfer_error_; }
-    /// The earliest time at which `poll` has something to do; empty if as soon as the bus is free.
+    /// The earliest time at which `poll` has work to do; empty: as soon as the bus is free.
     [[nodiscard]] std::optional<NodeTime> wake_time() const noexcept;
 
-    // --- results; an operation that fails changes none of them
-    /// The last `begin_read` ended well and found data ready.
+    // --- results; a failed operation changes none of them
+    /// The last `begin_read` succeeded and found data ready.
     [[nodiscard]] bool has_measurement() const noexcept { return has_measurement_; }
-    /// The newest one; `has_measurement` tells whether the last read brought it.
+    /// The newest measurement; `has_measurement` says whether the last read delivered it.
     [[nodiscard]] const Measurement& measurement() const noexcept { return reading_.measurement; }
-    /// The poll that saw its data ready, told at this time; it was ready no later.
+    /// Time at which the poll that found data ready was collected. The data was ready no later than this.
     [[nodiscard]] NodeTime ready_seen() const noexcept { return reading_.ready_seen; }
-    /// The latest time at which it was surely not ready yet: the start of the transfer that found no data, or
-    /// that cleared the interrupt. Empty if there was none.
+    /// The latest time at which the data was certainly not ready: the start of the transfer that found no
+    /// data, or that cleared the interrupt. Empty if there was none.
     [[nodiscard]] std::optional<NodeTime> not_ready_seen() const noexcept { return reading_.not_ready_seen; }
-    /// What the sensor's registers should hold, and which were found to differ.
+    /// Expected register values, and the differences found.
     [[nodiscard]] const ReadBack& read_back() const noexcept { return read_back_; }
-    /// The verification overlooks more than before.
+    /// Call after the verification was extended to ignore more differences.
     void forget_overlooked() noexcept { read_back_.forget_overlooked(); }
-    /// What the last `begin_read_register` read.
+    /// Bytes of the last `begin_read_register`.
     [[nodiscard]] std::span<const std::uint8_t> register_bytes() const noexcept {
         return std::span(register_bytes_).first(register_count_);
     }
     /// Whether measurements carry the gain factor.
     [[nodiscard]] bool applies_gain_factor() const noexcept { return settings_.applies_gain_factor; }
-    /// What one step of the inter-measurement register makes of the period; empty before one was set.
+    /// Change of the period per step of the inter-measurement register; empty before a period was set.
     [[nodiscard]] std::optional<Nanoseconds> period_step() const noexcept {
         return vl53l1x::period_step(oscillator_);
     }
     [[nodiscard]] i2c::Address live_address() const noexcept { return live_address_; }
-    /// Transfers that failed, retried ones included, and read-backs that a second one contradicted;
-    /// saturates.
+    /// Failed transfers, including retried ones, and read-backs contradicted by the second read. Saturates.
     [[nodiscard]] std::uint16_t i2c_error_count() const noexcept { return i2c_error_count_; }
 
   private:
-    /// What the answer to a transfer means for the operation.
+    /// How the operation continues after the answer to a transfer.
     enum class Verdict : std::uint8_t { proceed, repeat_stage, end };
     using Judge = Verdict (*)(Device&, NodeTime now);
 
-    /// One transfer, or a run of equal ones at consecutive indices.
+    /// One transfer, or a run of equal transfers at consecutive indices.
     struct Step {
         enum class Kind : std::uint8_t { read, write, write_defaults };
         Kind kind = Kind::read;
         reg::Index index = 0;
-        std::uint8_t count = 0;      ///< bytes a transfer
-        std::uint8_t transfers = 1;  ///< the index advances by one from each to the next
+        std::uint8_t count = 0;      ///< bytes per transfer
+        std::uint8_t transfers = 1;  ///< the index increases by one per transfer
         std::array<std::uint8_t, 4> bytes{};
-        Judge judge = nullptr;  ///< looks at the last answer; none: proceed
-        /// For a silence that may be in order: says what to do if nobody acknowledges the address. `proceed`:
-        /// try again. None: as any failure.
+        Judge judge = nullptr;  ///< evaluates the last answer; none: proceed
+        /// Decides how to continue if the address is not acknowledged, where that is not an error. `proceed`:
+        /// try again. None: a failure like any other.
         Judge on_refused = nullptr;
     };
 
-    /// A named part of an operation: it lines up its transfers when its turn comes. If a judge asks for it,
-    /// it is repeated `every` so often `within` a time, and ends in `otherwise`.
+    /// A named part of an operation. `line_up` queues its transfers when the stage begins. If a judge asks
+    /// for it, the stage is repeated every `every_us`; after `within_us` the operation fails with
+    /// `otherwise`.
     struct Stage {
         void (*line_up)(Device&) = nullptr;
         std::uint32_t every_us = 0;
@@ -234,7 +237,7 @@ class Device {
 
     // The operation.
     std::span<const Stage> stages_;
-    std::size_t stage_ = 0;  ///< the current one is the one before
+    std::size_t stage_ = 0;  ///< index of the next stage
     NodeTime stage_deadline_{};
     std::optional<NodeTime> resume_at_;
     std::array<Step, kStepsMax> steps_{};
@@ -255,7 +258,7 @@ class Device {
     std::array<std::uint8_t, kRunBytesMax> answer_{};
     static_assert(ResultBlock{}.size() <= kRunBytesMax);
 
-    // What is known of the sensor.
+    // State of the sensor.
     i2c::Address live_address_ = kDefaultAddress;
     std::uint16_t i2c_error_count_ = 0;
     ReadBack read_back_;
@@ -267,7 +270,7 @@ class Device {
     bool have_polls_disagreed_ = false;
     std::optional<NodeTime> not_ready_seen_;
 
-    // What the operation is about to set or has read so far.
+    // Arguments and intermediate results of the operation.
     Settings settings_;
     Microseconds period_{0};
     std::uint16_t oscillator_ = 0;
@@ -281,9 +284,9 @@ class Device {
     ResultBlock block_{};
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
-    RegisterRun run_;               ///< being verified
-    bool is_run_of_write_ = false;  ///< just made
-    bool is_run_steering_ = false;  ///< one of the steering groups, whole
+    RegisterRun run_;               ///< the run being verified
+    bool is_run_of_write_ = false;  ///< the verified write was just made
+    bool is_run_steering_ = false;  ///< the run is a whole steering group
 
     // Results.
     bool has_measurement_ = false;

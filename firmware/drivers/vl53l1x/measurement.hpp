@@ -14,8 +14,8 @@ struct Measurement {
     std::uint16_t peak_signal = 0;       ///< 9.7 Mcps
     std::uint16_t ambient = 0;           ///< 9.7 Mcps
     std::uint16_t sigma_quarter_mm = 0;  ///< 14.2 mm
-    /// Crosstalk-corrected; gain factor applied if configured. Negative for a target nearer than the
-    /// device's offset error makes it seem.
+    /// Crosstalk-corrected; gain factor applied if configured. A negative device offset can make the range of
+    /// a near target negative.
     std::int16_t range_mm = 0;
     std::uint16_t corrected_signal = 0;  ///< 9.7 Mcps
     friend constexpr bool operator==(const Measurement&, const Measurement&) = default;

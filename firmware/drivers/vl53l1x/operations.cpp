@@ -1,4 +1,4 @@
-// Begins each operation: checks what it is asked for, keeps it, and hands its table to the runner.
+// Begins each operation: checks and stores the arguments, then hands the table to the runner.
 #include <cassert>
 
 #include "firmware/drivers/vl53l1x/device.hpp"
@@ -56,7 +56,7 @@ void Device::begin_set_distance_mode(DistanceMode mode) {
 }
 
 void Device::begin_set_timing_budget(std::uint16_t budget_ms) {
-    // In the right mode or in none: which one it is, ST's way, only a read tells.
+    // Not checked here: with `rereads_settings` the mode is only known after it has been read.
     begin(Method::kSetTimingBudget);
     settings_.timing_budget_ms = budget_ms;
 }

@@ -14,7 +14,7 @@ static_assert(total(kRegisterRuns.size()) == kRegistersReadBack);
 static_assert(std::all_of(kRegisterRuns.begin(), kRegisterRuns.end(),
                           [](const RegisterRun& run) { return run.count <= kRunBytesMax; }));
 
-/// Where a register stands in the arrays; empty if it is not read back.
+/// Index of a register in the arrays; empty if it is not read back.
 std::optional<std::size_t> slot_of(reg::Index index) noexcept {
     std::size_t before = 0;
     for (const RegisterRun& run : kRegisterRuns) {
@@ -103,7 +103,7 @@ bool ReadBack::record_of_write(const RegisterRun& run, std::span<const std::uint
     return counts;
 }
 
-/// Of a difference that is there to stay.
+/// For a persistent difference: exempts the register, unless it decides the range or the table is full.
 bool ReadBack::is_exempted(std::size_t slot, const RegisterDifference& difference) noexcept {
     if (decides_range(difference.index)) {
         deciding_.note(difference);
@@ -133,7 +133,7 @@ std::optional<RegisterDifference> ReadBack::fixed_register() const noexcept {
     return std::nullopt;
 }
 
-/// A difference that finds no free place is not counted, only acted on: others leave theirs in time.
+/// A difference without a free entry is not counted, but still acted on: entries become free again.
 bool ReadBack::is_third_sighting(const RegisterDifference& difference) noexcept {
     const auto same_register = [&](const Sighting& sighting) {
         return sighting.count != 0 && sighting.difference.index == difference.index;

@@ -1,6 +1,6 @@
-// Whether the configuration in the sensor is still the one that was written: what each register should hold,
-// which of its bits count, and which registers count no more. I2C has no checksum: a byte may be lost or
-// altered on its way, or later.
+// Checks that the sensor still holds the written configuration: expected register values, the compared bits,
+// and the registers exempt from comparison. I2C has no checksum: a byte may be lost or altered during a
+// transfer or later.
 #pragma once
 
 #include <algorithm>
@@ -19,26 +19,27 @@ namespace octoskin::vl53l1x {
 
 using octoskin::kRegisterRuns;
 using octoskin::RegisterRun;
-/// The first so many of `kRegisterRuns` steer the range.
+/// The first `kSteeringGroups` of `kRegisterRuns` steer the range.
 inline constexpr std::size_t kSteeringGroups = 3;
-/// The one of them with the period in it.
+/// The steering group that contains the period.
 inline constexpr std::size_t kTimingGroup = 1;
-/// The one whose values are the factory's, unless the configuration has an offset.
+/// The steering group with the factory's values, unless the configuration has an offset.
 inline constexpr std::size_t kFactoryGroup = 0;
-inline constexpr std::size_t kRunBytesMax = 18;  ///< of one transfer
-/// Centre and size of the region of interest: what a zone's write alters.
+inline constexpr std::size_t kRunBytesMax = 18;  ///< per transfer
+/// Centre and size of the region of interest: the registers that a zone's write changes.
 inline constexpr RegisterRun kZoneRun{reg::ROI_CONFIG_USER_ROI_CENTRE_SPAD, 2};
 inline constexpr RegisterRun kFactoryRun = kRegisterRuns[kFactoryGroup];
 inline constexpr std::size_t kRegistersReadBack = 103;
 
-/// What of the distance mode, the choice of SPADs and the range's scale lies outside the steering groups:
-/// the pulse width's offset, the least range that is told, where and how wide the pulse is, the phase
-/// calibration's time-out, how SPADs are chosen, the range's fraction, the crosstalk of each quadrant.
+/// Registers outside the steering groups that affect distance mode, SPAD selection and range scale: pulse
+/// width offset, smallest reported range, pulse position and width, phase calibration time-out, SPAD
+/// selection mode, fraction of the range, crosstalk per quadrant.
 inline constexpr std::array<reg::Index, 8> kOthersThatDecideRange{0x34, 0x3F, 0x47, 0x4A,
                                                                   0x4B, 0x4F, 0x70, 0x76};
 
-/// Whether a register decides where or when the sensor looks, or what its range means: a reading under a
-/// wrong one is a wrong range. The steering groups, the crosstalk, and the others above.
+/// Whether a register decides where or when the sensor measures, or how its range is scaled. With a wrong
+/// value in such a register, every range is wrong. These are the steering groups, the crosstalk, and the
+/// registers above.
 [[nodiscard]] constexpr bool decides_range(reg::Index index) noexcept {
     for (std::size_t group = 0; group < kSteeringGroups; ++group) {
         const RegisterRun& run = kRegisterRuns[group];
@@ -50,7 +51,7 @@ inline constexpr std::array<reg::Index, 8> kOthersThatDecideRange{0x34, 0x3F, 0x
                                kOthersThatDecideRange.end();
 }
 
-/// The differences of a part that are there to stay; few, or the part is broken.
+/// The persistent differences of one sensor. A sensor with more than `kMax` is broken.
 class LastingDifferences {
   public:
     static constexpr std::uint8_t kMax = 8;
@@ -59,7 +60,7 @@ class LastingDifferences {
     [[nodiscard]] std::span<const RegisterDifference> all() const noexcept {
         return std::span(all_).first(count_);
     }
-    /// In place of what was there of that register. Not if it is full.
+    /// Replaces an earlier difference of the same register. A new register is ignored if the list is full.
     void note(const RegisterDifference& difference) noexcept;
     void forget_overlooked(const Verification& verification) noexcept;
     void clear() noexcept { count_ = 0; }
@@ -69,62 +70,63 @@ class LastingDifferences {
     std::uint8_t count_ = 0;
 };
 
-/// Every difference has the sensor initialised again. One that is there again, the same, after two such
-/// attempts is how this part is, and is named. If the register decides the range, the part is *distrusted*:
-/// each difference goes on counting, and no reading of it may be used until it has been right for long. Any
-/// other register counts no more: at most `LastingDifferences::kMax` of a part, for one that would need more
-/// is broken. What the verification overlooks is no difference at all.
+/// Every difference makes the node initialise the sensor again. A difference that returns unchanged after two
+/// such attempts is persistent, and is reported. If the register decides the range, the sensor is
+/// *distrusted*: the difference still counts, and its readings must not be used until the register has been
+/// right for a long time. Any other register is exempted from comparison, at most `LastingDifferences::kMax`
+/// per sensor: a sensor with more is broken. A difference that the verification ignores is not counted at
+/// all.
 class ReadBack {
   public:
     static constexpr std::uint8_t kSightingsUntilFixed = 3;
     static constexpr std::uint8_t kExemptMax = LastingDifferences::kMax;
-    /// So many checks of the steering registers without any difference, and those seen before were accidents:
-    /// the part is trusted again.
+    /// After this many checks of the steering registers without a difference, earlier differences count as
+    /// accidents and the sensor is trusted again.
     static constexpr std::uint8_t kCleanChecksUntilForgotten = 100;
 
-    /// `verification` must outlive it.
+    /// `verification` must outlive this object.
     explicit ReadBack(const Verification& verification = kWholeVerification) noexcept
         : verification_(verification) {}
 
-    /// The sensor starts afresh: nothing is known of its registers. Differences seen are remembered.
+    /// The sensor was reset: no register value is known. Recorded differences are kept.
     void forget() noexcept { is_known_.reset(); }
-    /// Written, and acknowledged. Registers that are not read back are passed over.
+    /// Records a write that was acknowledged. Registers that are not read back are ignored.
     void note(reg::Index first, std::span<const std::uint8_t> bytes) noexcept;
-    /// What was read of a run, for registers never written: the factory's values.
+    /// Records values read from a run, for registers never written: the factory's values.
     void learn(const RegisterRun& run, std::span<const std::uint8_t> bytes) noexcept;
 
-    /// No register that counts differs.
+    /// True if no compared register differs.
     [[nodiscard]] bool agrees(const RegisterRun& run, std::span<const std::uint8_t> bytes) const noexcept;
     /// Records each difference. Returns whether any of them still counts.
     [[nodiscard]] bool record(const RegisterRun& run, std::span<const std::uint8_t> bytes) noexcept;
-    /// The same of a write that was only just made: one that was lost says nothing about the part, so it is
-    /// no sighting.
+    /// As `record`, for a write that was just made. A lost write is no property of the sensor, so it is not
+    /// counted towards a persistent difference.
     [[nodiscard]] bool record_of_write(const RegisterRun& run, std::span<const std::uint8_t> bytes) noexcept;
-    /// A group of steering registers was as it should be.
+    /// A group of steering registers had its expected values.
     void on_clean_check() noexcept;
-    /// The verification overlooks more than before: what of it was a difference of this part is none any
-    /// more. A part that was distrusted for nothing else is trusted at once.
+    /// The verification was extended: removes the differences that it now ignores. A sensor without other
+    /// differences is trusted again at once.
     void forget_overlooked() noexcept;
 
-    /// The last one recorded; empty if there was none ever.
+    /// The last recorded difference; empty if there was none.
     [[nodiscard]] const std::optional<RegisterDifference>& last_difference() const noexcept { return last_; }
-    /// Registers that count no more.
+    /// Number of exempt registers.
     [[nodiscard]] std::uint8_t exempt_count() const noexcept {
         return static_cast<std::uint8_t>(exempt_.all().size());
     }
-    /// A register that decides the range would not take its value.
+    /// A register that decides the range does not take its value.
     [[nodiscard]] bool is_distrusted() const noexcept { return !deciding_.all().empty(); }
-    /// Of registers that decide the range, and of the others.
+    /// Persistent differences of registers that decide the range, and of the others.
     [[nodiscard]] std::span<const RegisterDifference> deciding_differences() const noexcept {
         return deciding_.all();
     }
     [[nodiscard]] std::span<const RegisterDifference> exempt_differences() const noexcept {
         return exempt_.all();
     }
-    /// How often a difference turned out to be there to stay: another number, and there is news.
+    /// Number of persistent differences found so far: a change means a new one.
     [[nodiscard]] std::uint8_t lasting_count() const noexcept { return lasting_count_; }
-    /// A register that will not take its value: the first that the part is distrusted for, else the one that
-    /// was exempted last; empty if there is none.
+    /// A register that does not take its value: the first one that the sensor is distrusted for, else the one
+    /// exempted last; empty if there is none.
     [[nodiscard]] std::optional<RegisterDifference> fixed_register() const noexcept;
 
   private:

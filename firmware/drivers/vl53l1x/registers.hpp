@@ -1,13 +1,14 @@
-// The registers this driver touches, under the datasheet's names. ST writes two underscores between block and
-// field; C++ keeps such names for itself, so there is one here. Sources: VL53L1X datasheet DS12385 rev 7,
-// ST's full API (STSW-IMG007) register map.
+// The registers used by this driver, under the datasheet's names. ST writes two underscores between block and
+// field; C++ reserves such names, so there is one here. Sources: VL53L1X datasheet DS12385 rev 7, ST's full
+// API (STSW-IMG007) register map.
 #pragma once
 
 #include <cstdint>
 
 namespace octoskin::vl53l1x::reg {
 
-/// 16-bit index, sent most significant byte first; wider quantities lie MSB first at consecutive indices.
+/// 16-bit index, sent most significant byte first. Wider quantities are stored MSB first at consecutive
+/// indices.
 using Index = std::uint16_t;
 
 inline constexpr Index SOFT_RESET = 0x0000;

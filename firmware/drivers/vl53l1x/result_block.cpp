@@ -5,8 +5,8 @@
 namespace octoskin::vl53l1x {
 namespace {
 
-// Bits 7:5 of RESULT__RANGE_STATUS are threshold flags and the group id; a driver that leaves them in takes a
-// valid range for an unknown status.
+// Bits 7:5 of RESULT__RANGE_STATUS are threshold flags and the group id. Without the mask, a valid range
+// would have an unknown status.
 constexpr std::uint8_t kDeviceStatusMask = 0x1F;
 constexpr std::uint8_t kDeviceStatusLast = 23;
 
@@ -38,7 +38,7 @@ Measurement unpack(const ResultBlock& block, bool applies_gain_factor) noexcept 
 }
 
 bool is_plausible(const ResultBlock& block) noexcept {
-    // A block of 0xFF only carries code 31, so the first test covers it.
+    // A block of 0xFF has code 31, so the first test covers it.
     const std::uint8_t status = device_status(block);
     if (status > kDeviceStatusLast) return false;
     const bool is_complete = status == kDeviceStatusComplete || status == kDeviceStatusCompleteNoWrapCheck;

@@ -1,5 +1,5 @@
-// Regions of interest on the 16 x 16 SPAD array. Rows and columns are those of ST's drawing (UM2555 section
-// 2): row 0 is its top, column 0 its left. How the drawing lies to the outside world is the rig's to say.
+// Regions of interest on the 16 x 16 SPAD array. Rows and columns follow ST's drawing (UM2555 section 2): row
+// 0 is the top, column 0 the left. The rig defines how the drawing is oriented in the world.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct SpadPosition {
     friend constexpr bool operator==(const SpadPosition&, const SpadPosition&) = default;
 };
 
-/// The upper half is numbered upwards from 128, column by column; the lower half downwards from 127.
+/// SPAD number: the upper half counts upwards from 128, column by column; the lower half downwards from 127.
 [[nodiscard]] constexpr std::uint8_t spad_number(SpadPosition spad) noexcept {
     return static_cast<std::uint8_t>(spad.row < 8 ? 128 + 8 * spad.column + spad.row
                                                   : 127 - 8 * spad.column - (spad.row - 8));
@@ -29,14 +29,14 @@ struct SpadPosition {
     return {.row = 8 + (127 - number) % 8, .column = (127 - number) / 8};
 }
 
-/// Rows and columns from first to last, both included; may reach beyond the array.
+/// Rows and columns from first to last, both included. May extend beyond the array.
 struct SpadArea {
     SpadPosition first;
     SpadPosition last;
     friend constexpr bool operator==(const SpadArea&, const SpadArea&) = default;
 };
 
-/// What a region covers. The centre of an even side is the SPAD to the right of, or above, its middle
+/// The area of a region. The centre of an even side is the SPAD to the right of, or above, its middle
 /// (UM2555).
 [[nodiscard]] constexpr SpadArea covered_area(const Roi& roi) noexcept {
     const SpadPosition centre = spad_position(roi.centre_spad);
@@ -46,8 +46,8 @@ struct SpadArea {
             .last = {.row = bottom, .column = left + roi.width - 1}};
 }
 
-/// True if the device will range with it: sides of 4..16, all of it on the array. It answers range status 13
-/// otherwise.
+/// True if the device ranges with this region: sides of 4..16, entirely on the array. Otherwise the device
+/// returns range status 13.
 [[nodiscard]] constexpr bool is_supported(const Roi& roi) noexcept {
     if (roi.width < kRoiSideMin || roi.width > kSpadColumns) return false;
     if (roi.height < kRoiSideMin || roi.height > kSpadRows) return false;

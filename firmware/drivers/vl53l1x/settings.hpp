@@ -1,4 +1,4 @@
-// What is set between initialising and starting a sensor.
+// Settings applied between initialising and starting a sensor.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace octoskin::vl53l1x {
 
-/// Of the sensor's part of the configuration block, the driver applies mode, budget, period, the first zone,
+/// The sensor's part of the configuration block. The driver applies mode, budget, period, the first zone,
 /// limits, offset, crosstalk and the gain factor (range * 2011 / 2048, as in ST's full API).
 using Settings = SensorConfig;
 
@@ -18,17 +18,17 @@ inline constexpr std::int16_t kOffsetQuarterMmMax = 4095;
     return quarter_mm >= kOffsetQuarterMmMin && quarter_mm <= kOffsetQuarterMmMax;
 }
 
-/// True if a sensor can do it: a budget of the mode's table, a period of at least the budget plus 5 ms, at
-/// least one zone and every zone on the SPAD array, an offset within its 13 bits.
+/// True if a sensor supports the settings: a budget of the mode's table, a period of at least the budget plus
+/// 5 ms, at least one zone and every zone on the SPAD array, an offset within its 13 bits.
 [[nodiscard]] bool is_supported(const Settings& settings) noexcept;
 
-/// When the interrupt fires, instead of on every sample (SYSTEM__INTERRUPT_CONFIG_GPIO bits 1:0).
+/// Condition of the interrupt, instead of every sample (SYSTEM__INTERRUPT_CONFIG_GPIO bits 1:0).
 enum class RangeWindow : std::uint8_t { below_low = 0, above_high = 1, outside = 2, inside = 3 };
 struct RangeThreshold {
     std::uint16_t low_mm = 0;
     std::uint16_t high_mm = 0;
     RangeWindow window = RangeWindow::inside;
-    bool fires_without_target = false;  ///< for a range that found no target too (bit 6)
+    bool fires_without_target = false;  ///< also for a range without a target (bit 6)
 };
 
 }  // namespace octoskin::vl53l1x

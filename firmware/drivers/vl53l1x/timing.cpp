@@ -31,10 +31,10 @@ struct BudgetRow {
     RangeTimeouts timeouts;
 };
 using enum DistanceMode;
-// Short and long: ST ULD 3.5.2, VL53L1X_SetTimingBudgetInMs, its odd short / 33 ms row included. ST's driver
-// has no medium mode, and the datasheet (DS12385 rev 7, 2.5.2) wants 33 ms there; its rows integrate for as
-// long as the long ones do (the same microseconds in macro periods of 24 and 20 instead of 32 and 28 clocks,
-// at the typical 11.78 MHz), so that what is left of the budget for calibration stays ST's.
+// Short and long: ST ULD 3.5.2, VL53L1X_SetTimingBudgetInMs, including its irregular short / 33 ms row. ST's
+// driver has no medium mode; the datasheet (DS12385 rev 7, 2.5.2) requires 33 ms there. The medium rows
+// integrate as long as the long rows: the same microseconds in macro periods of 24 and 20 instead of 32 and
+// 28 clocks, at the typical 11.78 MHz. So the time left for calibration is the same as in ST's rows.
 constexpr std::array<BudgetRow, 18> kBudgets{{
     {short_range, 15, {0x001D, 0x0027}},
     {short_range, 20, {0x0051, 0x006E}},
@@ -56,7 +56,7 @@ constexpr std::array<BudgetRow, 18> kBudgets{{
     {long_range, 500, {0x048F, 0x04A4}},
 }};
 
-// Of RESULT__OSC_CALIBRATE_VAL.
+// Valid bits of RESULT__OSC_CALIBRATE_VAL.
 constexpr std::uint16_t kOscillatorMask = 0x03FF;
 
 }  // namespace
@@ -97,7 +97,7 @@ std::optional<std::uint16_t> budget_of_timeout_a(std::uint16_t timeout_a) noexce
 
 std::optional<std::uint32_t> period_register(std::uint16_t oscillator, Microseconds nominal) noexcept {
     constexpr std::int64_t kPeriodUsMax =
-        3'600'000'000;  // an hour: the register holds it at every oscillator value
+        3'600'000'000;  // one hour; fits the register at every oscillator value
     static_assert(std::uint64_t{kOscillatorMask} * kPeriodUsMax * 1075 / 1'000'000 <= UINT32_MAX);
     const auto ticks = static_cast<std::uint64_t>(oscillator & kOscillatorMask);
     if (ticks == 0 || nominal.count() <= 0 || nominal.count() > kPeriodUsMax) return std::nullopt;

@@ -1,5 +1,5 @@
-// What the read-back of a node's sensors overlooks: registers that its rig leaves out, and what its parts
-// were seen to read alike although something else was written.
+// Differences that the read-back of a node's sensors ignores: registers that the rig excludes, and values
+// that several of its sensors read alike although another value was written.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,8 @@
 
 namespace octoskin::vl53l1x {
 
-/// The bits of a register that are compared. Left out: the VHV start value, which is the sensor's own once it
-/// has searched (0x0B bits 6:0), and bits without a function in the pads' registers (full API,
-/// register_structs.h).
+/// The compared bits of a register. Excluded: the VHV start value, which the sensor changes during its search
+/// (0x0B bits 6:0), and unused bits of the pad registers (full API, register_structs.h).
 [[nodiscard]] constexpr std::uint8_t compared_bits(reg::Index index) noexcept {
     switch (index) {
         case reg::VHV_CONFIG_INIT:
@@ -39,24 +38,25 @@ struct RegisterDifference {
     friend constexpr bool operator==(const RegisterDifference&, const RegisterDifference&) = default;
 };
 
-/// The same register reads the same, in the bits that are compared, whatever was written.
+/// True if the same register reads the same value in its compared bits, whatever was written.
 [[nodiscard]] constexpr bool is_alike(const RegisterDifference& a, const RegisterDifference& b) noexcept {
     return a.index == b.index && ((a.found ^ b.found) & compared_bits(a.index)) == 0;
 }
 
-/// One for all sensors of a node.
+/// One object for all sensors of a node.
 class Verification {
   public:
     static constexpr std::size_t kAlikeMax = 32;
 
-    /// Nothing is read back from now on.
+    /// Disables the read-back.
     constexpr void switch_off() noexcept { is_on_ = false; }
     [[nodiscard]] constexpr bool is_on() const noexcept { return is_on_; }
-    /// The register may read as it likes. One that is not read back makes no difference.
+    /// Ignores any difference of this register. No effect on a register that is not read back.
     void leave_out(reg::Index index) noexcept {
         if (index < is_left_out_.size()) is_left_out_.set(index);
     }
-    /// Several parts read it so: this type of part does. False if that is known, or if there is no room.
+    /// Records a difference that several sensors share: it is a property of this type of sensor. False if it
+    /// is already known, or if there is no room.
     bool learn(const RegisterDifference& difference) noexcept {
         if (is_known_alike(difference) || alike_count_ == kAlikeMax) return false;
         alike_[alike_count_++] = difference;
@@ -82,7 +82,7 @@ class Verification {
     std::uint8_t alike_count_ = 0;
 };
 
-/// Overlooks nothing.
+/// Ignores no difference.
 inline const Verification kWholeVerification{};
 
 }  // namespace octoskin::vl53l1x

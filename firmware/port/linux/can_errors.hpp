@@ -1,4 +1,4 @@
-// What an adapter's error frames say of its controller: <linux/can/error.h>.
+// Controller state from an adapter's error frames: <linux/can/error.h>.
 #pragma once
 
 #include "common/wire/can_frame.hpp"
@@ -6,8 +6,8 @@
 
 namespace octoskin::linux_port {
 
-/// The state after an error frame, which was `before`: a frame that is about something else leaves it.
-/// `frame.is_error` must hold.
+/// The state after an error frame; `before` is the state before it. An unrelated error frame does not change
+/// the state. Precondition: `frame.is_error`.
 [[nodiscard]] node::CanState state_after(const wire::CanFrame& frame, node::CanState before) noexcept;
 
 }  // namespace octoskin::linux_port

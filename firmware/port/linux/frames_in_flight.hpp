@@ -1,5 +1,5 @@
-// Frames that the kernel took and the bus has not confirmed. Few, so that little is stale when the bus comes
-// back, and the newest reading wins where it can: in the node's queue.
+// Frames that the kernel took and the bus has not confirmed. The limit is small, so that few frames are old
+// when the bus returns; newer readings replace older ones in the node's queue.
 #pragma once
 
 #include <array>
@@ -16,20 +16,20 @@ class FramesInFlight {
   public:
     static constexpr std::size_t kMax = 4;
 
-    /// Also false while what was given up was not taken away.
+    /// Also false while given-up frames have not been taken away.
     [[nodiscard]] bool has_room() const noexcept { return count_ < kMax; }
-    /// `has_room` must hold.
+    /// Precondition: `has_room`.
     void add(const wire::CanFrame& frame, NodeTime now) noexcept;
-    /// The bus has had `frame`; with it those before it, whose confirmation was lost: frames keep their
-    /// order. One that is not known changes nothing.
+    /// `frame` was sent. Frames keep their order, so earlier frames were sent too and their confirmations
+    /// were lost. An unknown frame changes nothing.
     void confirm(const wire::CanFrame& frame) noexcept;
-    /// When the oldest that is not confirmed was added.
+    /// Time at which the oldest unconfirmed frame was added.
     [[nodiscard]] std::optional<NodeTime> oldest() const noexcept;
 
-    /// None of them will be sent.
+    /// Marks all frames as given up: none of them will be sent.
     void give_up_all() noexcept { given_up_ = count_; }
     [[nodiscard]] std::optional<wire::CanFrame> take_given_up() noexcept;
-    /// Nobody knows what became of them. How many they were.
+    /// Removes all unconfirmed frames that were not given up. Returns their number.
     std::size_t forget_all() noexcept;
 
   private:
@@ -39,7 +39,7 @@ class FramesInFlight {
     };
     void drop_first(std::size_t count) noexcept;
 
-    std::array<Entry, kMax> entries_{};  ///< the oldest first; of these the first `given_up_` are given up
+    std::array<Entry, kMax> entries_{};  ///< oldest first; the first `given_up_` of them are given up
     std::size_t count_ = 0;
     std::size_t given_up_ = 0;
 };

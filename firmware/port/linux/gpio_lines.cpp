@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kConsumer = "octoskin-node";
 
-/// 0, or the kernel's error number. Without a pull-up of its own a line needs one outside.
+/// Returns 0 or the kernel's error number. Where the chip has no pull-up, the line needs an external one.
 int request_line(gpiod_line* line, GpioLine::Use use) {
     const bool is_done =
         use == GpioLine::Use::output_low
@@ -69,7 +69,7 @@ Result<GpioLine, StartFailure> GpioLine::request(const LineName& name, Use use) 
 }
 
 GpioLine::~GpioLine() {
-    if (chip_ != nullptr) ::gpiod_chip_close(chip_);  // lets its line go
+    if (chip_ != nullptr) ::gpiod_chip_close(chip_);  // also releases the line
 }
 
 GpioLine::GpioLine(GpioLine&& other) noexcept
@@ -90,7 +90,7 @@ int GpioLine::descriptor() const {
 }
 
 bool GpioLine::take_falls() {
-    constexpr int kTurnsMax = 4;  // the kernel keeps 16 events of a line
+    constexpr int kTurnsMax = 4;  // the kernel keeps 16 events per line
     constexpr timespec kNoWait{};
     bool has_fallen = false;
     for (int i = 0; i < kTurnsMax && ::gpiod_line_event_wait(line_, &kNoWait) == 1; ++i) {
@@ -144,7 +144,7 @@ int DataReadyInputs::descriptor(std::size_t bus) const {
 
 void DataReadyInputs::on_readable(std::size_t bus) {
     Input& input = inputs_[bus];
-    input.has_fallen = input.line.take_falls();  // only a line that has not fallen is listened to
+    input.has_fallen = input.line.take_falls();  // the program waits only for a line that has not fallen
     input.is_gone = !input.has_fallen;
     if (input.is_gone) gone_.push_back(input.name);
 }

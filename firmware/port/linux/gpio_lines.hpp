@@ -25,29 +25,30 @@ struct LineName {
     friend bool operator==(const LineName&, const LineName&) = default;
 };
 
-/// "gpiochip0:17,27" is two lines. Empty: not understood.
+/// "gpiochip0:17,27" gives two lines. Empty if the text cannot be parsed.
 [[nodiscard]] std::optional<std::vector<LineName>> parse_lines(const std::string& text);
 /// "gpiochip0:17".
 [[nodiscard]] std::string text(const LineName& line);
 
-/// A line that is ours until the end.
+/// One requested line, released by the destructor.
 class GpioLine {
   public:
     enum class Use : std::uint8_t {
-        output_low,     ///< push-pull, low from the first moment on
-        falling_edges,  ///< an input with the chip's pull-up, where it has one; each fall is kept by the
-                        ///< kernel
+        output_low,     ///< push-pull, low from the request on
+        falling_edges,  ///< input, with the chip's pull-up if it has one; the kernel records each falling
+                        ///< edge
     };
+    /// Errors: no such chip or line, no permission, or another process holds the line.
     [[nodiscard]] static Result<GpioLine, StartFailure> request(const LineName& name, Use use);
     ~GpioLine();
     GpioLine(GpioLine&& other) noexcept;
     GpioLine& operator=(GpioLine&& other) noexcept;
 
-    /// Of an output. False: the kernel refused.
+    /// For an output. False if the kernel refused.
     [[nodiscard]] bool set(bool is_high);
-    /// Of falling edges: readable while there are some.
+    /// For falling edges: a descriptor that is readable while edges are recorded.
     [[nodiscard]] int descriptor() const;
-    /// Takes away all falls that there are; whether there were any.
+    /// Takes all recorded edges; returns whether there were any.
     [[nodiscard]] bool take_falls();
 
   private:
@@ -56,19 +57,20 @@ class GpioLine {
     gpiod_line* line_ = nullptr;
 };
 
-/// All low from the request on, and again at the end: sensors are in reset whenever no node looks after them.
+/// The XSHUT outputs. All are low from the request on and again at the end, so that sensors are in reset
+/// while no node runs.
 class XshutOutputs final : public node::XshutLines {
   public:
-    /// In the order of the configuration's `xshut_line`.
+    /// In the order of the configuration's `xshut_line`. Errors as for `GpioLine::request`.
     [[nodiscard]] static Result<XshutOutputs, StartFailure> request(std::span<const LineName> names);
     ~XshutOutputs();
     XshutOutputs(XshutOutputs&&) noexcept = default;
     XshutOutputs& operator=(XshutOutputs&&) = delete;
 
     void set(std::uint8_t line, bool is_high) override;
-    /// How many the kernel refused to set.
+    /// Sets all lines low. Returns how many the kernel refused to set.
     [[nodiscard]] std::size_t set_all_low();
-    /// Times that the kernel refused to set one.
+    /// Number of times that the kernel refused to set a line.
     [[nodiscard]] std::uint64_t failures() const noexcept { return failures_; }
 
   private:
@@ -77,21 +79,22 @@ class XshutOutputs final : public node::XshutLines {
     std::uint64_t failures_ = 0;
 };
 
-/// One input a bus. Listened to from one question of the core's to the next fall, so that a line that
-/// chatters costs nothing.
+/// One data-ready input per bus. After a falling edge, the program does not wait for the line again until the
+/// core has called `take_fall`, so a line that toggles fast costs no more wake-ups.
 class DataReadyInputs final : public node::DataReadyLines {
   public:
-    /// In the order of the buses.
+    /// In the order of the buses. Errors as for `GpioLine::request`.
     [[nodiscard]] static Result<DataReadyInputs, StartFailure> request(std::span<const LineName> names);
 
     [[nodiscard]] bool take_fall(std::uint8_t bus) override;
 
-    /// To wait for, of bus `bus`; -1 while it is not listened to, or has no line, or is gone.
+    /// Descriptor of bus `bus` to wait for; -1 while an edge is not yet taken, if the bus has no line, or if
+    /// the line is gone.
     [[nodiscard]] int descriptor(std::size_t bus) const;
-    /// Its descriptor is readable. Where there is no fall to be read all the same the line is gone with its
-    /// chip: the descriptor would be readable for good.
+    /// Call when the descriptor is readable. If there is no edge to read, the line is gone with its chip: the
+    /// descriptor would stay readable for ever.
     void on_readable(std::size_t bus);
-    /// Those that are gone, in the order in which they went; as "gpiochip0:17".
+    /// Lines that are gone, in the order of their loss; as "gpiochip0:17".
     [[nodiscard]] const std::vector<std::string>& gone() const noexcept { return gone_; }
 
   private:

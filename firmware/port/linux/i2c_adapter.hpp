@@ -1,4 +1,4 @@
-// One I2C adapter of Linux: /dev/i2c-N through i2c-dev, write and read in one I2C_RDWR.
+// One Linux I2C adapter: /dev/i2c-N through i2c-dev, write and read in one I2C_RDWR.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,32 @@
 
 namespace octoskin::linux_port {
 
-/// What a bus's thread needs of an adapter.
+/// Interface between a bus's thread and its adapter.
 class I2cAdapter {
   public:
-    /// 0, or the kernel's error number. Blocks until the kernel is done with it.
+    /// Returns 0 or the kernel's error number. Blocks until the kernel has finished.
     [[nodiscard]] virtual int transfer(const i2c::Transfer& transfer) = 0;
 
   protected:
     ~I2cAdapter() = default;
 };
 
-/// What an error number of the kernel's Documentation/i2c/fault-codes.rst means to a driver. Not every
-/// adapter tells a refused byte from a refused address: EREMOTEIO, the Raspberry Pi's answer to both, counts
-/// as the address. Whatever else goes wrong counts as a bus that does not work.
+/// Maps an error number (Documentation/i2c/fault-codes.rst of the kernel) to a driver's error. Some adapters
+/// do not distinguish a refused byte from a refused address: EREMOTEIO, used for both on the Raspberry Pi,
+/// counts as the address. Any other error counts as `bus_stuck`.
 [[nodiscard]] i2c::TransferError transfer_error(int error_number) noexcept;
 
 class I2cDevice final : public I2cAdapter {
   public:
-    /// `path`: "/dev/i2c-1". Refused if it is not there, not permitted, not an adapter, or one that knows
-    /// SMBus only.
+    /// `path`: for example "/dev/i2c-1". Errors: no such device, no permission, not an I2C adapter, or an
+    /// adapter with SMBus only.
     [[nodiscard]] static Result<I2cDevice, StartFailure> open(const std::string& path);
     ~I2cDevice();
     I2cDevice(I2cDevice&& other) noexcept;
     I2cDevice& operator=(I2cDevice&& other) noexcept;
 
-    /// The kernel gives up after 20 ms where the adapter's driver obeys I2C_TIMEOUT, else after its own
-    /// limit: 1 s is usual.
+    /// The kernel gives up after 20 ms if the adapter's driver obeys I2C_TIMEOUT, else after the driver's own
+    /// limit, usually 1 s.
     [[nodiscard]] int transfer(const i2c::Transfer& transfer) override;
 
   private:

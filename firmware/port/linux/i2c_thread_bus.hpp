@@ -1,4 +1,4 @@
-// An I2C bus whose transfers block in the kernel: one thread carries them out, so that the node never waits.
+// An I2C bus whose transfers block in the kernel. One thread carries them out, so that the node never waits.
 #pragma once
 
 #include <array>
@@ -13,36 +13,35 @@
 
 namespace octoskin::linux_port {
 
-/// A transfer that is given up at its deadline may still be in the kernel. Its thread is not free before it
-/// comes back, and transfers keep their order: the next one waits for it, until its own deadline. What the
-/// kernel reads late goes nowhere, since the thread has buffers of its own.
+/// A transfer that was given up at its deadline may still be in the kernel. Transfers keep their order: the
+/// next one waits for the thread, until its own deadline. The thread has its own buffers, so data read late
+/// is discarded.
 class I2cThreadBus final : public i2c::Bus {
   public:
     using Clock = NodeTime (*)() noexcept;
 
-    /// `adapter` must outlive the bus; `event` is an eventfd(2) that counts ended transfers up; `clock` is
-    /// what the times given to `poll` are read from, asked by the thread.
+    /// `adapter` must outlive the bus. `event` is an eventfd(2), incremented at each end of a transfer.
+    /// `clock` is the clock of the times passed to `poll`; the thread reads it.
     I2cThreadBus(I2cAdapter& adapter, int event, Clock clock);
-    /// Waits for a transfer that is in the kernel, however long: see `end`.
+    /// Waits for a transfer in the kernel, without a limit: call `end` first.
     ~I2cThreadBus();
-    /// No further transfer begins. False if one is in the kernel that does not come back within `patience`:
-    /// the process can then only leave without the destructor.
+    /// Starts no further transfer. False if a transfer in the kernel does not return within `patience`. Then
+    /// the process must exit without calling the destructor.
     [[nodiscard]] bool end(Microseconds patience);
 
     [[nodiscard]] bool is_busy() const override { return in_flight_.has_value(); }
-    /// At most 256 bytes each way.
+    /// At most 256 bytes in each direction.
     void submit(const i2c::Transfer& transfer, NodeTime now, NodeTime deadline) override;
-    /// A transfer that ended after `now` was read is pending: its answer may be of something that happened
-    /// after `now`, by as long as Linux kept the node's loop off the processor. The event is counted up then,
-    /// too.
+    /// A transfer that ended after `now` was read is still pending: its answer may describe an event later
+    /// than `now`, if Linux delayed the node's loop. The event is incremented in that case, too.
     [[nodiscard]] i2c::TransferState poll(NodeTime now) override;
     [[nodiscard]] i2c::TransferError error() const override { return error_; }
-    /// The kernel's driver gives the clocks, with each transfer that needs them, and tells no levels. So:
-    /// false while a transfer is stuck in the kernel, and once after one that found the bus held, so that the
-    /// node takes all sensors off the bus before it goes on.
+    /// The kernel's driver sends the freeing clocks itself, with each transfer that needs them, and does not
+    /// show the line levels. So the result is false while a transfer is stuck in the kernel, and once after a
+    /// transfer that found the bus held. The node then takes all sensors off the bus before it continues.
     bool recover() override;
 
-    /// Of the transfer in flight.
+    /// Deadline of the transfer in flight.
     [[nodiscard]] std::optional<NodeTime> deadline() const noexcept;
 
   private:
@@ -74,14 +73,14 @@ class I2cThreadBus final : public i2c::Bus {
     Clock clock_;
     // --- the node's side
     std::optional<InFlight> in_flight_;
-    std::uint64_t number_ = 0;  ///< of the newest transfer
+    std::uint64_t number_ = 0;  ///< number of the newest transfer
     i2c::TransferError error_ = i2c::TransferError::timeout;
     bool was_held_ = false;
     // --- shared
     std::mutex mutex_;
     std::condition_variable is_ordered_;
     std::condition_variable has_left_kernel_;
-    std::optional<Order> order_;  ///< not yet begun
+    std::optional<Order> order_;  ///< not yet started
     bool is_in_kernel_ = false;
     bool is_ending_ = false;
     Outcome outcome_;

@@ -1,4 +1,4 @@
-// Lines to a descriptor whose reader may stop: a thread of its own writes them, so that the node never waits.
+// Writes lines to a descriptor whose reader may stop. A separate thread writes, so that the node never waits.
 #pragma once
 
 #include <cstddef>
@@ -12,26 +12,27 @@ namespace octoskin::linux_port {
 
 class LineWriter {
   public:
-    /// So many lines wait; a further one is dropped, and the next that is written comes after one that tells
-    /// how many were.
+    /// Maximum number of queued lines. Further lines are dropped; the next line written is preceded by one
+    /// with the number of dropped lines.
     static constexpr std::size_t kLinesMax = 1000;
 
-    /// `descriptor` must stay open for the life of the process, and blocks. Throws std::system_error if there
-    /// is no thread to be had.
+    /// `descriptor` must stay open for the life of the process; writes to it may block. Throws
+    /// std::system_error if no thread can be started.
     explicit LineWriter(int descriptor, Microseconds end_patience = std::chrono::seconds{1});
-    /// Writes what waits; a write that hangs is left behind after the patience.
+    /// Writes the queued lines. A write that hangs is abandoned after `end_patience`.
     ~LineWriter();
     LineWriter(const LineWriter&) = delete;
     LineWriter& operator=(const LineWriter&) = delete;
 
-    /// A whole line with its line feed, in one write. From any thread; never waits.
+    /// Queues one line, which must include its line feed; it is written in one write. Thread-safe; never
+    /// waits.
     void add(std::string line);
 
   private:
     struct Work;
     static void run(Work& work);
 
-    std::shared_ptr<Work> work_;  ///< the thread may outlive the writer
+    std::shared_ptr<Work> work_;  ///< shared, since the thread may outlive the writer
     Microseconds end_patience_;
     std::thread thread_;
 };

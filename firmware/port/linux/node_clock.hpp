@@ -1,4 +1,4 @@
-// The node's clock on Linux: CLOCK_MONOTONIC in microseconds, cut to the 32 bits of every node's.
+// The node's clock on Linux: CLOCK_MONOTONIC in microseconds, truncated to 32 bits as on every node.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,19 @@
 
 namespace octoskin::linux_port {
 
+/// Wraps after 71 minutes.
 [[nodiscard]] NodeTime node_now() noexcept;
 
-/// What two clocks read at one instant.
+/// The two clocks at one instant.
 struct ClockPair {
     NodeTime node;
     WallTime wall;
 };
-/// Reads both within as short a time as can be had: CLOCK_MONOTONIC before and after CLOCK_REALTIME, the
-/// narrowest of three.
+/// Reads both clocks: CLOCK_MONOTONIC before and after CLOCK_REALTIME, the shortest interval of three tries.
 [[nodiscard]] ClockPair read_clocks() noexcept;
 
-/// The kernel stamps frames by the wall clock. `stamp` on the node's clock, by its age at `now`; a stamp
-/// that is not of the last second (somebody has set the wall clock) is taken for `now`.
+/// Converts a kernel time stamp (wall clock) to the node's clock, by its age at `now`. If the age is not
+/// within 0 to 1 s (the wall clock was set), the result is `now`.
 [[nodiscard]] NodeTime node_time_of(WallTime stamp, const ClockPair& now) noexcept;
 
 }  // namespace octoskin::linux_port

@@ -27,9 +27,9 @@ std::optional<std::int64_t> positive_number(std::string_view text) {
     return number;
 }
 
-/// Of this process: a program that it starts inherits the words, not the duty.
+/// Ignored if WATCHDOG_PID names another process: child processes inherit the variables, but not the duty.
 std::optional<Microseconds> watchdog_of_environment() {
-    constexpr std::int64_t kMax_us = 600'000'000;  // the node's clock wraps after 71 minutes
+    constexpr std::int64_t kMax_us = 600'000'000;  // 10 min; the node's clock wraps after 71 minutes
     const auto process = environment("WATCHDOG_PID");
     if (!process.empty() && positive_number(process) != ::getpid()) return std::nullopt;
     const auto time_us = positive_number(environment("WATCHDOG_USEC"));
@@ -63,7 +63,7 @@ void ServiceManager::tell(const char* state) const {
     const int descriptor = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (descriptor < 0) return;
     const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + socket_.size());
-    // What does not arrive is followed by the next one, three times before the watchdog bites.
+    // A lost datagram is followed by three more within the watchdog's time.
     (void)::sendto(descriptor, state, std::strlen(state), MSG_NOSIGNAL,
                    reinterpret_cast<const sockaddr*>(&address), size);
     ::close(descriptor);

@@ -1,4 +1,4 @@
-// What systemd is told of this program, as sd_notify(3) has it: a library less on the board.
+// Reports the program's state to systemd, as sd_notify(3) does, without the library.
 #pragma once
 
 #include <optional>
@@ -8,27 +8,29 @@
 
 namespace octoskin::linux_port {
 
-/// Says nothing at all unless a service manager asked for it by NOTIFY_SOCKET. Never waits.
+/// Sends nothing unless a service manager set NOTIFY_SOCKET. Never waits.
 class ServiceManager {
   public:
-    /// NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID of the environment.
+    /// From NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID of the environment.
     [[nodiscard]] static ServiceManager from_environment();
-    /// `watchdog`: it takes a silence that long for a program that hangs; none: it does not.
+    /// `watchdog`: without a report for this time, the service manager treats the program as hung; empty: no
+    /// watchdog.
     ServiceManager(std::string socket, std::optional<Microseconds> watchdog)
         : socket_(std::move(socket)), watchdog_(watchdog) {}
 
-    /// The devices are there and the loop turns.
+    /// Reports that the devices are open and the loop runs.
     void started() const { tell("READY=1"); }
     void stopping() const { tell("STOPPING=1"); }
-    /// The loop has turned once more. Told on at most every quarter of the watchdog's time.
+    /// Call once per turn of the loop. Reports at most once per quarter of the watchdog's time.
     void turned(NodeTime now);
-    /// How long the loop may sleep: a quarter of the watchdog's time; empty: as long as it likes.
+    /// Longest time for which the loop may sleep: a quarter of the watchdog's time; empty: no limit.
     [[nodiscard]] std::optional<Microseconds> sleep_max() const;
 
   private:
     void tell(const char* state) const;
 
-    std::string socket_;  ///< of a Unix datagram socket; with '@' first an abstract one; empty: none
+    std::string
+        socket_;  ///< path of a Unix datagram socket; first character '@': an abstract one; empty: none
     std::optional<Microseconds> watchdog_;
     std::optional<NodeTime> told_;
 };

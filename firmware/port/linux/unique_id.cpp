@@ -9,7 +9,7 @@ namespace {
 std::uint64_t fnv1a(std::uint64_t hash, std::string_view text) {
     constexpr std::uint64_t kPrime = 0x0000'0100'0000'01B3;
     for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * kPrime;
-    return hash * kPrime;  // an end of its own: "a", "bc" is not "ab", "c"
+    return hash * kPrime;  // terminates the text: "a", "bc" differs from "ab", "c"
 }
 
 std::uint64_t hash_of(std::string_view role, const std::string& machine, std::span<const std::string> buses) {

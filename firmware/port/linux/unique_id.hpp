@@ -1,5 +1,5 @@
-// Which board a Linux node is: by this machine and by the buses that it works on, so that two nodes on one
-// machine are two boards, and a node started twice is one.
+// Unique id of a Linux node, from the machine and its buses. Two nodes on one machine with different buses
+// differ; the same node started again keeps its id.
 #pragma once
 
 #include <array>
@@ -11,8 +11,7 @@
 
 namespace octoskin::linux_port {
 
-/// Hashed (FNV-1a), since machine-id(5) is not to be told on a network as it is. Empty: there is no machine
-/// id.
+/// Hashed (FNV-1a), since machine-id(5) must not be published on a network. Empty if there is no machine id.
 [[nodiscard]] std::optional<std::array<std::uint8_t, 12>> unique_id(
     std::span<const std::string> buses, const std::filesystem::path& machine_id_file = "/etc/machine-id");
 

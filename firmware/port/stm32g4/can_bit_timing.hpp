@@ -1,4 +1,4 @@
-// From a bit rate to the CAN controller's bit timing. RM0440, "FDCAN bit timing"; CiA 601-3 for the sample
+// Bit timing of the CAN controller for a bit rate. RM0440, "FDCAN bit timing"; CiA 601-3 for the sample
 // points.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace octoskin::stm32g4 {
 
-/// One bit is `1 + before + after` quanta of `prescaler` clocks; it is sampled between the two. The
-/// synchronisation jump is as long as `after`.
+/// One bit is `1 + before + after` quanta of `prescaler` clocks each. The sample point lies between `before`
+/// and `after`. The synchronisation jump width is `after`.
 struct BitTiming {
     std::uint32_t prescaler = 1;
     std::uint32_t before = 1;  ///< TSEG1
@@ -23,7 +23,7 @@ struct BitTiming {
     friend constexpr bool operator==(const BitTiming&, const BitTiming&) = default;
 };
 
-/// What fits into the fields of a register.
+/// Largest values that fit into the register's fields.
 struct BitTimingRange {
     std::uint32_t prescaler_max = 1;
     std::uint32_t before_max = 1;
@@ -32,11 +32,11 @@ struct BitTimingRange {
 inline constexpr BitTimingRange kNominalRange{.prescaler_max = 512, .before_max = 256, .after_max = 128};
 inline constexpr BitTimingRange kDataRange{.prescaler_max = 32, .before_max = 32, .after_max = 16};
 
-/// Fewer quanta place the sample too coarsely.
+/// With fewer quanta the sample point is too coarse.
 inline constexpr std::uint32_t kQuantaMin = 8;
 
-/// The finest timing that gives `rate` exactly from `clock_hz`, its sample point as near to
-/// `sample_permille` as the quanta allow. Empty if there is none.
+/// The timing with the most quanta that gives exactly `rate` from `clock_hz`, with its sample point as near
+/// to `sample_permille` as the quanta allow. Empty if there is none.
 [[nodiscard]] constexpr std::optional<BitTiming> bit_timing(std::uint32_t clock_hz, std::uint32_t rate,
                                                             std::uint32_t sample_permille,
                                                             const BitTimingRange& range) {
@@ -55,7 +55,7 @@ inline constexpr std::uint32_t kQuantaMin = 8;
     return std::nullopt;
 }
 
-/// Long lines run slowly, and there a late sample point leaves more time for the signal's way.
+/// Long lines use low rates; there a late sample point leaves more time for the propagation delay.
 [[nodiscard]] constexpr std::optional<BitTiming> nominal_timing(std::uint32_t clock_hz, std::uint32_t rate) {
     return bit_timing(clock_hz, rate, rate <= 250'000 ? 875 : 800, kNominalRange);
 }
@@ -63,11 +63,11 @@ inline constexpr std::uint32_t kQuantaMin = 8;
     return bit_timing(clock_hz, rate, 750, kDataRange);
 }
 
-/// Of a bus, in bit/s.
+/// Rates of a bus, in bit/s.
 struct CanRates {
     std::uint32_t nominal = 0;
     std::uint32_t data = 0;
-    bool has_fd = false;  ///< else the data rate means nothing
+    bool has_fd = false;  ///< if false, `data` is not used
     friend constexpr auto operator<=>(const CanRates&, const CanRates&) = default;
 };
 [[nodiscard]] constexpr CanRates rates_of(const NodeConfig& config) {
@@ -83,8 +83,8 @@ struct CanRates {
            F("NBTP.NTSEG1")(timing.before - 1) | F("NBTP.NTSEG2")(timing.after - 1);
 }
 
-/// At 2 Mbit/s and above the transceiver's own delay is longer than the data's sample point: the controller
-/// measures it and compensates. It can do so with a prescaler of 1 or 2.
+/// At 2 Mbit/s and above, the transceiver's delay exceeds the data sample point: the controller measures and
+/// compensates it. It can do so with a prescaler of 1 or 2.
 [[nodiscard]] constexpr bool is_delay_compensated(std::uint32_t rate, const BitTiming& timing) {
     return rate >= 2'000'000 && timing.prescaler <= 2;
 }

@@ -26,9 +26,9 @@ constexpr std::uint32_t kAccept = 0;  // RXGFC.ANFS: into FIFO 0
 constexpr std::uint32_t kReject = 2;  // RXGFC.ANFS, ANFE
 static_assert(kFifoElements == node::kTransmitPlaces);
 constexpr std::uint32_t kAllPlaces = (1U << kFifoElements) - 1;
-constexpr Microseconds kModeLimit{1'000};  // the controller follows within a few of its clocks
+constexpr Microseconds kModeLimit{1'000};  // the controller responds within a few of its clocks
 
-/// More than three new frames would have to come within one interrupt.
+/// Exceeded only if more than three new frames arrive during one interrupt.
 constexpr std::uint32_t kFramesPerInterrupt = 2 * kFifoElements;
 
 CanElement read_element(Address address) {
@@ -57,7 +57,7 @@ bool CanController::listen(const CanRates& rates, wire::NodeId node_id, std::uin
     return is_listening_;
 }
 
-/// Ready to start, still in INIT.
+/// Configures the controller and leaves it in INIT.
 bool CanController::enter(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz) {
     is_listening_ = false;
     if (clock_hz == 0 || !is_possible(rates, clock_hz)) return false;
@@ -88,7 +88,8 @@ void CanController::set_timing(const CanRates& rates, std::uint32_t clock_hz) co
     fdcan1.set("CCCR.BRSE", 1);
 }
 
-/// Bus monitoring: only recessive bits, so neither acknowledges nor error frames.
+/// Bus monitoring mode: the controller sends recessive bits only, so it neither acknowledges nor sends error
+/// frames.
 void CanController::listen_to_all() const {
     fdcan1.set("CCCR.MON", 1);
     fdcan1.set("RXGFC.ANFS", kAccept);
@@ -114,7 +115,7 @@ void CanController::prepare(wire::NodeId node_id) const {
     for (std::uint32_t i = 0; i < kMessageRamBytes; i += 4) store(kMessageRam + i, 0);
     std::uint32_t index = 0;
     for (const std::uint32_t filter : node_filters(node_id)) store(kStandardFilters + 4 * index++, filter);
-    // Remote frames under an identifier of ours pass, so that the node can count them.
+    // Remote frames with an identifier of this node pass, so that the node can count them.
     fdcan1.write("RXGFC", F("RXGFC.RRFE")(1) | F("RXGFC.ANFE")(kReject) | F("RXGFC.ANFS")(kReject) |
                               F("RXGFC.LSS")(kFilterCount));
     fdcan1.write("TXBC", F("TXBC.TFQM")(1));  // the lowest identifier first
@@ -124,7 +125,8 @@ void CanController::prepare(wire::NodeId node_id) const {
     fdcan1.write("ILE", F("ILE.EINT0")(1));
 }
 
-/// The bit shows its new value only when the controller followed; until then it must not be written again.
+/// The bit shows its new value only after the controller has responded; until then it must not be written
+/// again.
 bool CanController::set_init(bool is_set) const {
     fdcan1.set("CCCR.INIT", is_set ? 1 : 0);
     const NodeTime begun = timer_.now();
@@ -172,21 +174,21 @@ node::CanState CanController::state() const {
     return F("PSR.EP").of(status) != 0 || failed_at_ ? node::CanState::passive : node::CanState::active;
 }
 
-/// Requests outlive bus-off: what is not cancelled is sent late.
+/// Transmit requests survive bus-off: a frame that is not cancelled would be sent late.
 void CanController::discard() {
     if (!is_started_) return;
     note_ended();
     for (std::uint32_t i = 0; i < kFifoElements; ++i) take_back(i);
 }
 
-/// The hardware set INIT when it went bus-off, and never clears it by itself.
+/// The hardware sets INIT on bus-off and never clears it itself.
 void CanController::restart() {
     if (state() == node::CanState::bus_off && fdcan1.is_set("CCCR.INIT")) fdcan1.set("CCCR.INIT", 0);
 }
 
-/// A request ends with its frame sent or taken back. One that was on the wire when it was taken back may have
-/// been sent after all: then both TXBTO and TXBCF are set. So TXBTO decides; it is read after TXBRP, or it
-/// could be of an earlier instant.
+/// A request ends when its frame was sent or cancelled. A frame that was on the wire when it was cancelled
+/// may still have been sent: then both TXBTO and TXBCF are set. So TXBTO decides. It must be read after
+/// TXBRP, or it could show an earlier state.
 void CanController::note_ended() {
     const bool is_any_pending =
         std::any_of(places_.begin(), places_.end(), [](const Place& place) { return place.is_pending; });
@@ -202,7 +204,7 @@ void CanController::note_ended() {
     }
 }
 
-/// Setting CCE forgets every request.
+/// Setting CCE clears every request.
 void CanController::give_up_all() {
     note_ended();
     for (Place& place : places_) {
@@ -213,9 +215,9 @@ void CanController::give_up_all() {
     }
 }
 
-/// RM0440, MRAF: the message RAM did not answer in time, after which the controller restricts itself (ASM):
-/// it acknowledges, but sends nothing any more. It is off the bus (INIT) by bus-off alone, or something went
-/// wrong; read first, as bus-off sets it together with PSR.BO.
+/// RM0440, MRAF: the message RAM did not answer in time. The controller then restricts itself (ASM): it
+/// acknowledges, but sends nothing. INIT without bus-off means another failure. CCCR is read before PSR,
+/// since bus-off sets INIT together with PSR.BO.
 bool CanController::has_failed() const {
     const std::uint32_t mode = fdcan1.read("CCCR");
     const bool is_off = F("CCCR.INIT").of(mode) != 0 && !fdcan1.is_set("PSR.BO");

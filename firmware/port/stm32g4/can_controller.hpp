@@ -1,5 +1,5 @@
-// The CAN controller: frames out as soon as they are given, frames in with the time of their end, and back
-// again after bus-off. RM0440, "FDCAN".
+// The CAN controller: sends frames at once, receives frames with the time of their end, and recovers from
+// bus-off. RM0440, "FDCAN".
 #pragma once
 
 #include <array>
@@ -17,74 +17,74 @@
 namespace octoskin::stm32g4 {
 
 struct CanCounts {
-    std::uint32_t given_up = 0;  ///< frames taken and not sent: nobody acknowledged them in time, or bus-off
-    std::uint32_t failed = 0;    ///< times that the controller left the bus by itself, and not for bus-off
+    std::uint32_t given_up = 0;  ///< frames taken but not sent: not acknowledged in time, or bus-off
+    std::uint32_t failed = 0;    ///< times that the controller left the bus itself, other than by bus-off
     std::uint32_t received = 0;
-    std::uint32_t receive_lost = 0;  ///< frames for which there was no room
+    std::uint32_t receive_lost = 0;  ///< frames lost for lack of room
 };
 
-/// Of a bus whose rates are being tried.
+/// Traffic heard on a bus while its rates are being searched.
 struct Heard {
     std::uint32_t frames = 0;
-    bool has_errors = false;  ///< some frame could not be read: other rates, or a disturbed line
+    bool has_errors = false;  ///< a frame could not be read: wrong rates, or a disturbed line
 };
 
 struct ReceivedFrame {
     wire::CanFrame frame;
-    NodeTime received;  ///< end of the frame, as the interrupt saw it
+    NodeTime received;  ///< end of the frame, time of the interrupt
 };
 
 class CanController final : public node::CanTransmitter {
   public:
-    /// A frame that has not been acknowledged for so long is taken back: nothing old is ever sent.
+    /// A frame that is not acknowledged within this time is cancelled, so that no old frame is sent.
     static constexpr Microseconds kTransmitAgeMax{20'000};
-    /// A failure shows in `state` for so long after the start that mends it.
+    /// A failure stays visible in `state` for this long after it happened.
     static constexpr Microseconds kFailureShown{1'000'000};
 
     constexpr explicit CanController(const MicrosecondTimer& timer) : timer_(timer) {}
 
-    /// Joins the bus at these rates and listens to what is for `node_id`. False, and
-    /// silent, if `clock_hz` is 0 or cannot make these rates.
+    /// Joins the bus at these rates and receives the frames for `node_id`. False, and silent, if `clock_hz`
+    /// is 0 or cannot give these rates.
     [[nodiscard]] bool start(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
 
-    /// As `start`, but hears every frame, sends nothing, and disturbs nobody whatever the bus's rates are.
-    /// May be called again with other rates.
+    /// As `start`, but receives every frame, sends nothing and does not disturb the bus at any rate. May be
+    /// called again with other rates.
     [[nodiscard]] bool listen(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
-    /// After `listen`: takes part from now on.
+    /// Call after `listen`: leaves monitoring mode and joins the bus.
     [[nodiscard]] bool join();
-    /// What was heard since `listen`.
+    /// Traffic heard since `listen`.
     [[nodiscard]] Heard heard() const;
 
-    /// Takes the frame if one of the three places is free and `node::may_join` lets it in. The lowest
-    /// identifier leaves first.
+    /// Takes the frame if one of the three places is free and `node::may_join` permits it. The lowest
+    /// identifier is sent first.
     [[nodiscard]] bool send(const wire::CanFrame& frame) override;
     /// The oldest frame received and not yet taken.
     [[nodiscard]] std::optional<ReceivedFrame> receive();
     [[nodiscard]] bool has_received() const { return put_ != taken_; }
 
-    /// Silent counts as passive: nobody acknowledges what is not sent. So does one that failed a short while
-    /// ago: somebody must hear of it.
+    /// `passive` also while the controller is silent, since nothing is acknowledged then, and shortly after a
+    /// failure, so that the heartbeat reports it.
     [[nodiscard]] node::CanState state() const override;
     void discard() override;
     [[nodiscard]] std::optional<wire::CanFrame> take_given_up() override;
     void restart() override;
-    /// Takes part, or is bus-off.
+    /// True while the controller is on the bus or in bus-off.
     [[nodiscard]] bool is_started() const { return is_started_; }
     [[nodiscard]] bool is_listening() const { return is_listening_; }
 
-    /// Takes back what is too old. Finds out whether the controller failed: it is silent then until it is
+    /// Cancels frames that are too old. Detects a failure of the controller, which is then silent until it is
     /// started again. Call at `wake_time` and after each event.
     void poll(NodeTime now);
-    /// When the oldest frame that waits becomes too old.
+    /// Time at which the oldest waiting frame becomes too old.
     [[nodiscard]] std::optional<NodeTime> wake_time() const;
-    /// Whether the interrupt saw something that `poll` or the node should look at, since the last
-    /// `acknowledge_event`; call that before looking.
+    /// Whether there was an interrupt since the last `acknowledge_event`. Call `acknowledge_event` before
+    /// checking the state.
     [[nodiscard]] bool has_event() const { return has_event_; }
     void acknowledge_event() { has_event_ = false; }
 
     [[nodiscard]] CanCounts counts() const;
 
-    /// From its interrupt's handler.
+    /// Call from the interrupt handler.
     void on_interrupt();
 
   private:
@@ -93,7 +93,7 @@ class CanController final : public node::CanTransmitter {
         NodeTime given;
         bool is_pending = false;
         bool is_taken_back = false;
-        bool is_given_up = false;  ///< and not told yet: until then nothing else may go here
+        bool is_given_up = false;  ///< not yet returned by `take_given_up`; blocks this place
     };
 
     [[nodiscard]] bool enter(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
@@ -112,7 +112,7 @@ class CanController final : public node::CanTransmitter {
     const MicrosecondTimer& timer_;
     bool is_started_ = false;
     bool is_listening_ = false;
-    std::optional<NodeTime> failed_at_;  ///< for a while
+    std::optional<NodeTime> failed_at_;  ///< set for `kFailureShown`
     std::array<Place, kFifoElements> places_{};
     CanCounts counts_;
 

@@ -12,7 +12,7 @@ void CanEntry::begin(const std::optional<CanRates>& rates, wire::NodeId node_id,
 
 void CanEntry::poll(NodeTime now) {
     if (clock_hz_ == 0) return;
-    // Noted rather than compared anew each time: the clock wraps within 72 minutes on the bus.
+    // Stored rather than compared each time: the clock wraps after 72 minutes on the bus.
     has_paused_ = has_paused_ || is_reached(try_at_, now);
     if (can_.is_started()) return;
     if (can_.is_listening()) return judge(now);

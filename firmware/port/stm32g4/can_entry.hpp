@@ -1,5 +1,5 @@
-// Brings the board onto the CAN bus, and again whenever it is not there: at the configuration's rates or, if
-// nobody told them, at those found by listening. What fails is tried again once a second.
+// Joins the CAN bus, and joins it again after a failure: at the configured rates or, without a configuration,
+// at rates found by listening. A failed try is repeated once a second.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ namespace octoskin::stm32g4 {
 
 class CanEntry {
   public:
-    /// Between two tries. The first after a long time on the bus is made at once.
+    /// Time between two tries. After longer than this on the bus, the first try is immediate.
     static constexpr Microseconds kPause{1'000'000};
 
     constexpr explicit CanEntry(CanController& can) : can_(can) {}
 
-    /// Makes the first try. Without `rates` it looks for them. With `clock_hz` 0 it never tries: CAN stays
-    /// silent.
+    /// Makes the first try. Without `rates` it searches for them. With `clock_hz` 0 it never tries, and CAN
+    /// stays silent.
     void begin(const std::optional<CanRates>& rates, wire::NodeId node_id, std::uint32_t clock_hz,
                NodeTime now);
-    /// Call after `CanController::poll`, in every turn of the loop.
+    /// Call after `CanController::poll`, once per turn of the loop.
     void poll(NodeTime now);
 
   private:

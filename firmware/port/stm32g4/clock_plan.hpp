@@ -1,4 +1,4 @@
-// How 160 MHz are made: the PLL's figures, as arithmetic that is checked while compiling. RM0440 "PLL".
+// PLL settings for 160 MHz, checked at compile time. RM0440 "PLL".
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct ClockPlan {
                F("PLLCFGR.PLLREN")(1) | F("PLLCFGR.PLLR")(divide_core / 2 - 1);
     }
 
-    /// Within the ranges of RM0440 and of ST's HAL (stm32g4xx_hal_rcc.h).
+    /// True if all values are within the ranges of RM0440 and of ST's HAL (stm32g4xx_hal_rcc.h).
     [[nodiscard]] constexpr bool is_allowed() const {
         const auto is_post_divider = [](std::uint32_t d) { return d == 2 || d == 4 || d == 6 || d == 8; };
         return source_hz % divide_in == 0 && divide_in >= 1 && divide_in <= 16 && multiply >= 8 &&
@@ -40,14 +40,14 @@ struct ClockPlan {
     }
 };
 
-/// 160 MHz rather than 170: then 80 MHz for CAN divide into every usual rate, 5 Mbit/s included.
+/// 160 MHz rather than 170, since 80 MHz for CAN is a multiple of every usual rate, including 5 Mbit/s.
 inline constexpr ClockPlan kCrystalPlan{.source_hz = kCrystalHz,
                                         .source_select = 3,
                                         .divide_in = 6,
                                         .multiply = 80,
                                         .divide_can = 4,
                                         .divide_core = 2};
-/// The same speeds without the crystal; too inaccurate for CAN.
+/// The same frequencies without the crystal; too inaccurate for CAN.
 inline constexpr ClockPlan kInternalPlan{.source_hz = kInternalHz,
                                          .source_select = 2,
                                          .divide_in = 4,
@@ -58,10 +58,10 @@ static_assert(kCrystalPlan.is_allowed() && kInternalPlan.is_allowed());
 static_assert(kCrystalPlan.core_hz() == 160'000'000 && kCrystalPlan.can_hz() == 80'000'000);
 static_assert(kInternalPlan.core_hz() == 160'000'000);
 
-/// The CAN controller's clock, if there is one that it may use.
+/// The CAN controller's clock, when the crystal runs.
 inline constexpr std::uint32_t kCanHz = kCrystalPlan.can_hz();
 
-/// Wait states of the flash in range 1 boost mode: one for each 34 MHz begun after the first (RM0440).
+/// Flash wait states in range 1 boost mode: one for each further 34 MHz or part of it (RM0440).
 [[nodiscard]] constexpr std::uint32_t flash_wait_states(std::uint32_t core_hz) {
     return (core_hz - 1) / 34'000'000;
 }

@@ -8,7 +8,7 @@ namespace octoskin::stm32g4 {
 namespace {
 
 constexpr Microseconds kCrystalLimit{
-    50'000};                               // crystals of this size start within 2 ms; a slow one is used too
+    50'000};  // crystals of this size start within 2 ms; a slow one is accepted, too
 constexpr Microseconds kLockLimit{1'000};  // the PLL locks within 40 us
 constexpr Microseconds kSwitchLimit{1'000};
 
@@ -20,7 +20,7 @@ constexpr std::uint32_t kFullSpeed = 0;      // CFGR.HPRE: not divided
 constexpr std::uint32_t kCanFromPllq = 1;    // CCIPR.FDCANSEL
 constexpr std::uint32_t kPowerRangeOne = 1;  // PWR_CR1.VOS
 
-/// Whether `field` showed `value` in time.
+/// Waits until `field` has `value`. False after `limit`.
 bool shows(const MicrosecondTimer& timer, Field<RccMap> field, std::uint32_t value, Microseconds limit) {
     const NodeTime begun = timer.now();
     while (rcc.get(field) != value) {
@@ -32,7 +32,7 @@ bool shows(const MicrosecondTimer& timer, Field<RccMap> field, std::uint32_t val
 void raise_core_voltage() {
     rcc.set("APB1ENR1.PWREN", 1);
     (void)rcc.read("APB1ENR1");  // the enable takes two clocks
-    // PB4 and PB6 else keep USB-C's dead-battery pull-downs of 5.1 kOhm.
+    // Without this, PB4 and PB6 keep USB-C's dead-battery pull-downs of 5.1 kOhm.
     pwr.set("CR3.UCPD1_DBDIS", 1);
     pwr.set("CR1.VOS", kPowerRangeOne);
     pwr.set("CR5.R1MODE", 0);  // boost: above 150 MHz
@@ -55,7 +55,7 @@ bool lock_pll(const MicrosecondTimer& timer, const ClockPlan& plan) {
 
 bool prepare_flash(const MicrosecondTimer& timer, std::uint32_t core_hz) {
     const std::uint32_t wait_states = flash_wait_states(core_hz);
-    // Field by field: the register also holds DBG_SWEN, and a 0 there shuts the debugger out.
+    // Field by field: the register also holds DBG_SWEN, and a 0 there disables the debugger.
     flash.set("ACR.LATENCY", wait_states);
     flash.set("ACR.PRFTEN", 1);
     flash.set("ACR.ICEN", 1);
@@ -67,7 +67,7 @@ bool prepare_flash(const MicrosecondTimer& timer, std::uint32_t core_hz) {
     return true;
 }
 
-/// Above 80 MHz a change from low speed goes through half of it, for a microsecond (RM0440).
+/// Above 80 MHz the switch from a low frequency must run at half the target for a microsecond (RM0440).
 bool switch_to_pll(MicrosecondTimer& timer, const ClockPlan& plan) {
     rcc.set("CFGR.PPRE1", 0);
     rcc.set("CFGR.PPRE2", 0);
@@ -81,7 +81,7 @@ bool switch_to_pll(MicrosecondTimer& timer, const ClockPlan& plan) {
     return true;
 }
 
-/// As fast as the registers say that the core runs.
+/// The core's frequency according to the registers.
 std::uint32_t core_hz_now(const ClockPlan& plan) {
     const std::uint32_t source = rcc.get("CFGR.SWS");
     const bool is_half = rcc.get("CFGR.HPRE") == kHalfSpeed;
@@ -91,7 +91,7 @@ std::uint32_t core_hz_now(const ClockPlan& plan) {
     return is_half ? system_hz / 2 : system_hz;
 }
 
-/// Back to what reset leaves, from wherever the way up ended.
+/// Returns to the internal oscillator after any failed step.
 Clocks fall_back(MicrosecondTimer& timer, const ClockPlan& plan) {
     rcc.set("CFGR.SW", kSelectInternal);
     if (shows(timer, "CFGR.SWS", kSelectInternal, kSwitchLimit)) rcc.set("CFGR.HPRE", kFullSpeed);

@@ -1,4 +1,4 @@
-// The flash page that holds this board's configuration block. Flashing merges it with the image.
+// The flash page with this board's configuration block, which flashing writes together with the image.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace octoskin::stm32g4 {
 /// The last 2 KiB of the flash.
 inline constexpr std::uint32_t kConfigurationPage = 0x0807'F800;
 
-/// Whether an error that FLASH_ECCR reports is in it. RM0440: ADDR_ECC counts bytes from the start of the
-/// bank, or of the flash if it is one bank.
+/// Whether an error reported by FLASH_ECCR lies in the configuration block. RM0440: ADDR_ECC counts bytes
+/// from the start of the bank, or of the flash in single-bank mode.
 [[nodiscard]] constexpr bool is_in_configuration_page(std::uint32_t address_in_bank,
                                                       bool is_second_bank) noexcept {
     constexpr std::uint32_t kFlash = 0x0800'0000;

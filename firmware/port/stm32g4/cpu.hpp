@@ -1,5 +1,5 @@
-// The few instructions that C++ has no words for, and the interrupt controller. On the PC a test links its
-// own.
+// Instructions without a C++ equivalent, and the interrupt controller. On the PC the tests link their own
+// versions.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace octoskin::stm32g4::cpu {
 inline void mask_interrupts() {
     __asm volatile("cpsid i" ::: "memory");
 }
-/// What is pending is handled before the next instruction.
+/// Pending interrupts are handled before the next instruction.
 inline void unmask_interrupts() {
     __asm volatile("cpsie i\n\tisb" ::: "memory");
 }
@@ -21,11 +21,11 @@ inline void unmask_interrupts() {
 inline void wait_for_interrupt() {
     __asm volatile("dsb\n\twfi" ::: "memory");
 }
-/// What was stored before is seen by whoever looks after.
+/// Completes all stores before any later access.
 inline void barrier() {
     __asm volatile("dsb\n\tisb" ::: "memory");
 }
-/// At least this many cycles: a turn of the loop takes three, the branch alone two or more.
+/// Takes at least `cycles`: one iteration takes three, the branch alone at least two.
 inline void spin(std::uint32_t cycles) {
     for (std::uint32_t turns = cycles / 3 + 1; turns > 0; --turns) __asm volatile("");
 }
@@ -37,7 +37,7 @@ void barrier();
 void spin(std::uint32_t cycles);
 #endif
 
-/// 0 goes first. The M4 of this part has 16 levels, in the upper 4 bits of a byte.
+/// 0 is the highest priority. This M4 has 16 levels, in the upper 4 bits of a byte.
 enum class Priority : std::uint8_t { stamp = 0, transfer = 1, text = 2 };
 
 inline void enable(Interrupt interrupt, Priority priority) {
@@ -53,7 +53,7 @@ inline void disable(Interrupt interrupt) {
     barrier();
 }
 
-/// No interrupt handler runs while one of these lives. Not to be nested.
+/// Masks all interrupts for its lifetime. Must not be nested.
 class MaskedSection {
   public:
     MaskedSection() { mask_interrupts(); }
@@ -62,7 +62,7 @@ class MaskedSection {
     MaskedSection& operator=(const MaskedSection&) = delete;
 };
 
-/// Never returns. Pending stores are done first.
+/// Resets the chip after pending stores are complete.
 [[noreturn]] inline void reset() {
     constexpr std::uint32_t kKey = 0x05FA;  // ARMv7-M: AIRCR ignores writes without it
     barrier();

@@ -10,7 +10,7 @@ namespace octoskin::stm32g4 {
 
 namespace {
 
-constexpr std::uint8_t kFirstLine = 12;  // bus 0's; a line has the number of its pin
+constexpr std::uint8_t kFirstLine = 12;  // line of bus 0; the line number is the pin number
 constexpr std::uint32_t kPortB = 1;      // EXTICR4
 constexpr std::uint32_t kLines = 0xFU << kFirstLine;
 
@@ -38,7 +38,7 @@ bool DataReadyLines::take_fall(std::uint8_t bus) {
     if ((fallen_ & bit) == 0) return false;
     const cpu::MaskedSection masked;
     fallen_ = fallen_ & ~bit;
-    // Whether an edge that came meanwhile is pending depends on the chip: it is forgotten.
+    // It depends on the chip whether an edge since then is pending: clear it.
     exti.write("PR1", bit << kFirstLine);
     exti.write("IMR1", exti.read("IMR1") | bit << kFirstLine);
     return true;

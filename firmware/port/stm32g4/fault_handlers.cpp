@@ -24,12 +24,12 @@ namespace {
 [[gnu::section(".noinit")]] node::KeptMemory the_kept_memory;
 constinit std::atomic<bool> the_configuration_is_damaged = false;
 
-/// What the core pushes when an exception begins (ARMv7-M).
+/// Registers that the core pushes at an exception (ARMv7-M).
 struct StackedFrame {
     std::uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
 };
 
-/// Not if the stack was lost: then nothing was pushed.
+/// Null if the stack pointer is outside RAM: then nothing was pushed.
 const StackedFrame* frame_at(std::uintptr_t address) {
     const bool is_in_ram = address >= reinterpret_cast<std::uintptr_t>(stack_bottom) &&
                            address + sizeof(StackedFrame) <= reinterpret_cast<std::uintptr_t>(ram_end);
@@ -37,19 +37,20 @@ const StackedFrame* frame_at(std::uintptr_t address) {
     return is_in_ram ? reinterpret_cast<const StackedFrame*>(address) : nullptr;
 }
 
-/// CAN's clock must be on, or its register cannot be reached.
+/// The register is accessible only while CAN's clock is on.
 void silence_can() {
     if (rcc.is_set("APB1ENR1.FDCANEN")) fdcan1.set("CCCR.INIT", 1);
 }
 
-/// The flash found two wrong bits in a word of the configuration, and was told that this is known.
+/// Handles a double bit error in the configuration page: clears the flag and records it. False if the error
+/// is elsewhere.
 bool takes_damaged_configuration() {
     using F = Field<FlashMap>;
     const std::uint32_t error = flash.read("ECCR");
     if (F("ECCR.ECCD").of(error) == 0) return false;
     if (!is_in_configuration_page(F("ECCR.ADDR_ECC").of(error), F("ECCR.BK_ECC").of(error) != 0))
         return false;
-    flash.write("ECCR", F("ECCR.ECCD")(1));  // cleared by a 1
+    flash.write("ECCR", F("ECCR.ECCD")(1));  // cleared by writing 1
     the_configuration_is_damaged = true;
     return true;
 }
@@ -116,9 +117,9 @@ extern "C" {
     record_and_reset({.kind = FaultKind::unknown, .where = scb.get("ICSR.VECTACTIVE")});
 }
 
-/// The NMI has two sources: the clock security system (the crystal failed), and a word of flash that cannot
-/// be read. One of the configuration is no reason to stop: without it the node can still say so. One of the
-/// program is.
+/// The NMI has two sources: the clock security system (the crystal failed), and a flash word with a double
+/// bit error. In the configuration page this is no reason to stop, since the node can still report it. In the
+/// program it is.
 [[gnu::used]] void take_nmi(std::uintptr_t stack) {
     using namespace octoskin::stm32g4;
     const bool is_clock = rcc.is_set("CIFR.CSSF");
@@ -130,7 +131,7 @@ extern "C" {
                       .called_from = frame != nullptr ? frame->lr : 0});
 }
 
-// The stack may be the very thing that failed: each handler begins on one of its own. r0: the old one.
+// The fault may be a stack overflow, so each handler uses a separate stack. r0: the old stack pointer.
 [[gnu::naked]] void fault_handler() {
     __asm volatile(
         "mrs r0, msp\n\t"
@@ -162,8 +163,7 @@ extern "C" {
         ".ltorg");
 }
 
-// What the C and C++ libraries call when a program must not go on.
-// NOLINTNEXTLINE(bugprone-reserved-identifier): newlib's name.
+// Called by the C and C++ libraries when the program must not continue.
 [[noreturn]] void __assert_func(const char*, int, const char*, const char*) {
     stop(__builtin_return_address(0));
 }

@@ -8,7 +8,7 @@
 
 namespace octoskin::stm32g4 {
 
-// Another start than zero, so that cleared memory is no valid record.
+// The start value is not zero, so that cleared memory is no valid record.
 std::uint32_t FaultRecord::checksum() const noexcept {
     constexpr std::uint32_t kMark = 0x0C70'5C1A;
     std::uint32_t crc = kMark;

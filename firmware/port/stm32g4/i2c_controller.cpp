@@ -15,7 +15,8 @@ constexpr std::uint32_t kControl = F("CR1.PE")(1) | F("CR1.TXIE")(1) | F("CR1.RX
 constexpr std::uint32_t kAllFlags =
     F("ICR.NACKCF")(1) | F("ICR.STOPCF")(1) | F("ICR.BERRCF")(1) | F("ICR.ARLOCF")(1) | F("ICR.OVRCF")(1);
 
-constexpr int kFreeingClocks = 9;      // a byte and its acknowledge: by then every part has let go
+constexpr int kFreeingClocks =
+    9;  // a byte and its acknowledge: after these, every device has released the bus
 constexpr Microseconds kHalfClock{5};  // 100 kHz
 constexpr Drive kOpen = Drive::open_drain;
 
@@ -41,8 +42,8 @@ void I2cController::enable() const {
     wiring_.registers.write("CR1", kControl);
 }
 
-/// Lets both lines go and clears all flags; it must last 3 clocks of the bus (RM0440), which reading back
-/// takes.
+/// Releases both lines and clears all flags. The disable must last 3 APB clocks (RM0440); the reads take this
+/// time.
 void I2cController::disable() const {
     wiring_.registers.write("CR1", 0);
     (void)wiring_.registers.read("CR1");
@@ -50,7 +51,7 @@ void I2cController::disable() const {
     (void)wiring_.registers.read("CR1");
 }
 
-// --- the main loop's part
+// --- called from the main loop
 
 bool I2cController::is_line_free() const {
     return !wiring_.registers.is_set("ISR.BUSY") && wiring_.scl.is_high() && wiring_.sda.is_high();
@@ -59,7 +60,7 @@ bool I2cController::is_line_free() const {
 void I2cController::submit(const i2c::Transfer& transfer, NodeTime, NodeTime deadline) {
     assert(!is_busy());
     assert(transfer.write.size() <= kI2cBytesMax && transfer.read.size() <= kI2cBytesMax);
-    // A START on a bus that is not free would wait for ever, in silence.
+    // A START on a busy bus would wait for ever without an error.
     const bool is_free = is_line_free() || recover();
     transfer_ = transfer;
     deadline_ = deadline;
@@ -78,7 +79,7 @@ void I2cController::submit(const i2c::Transfer& transfer, NodeTime, NodeTime dea
 i2c::TransferState I2cController::poll(NodeTime now) {
     if (is_in_flight() && is_reached(deadline_, now)) {
         const cpu::MaskedSection masked;
-        if (is_in_flight()) {  // it may have ended just now
+        if (is_in_flight()) {  // it may have ended just before the mask
             disable();
             enable();
             fail(i2c::TransferError::timeout);
@@ -104,7 +105,7 @@ bool I2cController::recover() {
     return is_free;
 }
 
-/// UM10204 3.1.16 "bus clear", then a STOP, so that a part left in the middle of a transfer starts afresh.
+/// UM10204 3.1.16 "bus clear", then a STOP, so that a device in the middle of a transfer returns to idle.
 bool I2cController::free_lines() const {
     const auto drive = [this](const Pin& pin, bool is_high) {
         pin.set(is_high);
@@ -131,10 +132,10 @@ bool I2cController::free_lines() const {
     return is_free;
 }
 
-// --- both parts: one after the other
+// --- called from the main loop and from the interrupt
 
-/// The first byte goes in before the START: ST's remedy for transmission that stalls after the first byte
-/// (erratum I2C2-190208).
+/// The first byte is written before the START: ST's workaround for a transmission that stalls after the first
+/// byte (erratum I2C2-190208).
 void I2cController::begin_write() {
     phase_ = Phase::writing;
     if (!transfer_.write.empty()) feed();
@@ -154,7 +155,7 @@ void I2cController::fail(i2c::TransferError error) {
     phase_ = Phase::failed;
 }
 
-// --- the interrupt's part
+// --- called from the interrupt
 
 void I2cController::on_interrupt() {
     const std::uint32_t isr = wiring_.registers.read("ISR");
@@ -171,7 +172,8 @@ void I2cController::on_interrupt() {
         fail(i2c::TransferError::arbitration_lost);
         return;
     }
-    // A bus error may be reported where there is none; if the transfer really broke, its deadline tells.
+    // The controller may report a bus error that did not happen. If the transfer did fail, its deadline ends
+    // it.
     if (is_set("ISR.BERR") || is_set("ISR.OVR")) {
         wiring_.registers.write("ICR", F("ICR.BERRCF")(1) | F("ICR.OVRCF")(1));
     }
@@ -182,7 +184,7 @@ void I2cController::on_interrupt() {
     if (is_set("ISR.STOPF")) end();
 }
 
-/// The controller asks for no more than it was told to send; a zero is what it would get.
+/// The controller requests no more bytes than NBYTES; an extra request would be answered with 0.
 void I2cController::feed() {
     const bool is_left = written_ < transfer_.write.size();
     wiring_.registers.write("TXDR", is_left ? transfer_.write[written_] : std::uint8_t{0});
@@ -194,8 +196,8 @@ void I2cController::take() {
     if (received_ < transfer_.read.size()) transfer_.read[received_++] = byte;
 }
 
-/// The controller sends the STOP by itself. Nobody answered to the address if the first byte, waiting since
-/// before the START, still waits; a read's address is refused or nothing is.
+/// The controller sends the STOP itself. The address was refused if the first byte, written before the START,
+/// is still waiting. In a read, only the address can be refused.
 void I2cController::note_nack(std::uint32_t isr) {
     wiring_.registers.write("ICR", F("ICR.NACKCF")(1));
     const bool is_first_waiting = written_ <= 1 && F("ISR.TXE").of(isr) == 0;
@@ -206,13 +208,13 @@ void I2cController::note_nack(std::uint32_t isr) {
 void I2cController::end() {
     wiring_.registers.write("ICR", F("ICR.STOPCF")(1));
     wiring_.registers.write("CR2", 0);
-    // A byte that was not sent would be the first of the next transfer: writing TXE flushes it.
+    // An unsent byte would become the first byte of the next transfer: writing TXE flushes it.
     wiring_.registers.write("ISR", F("ISR.TXE")(1));
     const bool is_whole = written_ == transfer_.write.size() && received_ == transfer_.read.size();
     if (refusal_) {
         fail(*refusal_);
     } else if (!is_whole) {
-        fail(i2c::TransferError::nack_data);  // somebody else's STOP
+        fail(i2c::TransferError::nack_data);  // another device sent the STOP
     } else {
         phase_ = Phase::done;
     }

@@ -1,4 +1,4 @@
-// One I2C bus of the chip. An interrupt moves each byte; the core sleeps in between. RM0440, "I2C".
+// One I2C bus of the chip. Each byte is moved by an interrupt; the core sleeps in between. RM0440, "I2C".
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@
 
 namespace octoskin::stm32g4 {
 
-/// The most that one transfer writes or reads: the byte counter has 8 bits.
+/// Largest number of bytes that one transfer writes or reads: the byte counter has 8 bits.
 inline constexpr std::size_t kI2cBytesMax = 255;
 
 class I2cController final : public i2c::Bus {
@@ -20,23 +20,22 @@ class I2cController final : public i2c::Bus {
     constexpr I2cController(const I2cWiring& wiring, const MicrosecondTimer& timer)
         : wiring_(wiring), timer_(timer) {}
 
-    /// `timing`: for TIMINGR. Ready for transfers afterwards.
+    /// Enables the controller. `timing`: value of TIMINGR.
     void start(std::uint32_t timing);
 
     [[nodiscard]] bool is_busy() const override { return phase_ != Phase::idle; }
-    /// A bus that is not idle is freed first, which takes up to 150 us. Writes and reads of up to
-    /// `kI2cBytesMax` bytes.
+    /// A busy bus is freed first, which takes up to 150 us. Writes and reads of up to `kI2cBytesMax` bytes.
     void submit(const i2c::Transfer& transfer, NodeTime now, NodeTime deadline) override;
     [[nodiscard]] i2c::TransferState poll(NodeTime now) override;
     [[nodiscard]] i2c::TransferError error() const override { return error_; }
     bool recover() override;
 
-    /// Whether a transfer ended and nobody has asked yet.
+    /// Whether a transfer ended and `poll` has not returned its end yet.
     [[nodiscard]] bool has_ended() const { return phase_ == Phase::done || phase_ == Phase::failed; }
-    /// When the transfer in flight is given up.
+    /// Deadline of the transfer in flight.
     [[nodiscard]] std::optional<NodeTime> deadline() const;
 
-    /// From the handlers of both its interrupts.
+    /// Call from the handlers of both interrupts of the controller.
     void on_interrupt();
 
   private:
@@ -58,7 +57,7 @@ class I2cController final : public i2c::Bus {
     const I2cWiring& wiring_;
     const MicrosecondTimer& timer_;
 
-    /// While a transfer is in flight it and all below belong to the interrupt, else to the main loop.
+    /// During a transfer, this and all members below belong to the interrupt, else to the main loop.
     std::atomic<Phase> phase_ = Phase::idle;
     i2c::Transfer transfer_;
     NodeTime deadline_;

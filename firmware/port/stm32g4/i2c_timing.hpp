@@ -1,4 +1,4 @@
-// The I2C controller's clock: values for TIMINGR, by its own clock and the bus's rate.
+// Values of TIMINGR for the controller's clock and the bus rate.
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@ namespace octoskin::stm32g4 {
 
 struct I2cTiming {
     std::uint32_t kernel_hz = 0;
-    std::uint32_t bus_hz = 0;  ///< never exceeded, whatever filter delay and rise time
+    std::uint32_t bus_hz = 0;  ///< upper limit for every filter delay and rise time
     std::uint32_t timingr = 0;
 };
 
-/// Low and high times by the I2C specification (UM10204 table 10) for the slowest edges it allows, the
-/// analogue filter at 50 to 260 ns (DS12288). A 400 kHz bus then runs at 272 to 400 kHz.
+/// Low and high times of the I2C specification (UM10204 table 10) for the slowest permitted edges and an
+/// analogue filter of 50 to 260 ns (DS12288). A 400 kHz bus then runs at 272 to 400 kHz.
 inline constexpr auto kI2cTimings = std::to_array<I2cTiming>({
     {160'000'000, 100'000, 0xD0E3'3B34},
     {160'000'000, 400'000, 0x30FA'2C31},
@@ -22,7 +22,7 @@ inline constexpr auto kI2cTimings = std::to_array<I2cTiming>({
     {16'000'000, 400'000, 0x0061'1011},
 });
 
-/// For the fastest known rate that is not above `bus_hz`; empty if all are.
+/// Value for the fastest known rate that is not above `bus_hz`; empty if all are above it.
 [[nodiscard]] constexpr std::optional<std::uint32_t> i2c_timing(std::uint32_t kernel_hz,
                                                                 std::uint32_t bus_hz) {
     std::optional<std::uint32_t> best;

@@ -1,5 +1,5 @@
-// Which pins, clock and interrupts each I2C controller has on the NUCLEO-G474RE. Datasheet DS12288, alternate
-// functions. Each bus wants external pull-ups: the chip's own are too weak for 400 kHz.
+// Pins, clock and interrupts of each I2C controller on the NUCLEO-G474RE. Datasheet DS12288, alternate
+// functions. Each bus needs external pull-ups: the chip's own are too weak for 400 kHz.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace octoskin::stm32g4 {
 
 struct I2cWiring {
     Peripheral<I2cMap> registers;
-    Field<RccMap> clock;  ///< its enable bit; the kernel clock is PCLK1, as after reset
+    Field<RccMap> clock;  ///< its enable bit; the kernel clock is PCLK1, the reset default
     Interrupt event;
     Interrupt error;
     Pin scl;

@@ -1,5 +1,5 @@
-// What start-up calls and the vector table points at. The handlers of peripherals are the application's: it
-// knows the objects.
+// Functions that start-up calls or that the vector table contains. The application defines the peripherals'
+// handlers, since it owns the objects.
 #pragma once
 
 extern "C" {

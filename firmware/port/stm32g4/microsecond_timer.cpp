@@ -13,7 +13,7 @@ void MicrosecondTimer::start(std::uint32_t clock_hz) {
     tim2.write("DIER", 0);
     tim2.write("PSC", clock_hz / 1'000'000 - 1);
     tim2.write("ARR", 0xFFFF'FFFF);
-    tim2.write("EGR", F("EGR.UG")(1));  // takes the new prescaler over, and clears the counter
+    tim2.write("EGR", F("EGR.UG")(1));  // loads the new prescaler and clears the counter
     tim2.write("SR", 0);
     tim2.write("CR1", F("CR1.CEN")(1));
 }
@@ -23,7 +23,7 @@ NodeTime MicrosecondTimer::now() const {
 }
 
 void MicrosecondTimer::wait(Microseconds duration) const {
-    // One count more: the present one may be about to end.
+    // One count more: the current count may be about to end.
     const NodeTime end = now() + duration + Microseconds{1};
     while (!is_reached(end, now())) {
     }
@@ -35,7 +35,7 @@ void MicrosecondTimer::wake_at(NodeTime when) {
     tim2.write("CCR1", when.us);
     tim2.write("SR", ~F("SR.CC1IF").mask());
     tim2.write("DIER", F("DIER.CC1IE")(1));
-    // The counter may have passed `when` before the compare register held it.
+    // The counter may have passed `when` before the compare register was written.
     if (is_reached(when, now())) tim2.write("EGR", F("EGR.CC1G")(1));
 }
 

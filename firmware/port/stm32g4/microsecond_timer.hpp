@@ -9,16 +9,17 @@ namespace octoskin::stm32g4 {
 
 class MicrosecondTimer {
   public:
-    /// Counts from zero at 1 MHz, its own clock running at `clock_hz`, a whole number of MHz.
+    /// Starts counting from zero at 1 MHz. `clock_hz`: the timer's input clock, a whole number of MHz.
     void start(std::uint32_t clock_hz);
 
     [[nodiscard]] NodeTime now() const;
-    /// Waits without sleeping. For microseconds.
+    /// Busy wait, for a few microseconds.
     void wait(Microseconds duration) const;
 
-    /// Raises the timer's interrupt once, at `when` or, if that is past, at once. Replaces an earlier order.
+    /// Raises the timer's interrupt once, at `when` or, if that is past, at once. Replaces an earlier
+    /// request.
     void wake_at(NodeTime when);
-    /// From the timer's interrupt handler.
+    /// Call from the timer's interrupt handler.
     void on_interrupt();
 };
 

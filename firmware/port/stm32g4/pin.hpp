@@ -16,7 +16,7 @@ class Pin {
     constexpr Pin(const Peripheral<GpioMap>& port, std::uint8_t number) : port_(port), number_(number) {}
 
     void make_input(Pull pull) const;
-    /// Set a level first: it appears with the pin's new role.
+    /// Set the level first: the pin drives it as soon as it is an output.
     void make_output(Drive drive, Speed speed = Speed::low) const;
     /// `function`: the AF number of the datasheet's table.
     void make_alternate(std::uint8_t function, Drive drive, Speed speed = Speed::low) const;
@@ -31,7 +31,7 @@ class Pin {
     std::uint8_t number_;
 };
 
-/// Clocks ports A, B and C.
+/// Enables the clocks of ports A, B and C.
 void enable_pins();
 
 }  // namespace octoskin::stm32g4

@@ -1,5 +1,5 @@
-// Finds out by listening at which rates a bus runs, for a board that nobody told: one without a valid
-// configuration block, which has to say so in its heartbeat and must not disturb the others.
+// Finds the rates of a bus by listening, for a board without a valid configuration block. Such a board must
+// report this in its heartbeat and must not disturb the bus.
 #pragma once
 
 #include <array>
@@ -16,20 +16,21 @@ class RateSearch {
   public:
     /// Every host sends SYNC once a second.
     static constexpr Microseconds kPatience{1'500'000};
-    /// So many frames and no error in that time: these are the bus's rates.
+    /// With this many frames and no error in that time, the rates are those of the bus.
     static constexpr std::uint32_t kFramesMin = 3;
 
     enum class Verdict : std::uint8_t {
         wait,
-        try_next,  ///< listen at `rates()` from now on
-        found,     ///< join at the rates tried
+        try_next,  ///< listen at the new `rates()`
+        found,     ///< join at the current `rates()`
     };
 
-    /// To try now.
+    /// The rates to try now.
     [[nodiscard]] CanRates rates() const noexcept { return kRates[turn_]; }
     void begin(NodeTime now) noexcept { begun_ = now; }
 
-    /// An error ends the try at once; silence only proves nothing.
+    /// An error ends the try at once. Without errors the try lasts `kPatience`, and then succeeds if at least
+    /// `kFramesMin` frames were heard.
     [[nodiscard]] Verdict judge(const Heard& heard, NodeTime now) noexcept {
         const bool is_over = elapsed(begun_, now) >= kPatience;
         if (!heard.has_errors && !is_over) return Verdict::wait;
@@ -40,7 +41,7 @@ class RateSearch {
     }
 
   private:
-    /// The usual ones for CAN FD. Classical frames are heard at whichever data rate.
+    /// The usual rates of CAN FD. Classical frames are received at any data rate.
     static constexpr std::array<CanRates, 5> kRates = {{{1'000'000, 5'000'000, true},
                                                         {500'000, 2'000'000, true},
                                                         {1'000'000, 2'000'000, true},

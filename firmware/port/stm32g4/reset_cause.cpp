@@ -11,7 +11,8 @@ wire::ResetCause reset_cause(std::uint32_t csr, bool is_ram_kept) noexcept {
     if (is_set("CSR.BORRSTF")) return is_ram_kept ? ResetCause::brown_out : ResetCause::power_on;
     if (is_set("CSR.IWDGRSTF") || is_set("CSR.WWDGRSTF")) return ResetCause::watchdog;
     if (is_set("CSR.SFTRSTF")) return ResetCause::software;
-    if (is_set("CSR.OBLRSTF")) return ResetCause::software;  // option bytes loaded: somebody is flashing
+    if (is_set("CSR.OBLRSTF"))
+        return ResetCause::software;  // option bytes were loaded: the board is being flashed
     if (is_set("CSR.LPWRRSTF")) return ResetCause::unknown;  // low power modes are not used
     return is_set("CSR.PINRSTF") ? ResetCause::pin : ResetCause::unknown;
 }

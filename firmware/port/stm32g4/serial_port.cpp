@@ -31,7 +31,8 @@ bool SerialPort::say(std::string_view line) {
     }
     for (const char character : line) put(character);
     for (const char character : kLineEnd) put(character);
-    // The handler may clear this bit between read and write: then it is raised once more, and finds nothing.
+    // The handler may clear this bit between read and write: then there is one extra interrupt with nothing
+    // to send.
     lpuart1.set("CR1.TXEIE", 1);
     return true;
 }

@@ -1,5 +1,5 @@
-// Says one-line messages on LPUART1, which the NUCLEO's debugger shows as a virtual serial port: 115200 baud,
-// 8 data bits, no parity. An interrupt sends; nobody waits.
+// Sends lines of text on LPUART1, which the NUCLEO's debugger shows as a virtual serial port: 115200 baud, 8
+// data bits, no parity. An interrupt sends; no call waits.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace octoskin::stm32g4 {
 
-/// LPUART1's divider for 115200 baud: 256 clocks a bit, rounded (RM0440 "LPUART baud rate generation").
+/// LPUART1's divider for 115200 baud: 256 clocks per bit, rounded (RM0440 "LPUART baud rate generation").
 [[nodiscard]] constexpr std::uint32_t lpuart_divider(std::uint32_t clock_hz) {
     constexpr std::uint32_t kBaud = 115'200;
     return static_cast<std::uint32_t>((std::uint64_t{256} * clock_hz + kBaud / 2) / kBaud);
@@ -20,14 +20,15 @@ class SerialPort {
   public:
     void start(std::uint32_t clock_hz);
 
-    /// Queues the line and its end, whole or, if there is no room, not at all. From the main loop only.
+    /// Queues the line and its line end. False, and nothing queued, if there is no room. Call from the main
+    /// loop only.
     bool say(std::string_view line);
-    /// Whether all that was said is out, but for the last character or two.
+    /// Whether all text has been sent, except for the last one or two characters.
     [[nodiscard]] bool is_quiet() const { return put_ == taken_; }
-    /// Lines that found no room.
+    /// Number of lines dropped for lack of room.
     [[nodiscard]] std::uint32_t lost_count() const { return lost_count_; }
 
-    /// From the interrupt handler.
+    /// Call from the interrupt handler.
     void on_interrupt();
 
   private:

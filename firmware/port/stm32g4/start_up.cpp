@@ -1,5 +1,5 @@
-// From reset to the application: vector table, FPU, memory. Nothing here may rely on initialised data before
-// it is there.
+// From reset to the application: vector table, FPU, memory. Code here must not use initialised data before
+// `prepare_memory`.
 #include <array>
 #include <cstdint>
 
@@ -8,7 +8,7 @@
 #include "firmware/port/stm32g4/registers/core.hpp"
 
 extern "C" {
-// From the linker script: their addresses count, or their contents in the order of memory.
+// From the linker script. Only the addresses of these symbols matter, except for the data that they delimit.
 extern const std::uint32_t data_source[];
 extern std::uint32_t data_begin[];
 extern std::uint32_t data_end[];
@@ -36,7 +36,7 @@ constexpr std::array<Handler, kExceptionCount - 1> exception_handlers() {
     handlers[0] = &reset_handler;
     handlers[1] = &nmi_handler;
     handlers[2] = &fault_handler;  // hard fault
-    handlers[3] = &fault_handler;  // memory management, bus, usage: not enabled, they become hard faults
+    handlers[3] = &fault_handler;  // memory management, bus, usage: not enabled, so they become hard faults
     handlers[4] = &fault_handler;
     handlers[5] = &fault_handler;
     return handlers;
@@ -69,7 +69,7 @@ constexpr std::array<Handler, kInterruptCount> interrupt_handlers() {
 void enable_fpu() {
     constexpr std::uint32_t kFullAccess = 0xF;  // coprocessors 10 and 11
     cpacr.set("CPACR.CP", kFullAccess);
-    // Registers are stacked at once, never lazily: Cortex-M4 erratum 776924.
+    // No lazy stacking of the FPU registers: Cortex-M4 erratum 776924.
     fpu.write("FPCCR", Field<FpuMap>("FPCCR.ASPEN")(1));
     cpu::barrier();
 }

@@ -3,8 +3,9 @@
 namespace octoskin::stm32g4 {
 
 namespace {
-constexpr Pin kLight{gpio_a, 5};             // LD2 of the NUCLEO, on when high
-constexpr std::uint32_t kSlotUs = 1U << 17;  // 131 ms: a power of two, so that the clock's wrap shows no seam
+constexpr Pin kLight{gpio_a, 5};  // LD2 of the NUCLEO, on when high
+constexpr std::uint32_t kSlotUs =
+    1U << 17;  // 131 ms: a power of two, so that the pattern continues when the clock wraps
 constexpr std::uint32_t kSlots = 16;
 constexpr Microseconds kIdentifyPause{1'000'000};
 }  // namespace
@@ -24,7 +25,7 @@ NodeTime StatusLight::poll(NodeTime now) {
     ordered_.reset();
     if (identify_until_ && !is_reached(*identify_until_, now)) return *identify_until_;
     identify_until_.reset();
-    // Slots 0, 2, 4, ... of sixteen are flashes, as many as there are to show; the rest is the pause.
+    // Of 16 slots, the slots 0, 2, 4, ... are flashes, up to the number to show; the rest is the pause.
     const std::uint32_t slot = now.us / kSlotUs % kSlots;
     kLight.set(slot % 2 == 0 && slot / 2 < static_cast<std::uint32_t>(flashes_));
     return {(now.us / kSlotUs + 1) * kSlotUs};

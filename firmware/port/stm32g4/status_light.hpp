@@ -1,5 +1,5 @@
-// The board's light: short flashes, counted every two seconds, say how the board is; while somebody asks for
-// it by the `identify` command, it blinks evenly instead.
+// The board's light. The number of short flashes in each period of two seconds shows the board's state.
+// During the `identify` command the light blinks evenly instead.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace octoskin::stm32g4 {
 
-/// Its value is the number of flashes.
+/// The value is the number of flashes.
 enum class Flashes : std::uint8_t {
     all_is_well = 1,
     no_crystal = 2,  ///< silent on CAN
     bad_config = 3,  ///< no ranging
-    can_fault = 4,   ///< CAN is out of order
-    no_ranges = 5,   ///< of a sensor, of a bus, or of the whole node
+    can_fault = 4,   ///< CAN does not work
+    no_ranges = 5,   ///< a sensor, a bus, or the whole node does not range
 };
 
 class StatusLight final : public node::Indicator {
@@ -25,14 +25,14 @@ class StatusLight final : public node::Indicator {
     void start();
     void show(Flashes flashes) { flashes_ = flashes; }
 
-    /// The node's own blinking, which goes before the flashes for a second each time.
+    /// Called by the node for `identify`; replaces the flashes for one second each time.
     void set(bool is_on) override;
-    /// Puts the light into the state that is due. Returns when to call it next.
+    /// Sets the light to its current state. Returns the time of the next call.
     NodeTime poll(NodeTime now);
 
   private:
     Flashes flashes_ = Flashes::all_is_well;
-    std::optional<bool> ordered_;  ///< by the node, not yet seen by `poll`
+    std::optional<bool> ordered_;  ///< set by the node, not yet handled by `poll`
     std::optional<NodeTime> identify_until_;
 };
 

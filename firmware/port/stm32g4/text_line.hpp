@@ -1,4 +1,4 @@
-// Composes one line of text in a fixed buffer; what does not fit is cut off. Firmware has no printf.
+// Composes one line of text in a fixed buffer; excess text is cut off. Firmware has no printf.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ class TextLine {
   public:
     TextLine& text(std::string_view words) noexcept;
     TextLine& number(std::uint32_t value) noexcept;
-    /// Upper case, all `digits` (1..8) of them.
+    /// Upper case, exactly `digits` (1..8) digits.
     TextLine& hex(std::uint32_t value, unsigned digits) noexcept;
 
     [[nodiscard]] std::string_view view() const noexcept { return {characters_.data(), length_}; }

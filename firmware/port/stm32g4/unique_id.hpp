@@ -10,7 +10,7 @@ namespace octoskin::stm32g4 {
 
 inline constexpr Address kUniqueIdAddress = 0x1FFF'7590;
 
-/// Its bytes in the order of memory.
+/// The bytes in memory order.
 [[nodiscard]] inline std::array<std::uint8_t, 12> unique_id() {
     std::array<std::uint8_t, 12> id{};
     for (std::uint32_t i = 0; i < id.size(); ++i) {

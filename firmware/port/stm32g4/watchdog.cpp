@@ -12,8 +12,8 @@ constexpr std::uint32_t kRefresh = 0xAAAA;
 constexpr std::uint32_t kDivideBy16 = 2;  // IWDG_PR
 static_assert(kWatchdogDivider == 16);
 
-// At the 16 MHz that the core has after reset: looks every 10 us, for 2 ms at most. Five periods of the slow
-// clock (RM0440) after its start are a fifth of that.
+// At the core's 16 MHz after reset: checks every 10 us, for at most 2 ms. Loading the registers takes five
+// periods of the slow clock (RM0440) after its start, a fifth of that.
 constexpr std::uint32_t kTurnCycles = 160;
 constexpr std::uint32_t kUpdateTurns = 200;
 
@@ -29,8 +29,8 @@ void IndependentWatchdog::start() {
     iwdg.write("KR", kUnlock);
     iwdg.write("PR", kDivideBy16);
     iwdg.write("RLR", kWatchdogCounts - 1);
-    // The slow clock takes the new values over within a few of its periods. A feed before that loads the old
-    // ones: the first period could last up to two seconds.
+    // The watchdog loads the new values within a few periods of the slow clock. A feed before that would load
+    // the old ones: the first period could then last up to two seconds.
     for (std::uint32_t turns = 0; is_updating() && turns < kUpdateTurns; ++turns) cpu::spin(kTurnCycles);
     feed();
 }

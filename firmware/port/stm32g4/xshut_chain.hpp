@@ -1,5 +1,5 @@
-// The first 40 XSHUT lines: a chain of five 74HC595 shift registers behind four pins. Their outputs stay off,
-// and pull-downs keep the lines low, until the first pattern, all low, is in.
+// The first 40 XSHUT lines: a chain of five 74HC595 shift registers on four pins. The outputs stay off, and
+// pull-downs keep the lines low, until the first pattern, all low, has been loaded.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@ class XshutChain {
   public:
     static constexpr std::uint8_t kLines = 40;
 
-    /// All lines low, then outputs on.
+    /// Sets all lines low, then enables the outputs.
     void start();
 
-    /// Shifts all 40 levels out and shows them at once: about 30 us at 160 MHz.
+    /// Shifts out all 40 levels and latches them together: about 30 us at 160 MHz.
     void set(std::uint8_t line, bool is_high);
 
   private:

@@ -1,5 +1,6 @@
-// The XSHUT lines of the board: 0 to 39 are the outputs of the 74HC595 chain, 40 to 47 pins of their own, for
-// few sensors and no chain. Those pins are open drain: what releases a sensor is its carrier's pull-up.
+// The XSHUT lines of the board: 0 to 39 are the outputs of the 74HC595 chain; 40 to 47 are separate pins, for
+// boards with few sensors and no chain. These pins are open drain: the pull-up on the sensor's carrier
+// releases the sensor.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +12,11 @@ namespace octoskin::stm32g4 {
 
 class XshutLines final : public node::XshutLines {
   public:
-    /// All lines low. From a reset until then those of the chain are low too, and the pins float: their
-    /// sensors stay where they are, or leave reset for 0x29.
+    /// Sets all lines low. Between reset and this call the chain's lines are low, but the pins float: their
+    /// sensors keep their state, or leave reset with address 0x29.
     void start();
 
-    /// `line` below `kNodeXshutLinesMax`. A line of the chain takes about 30 us at 160 MHz.
+    /// `line` < `kNodeXshutLinesMax`. A line of the chain takes about 30 us at 160 MHz.
     void set(std::uint8_t line, bool is_high) override;
 
   private:

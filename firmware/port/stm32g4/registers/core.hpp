@@ -1,5 +1,5 @@
-// What belongs to the Cortex-M4 itself: interrupt controller, system control, FPU. ARMv7-M architecture, as
-// in ST's SVD file.
+// Registers of the Cortex-M4: interrupt controller, system control, FPU. ARMv7-M architecture, as in ST's SVD
+// file.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct NvicMap {
         {"IPR#", 0x300, 26},
     });
     static constexpr auto kFields = std::to_array<FieldEntry>({
-        {"IPR#.IPR_N#", 0, 8, 4},  // one byte an interrupt
+        {"IPR#.IPR_N#", 0, 8, 4},  // one byte per interrupt
     });
 };
 inline constexpr Peripheral<NvicMap> nvic{"NVIC"};

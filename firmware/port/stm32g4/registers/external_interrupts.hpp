@@ -1,5 +1,5 @@
-// Interrupts from pins: which port each line listens to (SYSCFG), and what happens on an edge (EXTI). Offsets
-// and bits: RM0440, as in ST's SVD file, which gives the port's number a bit more than there is.
+// Interrupts from pins: port selection (SYSCFG) and edge detection (EXTI). Offsets and bits: RM0440, as in
+// ST's SVD file. The SVD file makes the port number one bit wider than the chip does.
 #pragma once
 
 #include <array>

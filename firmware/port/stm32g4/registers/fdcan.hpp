@@ -33,7 +33,7 @@ struct FdcanMap {
 };
 inline constexpr Peripheral<FdcanMap> fdcan1{"FDCAN1"};
 
-/// The SVD file gives this address to a template called FDCAN; it is the message RAM of all three
+/// The SVD file lists this address as a template called FDCAN; it is the message RAM of all three
 /// controllers.
 inline constexpr Address kMessageRamBase = 0x4000'A400;
 

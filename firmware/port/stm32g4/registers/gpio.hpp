@@ -1,4 +1,4 @@
-// The ports of pins. Offsets and bits: RM0440, as in ST's SVD file.
+// The GPIO ports. Offsets and bits: RM0440, as in ST's SVD file.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The interrupts in use. RM0440, vector table; as in ST's SVD file, which calls LPUART1's "LPUART".
+// The interrupts in use. RM0440, vector table; names as in ST's SVD file, which calls LPUART1's "LPUART".
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// The one place where an address becomes a register. On the board these are single loads and stores; a test
-// on the PC links its own and sees each access (tests/support/stm32g4).
+// The only place where an address becomes a register access. On the board these are single loads and stores;
+// tests on the PC link their own versions and observe each access (tests/support/stm32g4).
 #pragma once
 
 #include <cstdint>

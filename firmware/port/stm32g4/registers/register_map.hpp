@@ -1,10 +1,10 @@
-// How registers are named here. Each peripheral's map is a table of register offsets and bit fields under
-// ST's names; code names an entry by its text, looked up while compiling:
+// Access to registers by name. Each peripheral has a table of register offsets and bit fields under ST's
+// names. Code uses an entry by its text, which is looked up at compile time:
 //
 //     rcc.set("CR.HSEON", 1);
 //
-// So a misspelt name does not compile, no string reaches the image, and whatever code can name is in a table:
-// a test on the PC compares every entry with ST's SVD file.
+// A misspelt name does not compile, and no string reaches the image. A test on the PC compares every entry
+// with ST's SVD file.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,7 @@ struct Instance {
     Address base = 0;
 };
 
-/// `count` registers of 4 bytes, one after the other, for a name that ends in '#': "ISER#" is ISER0, ISER1,
-/// ...
+/// `count` consecutive registers of 4 bytes, for a name that ends in '#': "ISER#" is ISER0, ISER1, ...
 struct RegisterEntry {
     std::string_view name;
     std::uint16_t offset = 0;
@@ -36,7 +35,7 @@ struct FieldEntry {
     std::uint8_t first = 0;
 };
 
-/// Never defined: calling it while compiling is the error message.
+/// Never defined: a call at compile time is the error message.
 void no_such_name_in_the_register_map();
 
 template <class Map>
@@ -59,12 +58,12 @@ struct Register {
         return Register(static_cast<std::uint16_t>(offset + 4 * n));
     }
 
-    /// For `operator[]` alone; GCC 12 refuses it where it is private.
+    /// For `operator[]` only; GCC 12 rejects it if it is private.
     constexpr explicit Register(std::uint16_t register_offset) : offset(register_offset) {}
 };
 
-/// Some bits of a register. Known while compiling nearly everywhere, so that what is done with them is a
-/// constant or one instruction: always inline, which -Os would not see.
+/// A bit field of a register. Nearly always known at compile time, so that its operations become a constant
+/// or one instruction. They are always inline, since -Os would not inline them.
 template <class Map>
 struct Field {
     Register<Map> in;
@@ -76,7 +75,7 @@ struct Field {
     [[nodiscard, gnu::always_inline]] constexpr std::uint32_t mask() const {
         return (width >= 32 ? 0xFFFF'FFFFU : (1U << width) - 1U) << lsb;
     }
-    /// `value` moved to its place; bits that do not fit are cut off.
+    /// `value` shifted to its place; excess bits are cut off.
     [[nodiscard, gnu::always_inline]] constexpr std::uint32_t operator()(std::uint32_t value) const {
         return (value << lsb) & mask();
     }
@@ -119,7 +118,7 @@ class Peripheral {
         return field.of(read(field.in));
     }
     [[nodiscard, gnu::always_inline]] bool is_set(Field<Map> field) const { return get(field) != 0; }
-    /// Reads, changes and writes: not for registers that an interrupt changes too.
+    /// Read, modify, write: not for registers that an interrupt also changes.
     [[gnu::always_inline]] void set(Field<Map> field, std::uint32_t value) const {
         write(field.in, (read(field.in) & ~field.mask()) | field(value));
     }
