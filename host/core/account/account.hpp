@@ -1,5 +1,5 @@
-// The promise that nothing vanishes: of every kind of input, in = used + sum of rejected, each rejection
-// under exactly one name.
+// Counts every kind of input and what became of it: in = used + sum of rejected. Each rejection has exactly
+// one named reason.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace octoskin {
 
-/// Names one reason for a rejection. A `Reject` enumeration counts from 0 and comes with an overload
-/// `constexpr std::array<const char*, N> names_of(Reject)` in its own namespace, in the enumeration's order.
+/// `Reject` enumerates the reasons for a rejection. It counts from 0. Its namespace has an overload
+/// `constexpr std::array<const char*, N> names_of(Reject)` in the order of the enumeration.
 template <class Reject>
 class Account {
   public:
@@ -23,15 +23,15 @@ class Account {
 
     void take_in(std::uint64_t count = 1) noexcept { in_ += count; }
     void use() noexcept { ++used_; }
-    /// Where what is rejected from now on comes from: a number whose meaning is the caller's, such as a line
-    /// or a time in nanoseconds.
+    /// The place of all rejections from now on. The caller defines the number: a line, or a time in
+    /// nanoseconds, for example.
     void now_at(std::int64_t place) noexcept { place_ = place; }
     void reject(Reject reason) noexcept {
         const auto index = static_cast<std::size_t>(reason);
         assert(index < kReasons);
         if (++rejected_[index] == 1) first_[index] = place_;
     }
-    /// Uses or rejects one, as it turned out. True if it was used.
+    /// Counts one input as used or as rejected with the reason in `outcome`. Returns true if it was used.
     bool settle(const Status<Reject>& outcome) noexcept {
         outcome ? use() : reject(outcome.error());
         return outcome.has_value();
@@ -42,7 +42,7 @@ class Account {
     [[nodiscard]] std::uint64_t rejected(Reject reason) const noexcept {
         return rejected_[static_cast<std::size_t>(reason)];
     }
-    /// Where the first one was rejected for this reason; of use only if there is one.
+    /// The place of the first rejection for this reason. Valid only if there was one.
     [[nodiscard]] std::int64_t first_place(Reject reason) const noexcept {
         return first_[static_cast<std::size_t>(reason)];
     }
@@ -53,7 +53,7 @@ class Account {
         }
         return sum;
     }
-    /// `pending`: inputs taken in whose fate is still open, counted where they wait.
+    /// `pending`: inputs that are counted but not resolved yet.
     [[nodiscard]] bool is_balanced(std::uint64_t pending = 0) const noexcept {
         return in_ == used_ + rejected() + pending;
     }
@@ -66,21 +66,21 @@ class Account {
     std::int64_t place_ = 0;
 };
 
-/// A place that is a time in nanoseconds: "1750000000.123456 s".
+/// Formats a place that is a time in nanoseconds: "1750000000.123456 s".
 [[nodiscard]] std::string seconds_text(std::int64_t ns);
 
-/// One account as rows of text and numbers, for printing and for JSON.
+/// The counters of one kind of input as rows of text and numbers, for printing and for JSON.
 struct AccountTable {
     struct Row {
         std::string name;
         std::uint64_t count = 0;
-        std::string first = {};  ///< where the first of them was, in words; empty: not known
+        std::string first = {};  ///< place of the first one as text; empty: not known
     };
     std::string unit;  ///< what is counted: "frames", "readings"
     std::uint64_t in = 0;
     std::uint64_t used = 0;
     std::uint64_t pending = 0;
-    std::vector<Row> rejected;  ///< every reason, zero counts included, in the enumeration's order
+    std::vector<Row> rejected;  ///< all reasons in the order of the enumeration, also those with a count of 0
     bool is_balanced = false;
 };
 
@@ -100,7 +100,7 @@ template <class Reject>
     return table;
 }
 
-/// The same, with the place of each first rejection, which `place` puts into words.
+/// The same, with the place of the first rejection of each reason. `place` converts a place to text.
 template <class Reject, class Place>
 [[nodiscard]] AccountTable tabulate(std::string_view unit, const Account<Reject>& account,
                                     std::uint64_t pending, const Place& place) {
@@ -112,7 +112,7 @@ template <class Reject, class Place>
     return table;
 }
 
-/// Lines of text, one per non-zero reason, the sum checked:
+/// One line for the total, which is checked, and one for each reason with a count above 0:
 ///
 ///     readings               1020 in = 980 used + 40 rejected
 ///       status_fault           30

@@ -15,7 +15,7 @@ Cause cause_of(const std::string& unit, const AccountTable::Row& row) {
     return meaning == nullptr ? Cause::mendable : meaning->cause;
 }
 
-/// The rows of one cause: how many they rejected, and the most frequent.
+/// The rows of one cause: how many inputs they rejected, and the most frequent row.
 struct Share {
     std::uint64_t rejected = 0;
     const AccountTable::Row* most = nullptr;

@@ -1,4 +1,4 @@
-// One accepted range, placed: the value that the integrator takes.
+// One accepted range with its place in the map: the input of the integrator.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace octoskin {
 
-/// Which zone of which sensor of which node.
+/// Identifies a zone of a sensor of a node.
 struct BeamSource {
     std::uint8_t node_id = 0;
     std::uint8_t sensor = 0;
@@ -25,17 +25,17 @@ struct Beam {
     HostTime captured;
     Eigen::Vector3d p_map_sensor = Eigen::Vector3d::Zero();  ///< origin, map frame, metres
     Eigen::Vector3d direction_map =
-        Eigen::Vector3d::UnitZ();  ///< unit vector along the sensor's z axis, map frame
+        Eigen::Vector3d::UnitZ();  ///< unit vector along the zone's axis, map frame
     /// Measured range along `direction_map` in metres; empty for a beam without return.
     std::optional<double> range_m;
     double sigma_m = 0.0;
-    double clear_limit_m = 0.0;  ///< without return: space may be cleared up to here; 0 = not at all
-    BeamOptics optics = {};      ///< what it sees about `direction_map`
-    /// How the sensor is turned: the same for all of its zones.
+    double clear_limit_m = 0.0;  ///< without return: space is cleared up to here at most; 0 = not at all
+    BeamOptics optics = {};      ///< the cone about `direction_map`
+    /// The sensor's orientation: the same for all of its zones.
     Eigen::Matrix3d R_map_sensor = Eigen::Matrix3d::Identity();
 };
 
-/// From when a beam was measured; below 0 before that.
+/// Seconds from the capture of the beam to `now`; negative if `now` is earlier.
 [[nodiscard]] constexpr double seconds_since(const Beam& beam, HostTime now) noexcept {
     constexpr double kSecond_ns = 1e9;
     return static_cast<double>(now.ns - beam.captured.ns) / kSecond_ns;

@@ -16,8 +16,7 @@ namespace {
 constexpr std::size_t kRaysMax = 19;
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-/// The direction of a zone and, of a cone, 18 rays about it: 6 half as far from it as its edge, 12 just
-/// within.
+/// The direction of a zone. A cone has 18 more rays: 6 at half of its half angle and 12 just within its edge.
 std::vector<Eigen::Vector3d> rays_of(const HostZone& zone) {
     std::vector<Eigen::Vector3d> rays = {zone.direction_sensor};
     if (!zone.optics.is_cone() || !zone.direction_sensor.allFinite()) return rays;

@@ -1,5 +1,5 @@
-// Puts an accepted range where its sensor was at that instant, and refuses those that end on the robot
-// itself.
+// Places an accepted range at the pose of its sensor at the capture time. Rejects ranges that end on the
+// robot itself.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,45 +18,48 @@ namespace octoskin {
 
 struct BeamRules {
     bool removes_robot = true;
-    /// A beam without target clears space up to here at most.
+    /// A beam without target clears space up to this distance at most.
     double no_return_clear_m = 0.0;
-    /// Whether a sensor's cone counts: then the robot is looked for in all of it, else on its axis, and beams
-    /// have no optics.
+    /// True: the self-hit test covers the sensor's whole cone. False: it covers the axis only, and beams have
+    /// no optics.
     bool sees_cones = false;
 };
 
 enum class BeamFault : std::uint8_t {
-    self_hit,    ///< longer than the way to the robot's own body, less the rig's margin
+    self_hit,    ///< beyond the predicted self-hit less the rig's margin; without return: nothing to clear
+                 ///< before it
     not_finite,  ///< the pose holds a NaN or an infinity
 };
 
 class BeamBuilder {
   public:
-    /// Refuses, by name, a link of the rig that the robot does not have.
+    /// Fails with the link's name if the robot does not have a link of the rig.
     [[nodiscard]] static Result<BeamBuilder, RobotModelFault> build(const HostRig& rig,
                                                                     const RobotModel& robot,
                                                                     const BeamRules& rules);
 
     /// Whether the rig has this zone of this sensor.
     [[nodiscard]] bool has(const BeamSource& source) const { return optics_of(source) != nullptr; }
-    /// What its beams have; null where the rig has no such zone.
+    /// The optics of this zone's beams; null if the rig has no such zone.
     [[nodiscard]] const BeamOptics* optics_of(const BeamSource& source) const;
 
-    /// `robot`: at the capture time. The source must be one of the rig's (asserted). About 50 ns per capsule.
+    /// `robot`: the pose at the capture time. The rig must have the source (asserted). About 50 ns per
+    /// capsule.
     [[nodiscard]] Result<Beam, BeamFault> place(const RangeMeasurement& measurement,
                                                 const RobotPose& robot) const;
 
-    /// Where the sensor of such a reading is, map frame. The source must be one of the rig's (asserted).
+    /// Pose of the source's sensor in the map frame. The rig must have the source (asserted).
     [[nodiscard]] Eigen::Isometry3d T_map_sensor(const BeamSource& source, const RobotPose& robot) const;
-    /// How that moves with each of the robot's joints, map frame. `robot_model`: the one it was built with.
+    /// How the sensor moves with each joint, map frame. `robot_model`: the model that the builder was built
+    /// with.
     [[nodiscard]] JointTwists twists_map(const BeamSource& source, const RobotPose& robot,
                                          const RobotModel& robot_model) const;
 
   private:
     struct Zone {
         HostZone zone;
-        /// What may meet the robot, sensor frame: the zone's direction first, then rays about it if it sees a
-        /// cone.
+        /// The rays of the self-hit test, sensor frame: first the zone's direction, then those of its cone,
+        /// if it has one.
         std::vector<Eigen::Vector3d> rays;
     };
     struct Sensor {
@@ -65,7 +68,7 @@ class BeamBuilder {
         std::vector<Zone> zones;
     };
     BeamBuilder() = default;
-    /// How far the way is free of the robot.
+    /// Range in metres at which the zone meets the robot's own body; empty if it does not.
     [[nodiscard]] std::optional<double> self_hit(const Zone& zone, const Eigen::Isometry3d& T_base_sensor,
                                                  const RobotPose& robot) const;
 

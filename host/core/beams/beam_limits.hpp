@@ -1,5 +1,5 @@
-// What a rig's sensor can have measured, whatever the rig: for files of others, whose beams would else be as
-// large as the octree.
+// Limits of what the sensor of any rig can measure. They are checked for data from foreign files; without
+// them a beam could be as large as the octree.
 #pragma once
 
 #include <cmath>
@@ -10,16 +10,16 @@
 namespace octoskin {
 
 inline constexpr double kRangeMax_m = 8.0;         ///< the rig file's largest range_limits.max_m
-inline constexpr double kRangeSigmaMax_m = 1.0;    ///< and its largest range_limits.sigma_max_m
+inline constexpr double kRangeSigmaMax_m = 1.0;    ///< the rig file's largest range_limits.sigma_max_m
 inline constexpr double kClearLimitMax_m = 100.0;  ///< the mapping's largest no_return_clear_m
 inline constexpr double kConeHalfAngleMax_rad = std::numbers::pi / 4.0;  ///< the rig file's largest
 
-/// A range and its sigma; a NaN fails it.
+/// Checks a range and its sigma. False for a NaN.
 [[nodiscard]] inline bool can_be_a_range(double range_m, double sigma_m) noexcept {
     return range_m >= 0.0 && range_m <= kRangeMax_m && sigma_m >= 0.0 && sigma_m <= kRangeSigmaMax_m;
 }
 
-/// Whether the figures of a beam, whose place and direction are valid, are such. O(1).
+/// Whether the values of a beam are within the limits. Its position and direction must be valid. O(1).
 [[nodiscard]] inline bool is_within_limits(const Beam& beam) noexcept {
     constexpr double kNotTurned = 1e-6;
     const bool is_range = !beam.range_m || can_be_a_range(*beam.range_m, beam.sigma_m);

@@ -1,4 +1,4 @@
-// One accepted reading, in host time, not yet placed.
+// One accepted reading in host time. It has no place in the map yet.
 #pragma once
 
 #include <optional>

@@ -8,7 +8,7 @@
 namespace octoskin {
 namespace {
 
-/// How long the whole dump is, once its header is there.
+/// Length of the whole dump in bytes; empty until its header has arrived.
 std::optional<std::size_t> size_of(const Dump& dump) {
     const auto header = wire::decode_dump_header(dump.bytes);
     if (!header) {
@@ -53,7 +53,7 @@ std::optional<Dump> DumpAssembler::take(wire::NodeId node, const wire::BlackBox&
     if (size && dump.bytes.size() >= *size) {
         dump.bytes.resize(*size);
         dump.is_complete = true;
-        return close(node);  // a dump given up just now was longer than one piece, and so is this one
+        return close(node);  // an abandoned dump was longer than one piece, and so is this one
     }
     return ended;
 }

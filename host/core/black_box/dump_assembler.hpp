@@ -1,4 +1,4 @@
-// Puts the pieces of BLACK_BOX dumps together, of any number of nodes and buses at once.
+// Assembles the pieces of BLACK_BOX dumps of any number of nodes and buses at a time.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,25 @@
 
 namespace octoskin {
 
-/// The bytes of one dump as far as they came.
+/// The bytes of one dump that have arrived.
 struct Dump {
     wire::NodeId node = 0;
     std::uint8_t bus = 0;
-    std::uint8_t number = 0;  ///< the node's count of its dumps, modulo 4
+    std::uint8_t number = 0;  ///< the node's dump counter, modulo 4
     std::vector<std::uint8_t> bytes;
-    bool is_complete = false;  ///< false: what follows `bytes` never came
+    bool is_complete = false;  ///< false: the rest after `bytes` is missing
 
     [[nodiscard]] std::size_t pieces_came() const;
-    /// Of the whole dump; empty before its length came.
+    /// Number of pieces of the whole dump; empty until its length has arrived.
     [[nodiscard]] std::optional<std::size_t> pieces() const;
 };
 
 class DumpAssembler {
   public:
-    /// The dump that this piece ends, or that it shows to have been given up: by a gap, or by the beginning
-    /// of another one. Pieces before the first of a dump are ignored.
+    /// Returns the dump that this piece completes. Also returns an incomplete dump that this piece ends, by a
+    /// gap or as the first piece of another dump. Pieces before the first piece of a dump are ignored.
     [[nodiscard]] std::optional<Dump> take(wire::NodeId node, const wire::BlackBox& piece);
-    /// What is still open, at the end of a log.
+    /// The dumps that are incomplete at the end of a log.
     [[nodiscard]] std::vector<Dump> finish();
 
   private:

@@ -14,7 +14,7 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kIndexBytes = 2;
 
-/// Of a dump that is not complete.
+/// States what is missing of an incomplete dump.
 std::string rest_of(const Dump& dump) {
     const auto pieces = dump.pieces();
     return fmt::format("the rest never came: {} of {} pieces did, of 20 a second; keep candump running",
@@ -29,7 +29,7 @@ std::string hex(Bytes bytes) {
     return text;
 }
 
-/// The language knows writes of an index and data, and reads at an index: all that our driver does.
+/// The script language has writes of an index with data, and reads at an index. Our driver does nothing else.
 std::string line_of(const wire::RecordedTransfer& transfer) {
     const wire::TransferHeader& header = transfer.header;
     const bool is_read = header.read_asked > 0;

@@ -1,4 +1,4 @@
-// The transfers of a dump in the language of our I2C test scripts (tests/support/i2c/i2c_trace.hpp).
+// Prints the transfers of a dump in the language of the I2C test scripts (tests/support/i2c/i2c_trace.hpp).
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace octoskin {
 
-/// One line a transfer, as far as the dump can be read; what it is, and what is wrong with it, as comments
-/// ('#'). Times are the node's clock, and the time since the transfer before. Any bytes are safe.
+/// One line per transfer, as far as the dump can be read. Comments ('#') state what the dump is and which
+/// part is missing or damaged. Times are those of the node's clock, each with the time since the transfer
+/// before it. Any input bytes are safe.
 [[nodiscard]] std::string transfer_script(const Dump& dump);
 
 }  // namespace octoskin

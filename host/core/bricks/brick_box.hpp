@@ -1,4 +1,4 @@
-// Bricks by where they are: numbers along each axis, and boxes of them.
+// Brick coordinates along each axis, and boxes of bricks.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace octoskin {
 enum class Axis : std::uint8_t { x, y, z };
 inline constexpr std::size_t kAxisCount = 3;
 
-/// A brick: its voxels' keys along x, y and z, divided by kBrickEdge.
+/// Coordinates of a brick: its voxels' keys along x, y and z, divided by kBrickEdge.
 struct BrickPlace {
     static constexpr int kPerAxis = kVoxelsPerAxis / kBrickEdge;
 
@@ -37,7 +37,7 @@ struct BrickPlace {
     }
 };
 
-/// Bricks from the lowest to the highest along each axis, both inside.
+/// The bricks from `lowest` to `highest` along each axis, both included.
 struct BrickBox {
     BrickPlace lowest;
     BrickPlace highest;
@@ -51,7 +51,7 @@ struct BrickBox {
             is_inside &= place.at[axis] >= lowest.at[axis] && place.at[axis] <= highest.at[axis];
         return is_inside;
     }
-    /// So many bricks more on both sides, as far as the octree goes.
+    /// The box with `bricks` more bricks on both sides of an axis, limited by the octree.
     [[nodiscard]] constexpr BrickBox wider(Axis axis, int bricks) const noexcept {
         BrickBox box = *this;
         const auto along = static_cast<std::size_t>(axis);
@@ -63,7 +63,7 @@ struct BrickBox {
         return static_cast<std::size_t>(highest.at[axis] - lowest.at[axis] + 1);
     }
     [[nodiscard]] constexpr std::size_t bricks() const noexcept { return edge(0) * edge(1) * edge(2); }
-    /// Of a brick of the box, from 0 on: x first, then y.
+    /// Linear index of a brick in the box, starting with 0; x varies fastest, then y.
     [[nodiscard]] constexpr std::size_t index(const BrickPlace& place) const noexcept {
         assert(holds(place));
         const auto from = [&](std::size_t axis) {

@@ -1,4 +1,4 @@
-// Voxels one after the other, as a ray passes them: in runs of one brick.
+// Splits the voxels of a ray, in the order of the ray, into runs that lie in one brick.
 #pragma once
 
 #include <array>
@@ -11,21 +11,21 @@
 
 namespace octoskin {
 
-/// Only what was found is set: of so many updates, and of so many runs.
+/// Only the first `updates` and `runs` entries are set.
 struct BrickRuns {
     static constexpr std::size_t kUpdatesMax = 256;
-    /// What is found is written a vector at a time.
+    /// Results are written one vector at a time.
     static constexpr std::size_t kRoom = kUpdatesMax + 16;
 
     std::size_t updates = 0;
     std::size_t runs = 0;
-    std::array<std::uint32_t, kRoom> cell_of;   ///< of each update: its voxel's place in the brick
-    std::array<std::uint32_t, kRoom> first_of;  ///< of each run: which update it begins with
+    std::array<std::uint32_t, kRoom> cell_of;   ///< index of each update's voxel in its brick
+    std::array<std::uint32_t, kRoom> first_of;  ///< index of the first update of each run
 };
 
-/// Finds the runs of the updates up to the first whose term is 0 or not finite, and of kUpdatesMax at most.
-/// Runs are short and no two of a ray are alike: where one ends no processor foresees, so that here no branch
-/// asks. The same on every processor. About 2 ns an update.
+/// Finds the runs of the updates, up to the first update whose term is 0 or not finite, and kUpdatesMax at
+/// most. Runs are short and differ from each other, so branch prediction cannot foresee their ends; the code
+/// has no branch for it. The result is the same on every processor. About 2 ns per update.
 void find_runs(std::span<const VoxelUpdate> updates, BrickRuns& found) noexcept;
 
 }  // namespace octoskin

@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sixteen at most: how many bytes a mask takes is then known for every instruction set.
+// Sixteen lanes at most: the number of bytes of a mask is then known for every instruction set.
 using Tag = hn::CappedTag<float, 16>;
 
 template <class Mask>

@@ -1,4 +1,4 @@
-// Sets of a brick's voxels: their members, and sets by what voxels hold.
+// Operations on sets of a brick's voxels, and sets of voxels by value.
 #pragma once
 
 #include <bit>
@@ -17,7 +17,7 @@ inline void put_in(BrickMask& mask, std::size_t cell) noexcept {
     mask[cell / 64] |= std::uint64_t{1} << (cell % 64);
 }
 
-/// Calls visit(cell) for each that is set, in ascending order.
+/// Calls visit(cell) for each voxel of the set, in ascending order.
 template <class Visit>
 void for_each_cell(const BrickMask& mask, const Visit& visit) {
     for (std::size_t word = 0; word < mask.size(); ++word)
@@ -37,13 +37,14 @@ void for_each_cell(const BrickMask& mask, const Visit& visit) {
     return true;
 }
 
-/// Of 64 voxels of a brick, a word of a BrickMask: bit i is voxel i.
+/// Sets of 64 voxels of a brick, each as a word of a BrickMask: bit i is voxel i.
 struct WordSets {
     std::uint64_t known = 0;
-    std::uint64_t at_least = 0;  ///< known, and of the value asked for or more
+    std::uint64_t at_least = 0;  ///< known, and with at least the given value
 };
 
-/// Of the brick's voxels from 64 `word` on; `word` below 8. The same on every processor. About 10 ns.
+/// The sets of the 64 voxels from 64 * `word` on; `word` is below 8. The result is the same on every
+/// processor. About 10 ns.
 [[nodiscard]] WordSets sets_of(const BrickValues& values, std::size_t word, float at_least) noexcept;
 
 }  // namespace octoskin

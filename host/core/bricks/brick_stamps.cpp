@@ -14,12 +14,12 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Eight at most: what a mask in memory has to be read by, a byte, is then known for every instruction set but
-// those with vectors of less than 128 bits, for which a byte holds more than one vector.
+// Eight lanes at most: a mask in memory is then one byte for every instruction set, except for those with
+// vectors of less than 128 bits, where a byte contains more than one vector.
 using StampTag = hn::CappedTag<std::uint16_t, 8>;
 constexpr std::size_t kWordVoxels = 64;
 
-/// Calls use(place of the first voxel, which of the vector's lanes are meant) until it says false.
+/// Calls use(index of the first voxel, mask of the lanes in the set) for each vector until it returns false.
 template <class Use>
 void for_each_vector(const std::uint64_t* words, const Use& use) {
     const StampTag s;

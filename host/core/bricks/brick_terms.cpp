@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sixteen at most: what a mask in memory has to be read by is then known for every instruction set.
+// Sixteen lanes at most: the size of a mask in memory is then known for every instruction set.
 using Tag = hn::CappedTag<float, 16>;
 
 std::size_t add_to_voxels(float* values, const std::uint64_t* words, const ClampedTerm& term) {
@@ -45,7 +45,7 @@ std::size_t add_to_voxels(float* values, const std::uint64_t* words, const Clamp
     return unknown;
 }
 
-/// One by one, as a voxel may be among them twice.
+/// One voxel at a time, because a voxel may occur twice.
 std::size_t add_to_each(float* const* voxels, const CellTerm* cells, std::size_t count,
                         const ClampedTerm& clamps) {
     const hn::CappedTag<float, 1> f;

@@ -13,11 +13,11 @@ namespace {
 
 static_assert(sizeof(void*) == 8, "a place holds a pointer or a marked value");
 
-/// Bits of a Morton code that choose a place within one node.
+/// Bits of a Morton code that select a place within one node.
 constexpr unsigned kNodeBits = 6;
 constexpr std::size_t kPlaces = std::size_t{1} << kNodeBits;
 constexpr unsigned kBrickBits = 3 * kBrickHeight;
-/// Levels of nodes, the lowest is 0: 48 bits of code, 9 of them within a brick, and the root's are but three.
+/// Levels of nodes; the lowest is 0. A code has 48 bits: 9 within a brick, and only three in the root.
 constexpr unsigned kLevels = 7;
 
 constexpr std::size_t place_at(MortonCode brick, unsigned level) {
@@ -61,12 +61,12 @@ std::uint64_t place_of_pointer(Below* pointer) {
 
 }  // namespace
 
-// Whoever counts up holds one already, so that only counting down must be seen in order.
+// Only the owner of a reference increments the counter, so only decrements need memory ordering.
 template <class Value>
 struct BrickTreeOf<Value>::Node {
     std::atomic<std::uint32_t> owners = 1;
-    /// A bit for each place: clear, what is there has no owner but this node. So that who owns the node need
-    /// not ask what lies below, which is in no cache.
+    /// One bit per place. Clear: this node alone owns the child. The owner of the node then need not read the
+    /// child, which is not in the cache.
     std::atomic<std::uint64_t> maybe_shared = 0;
     std::array<Place, kPlaces> places{};
 };
@@ -100,7 +100,7 @@ BrickTreeOf<Value>::~BrickTreeOf() {
     release(place_of_pointer(root_), kLevels);
 }
 
-/// `level`: of the node in which the place is.
+/// `level`: level of the node that contains the place.
 template <class Value>
 void BrickTreeOf<Value>::share(Place place, unsigned level) noexcept {
     if (place == 0) return;
@@ -111,7 +111,7 @@ void BrickTreeOf<Value>::share(Place place, unsigned level) noexcept {
     }
 }
 
-/// Recurses as deep as the tree.
+/// Recursion depth: the levels of the tree.
 template <class Value>
 void BrickTreeOf<Value>::release(Place place, unsigned level) noexcept {
     if (place == 0) return;
@@ -137,7 +137,7 @@ BrickViewOf<Value> BrickTreeOf<Value>::find(MortonCode brick) const noexcept {
     return brick_in(node == nullptr ? 0 : node->places[place_at(brick, 0)]);
 }
 
-/// `place`: 0, or of a lowest node.
+/// `place`: 0, or a place of a node of the lowest level.
 template <class Value>
 BrickViewOf<Value> BrickTreeOf<Value>::brick_in(Place place) noexcept {
     if (place == 0) return {};
@@ -147,7 +147,7 @@ BrickViewOf<Value> BrickTreeOf<Value>::brick_in(Place place) noexcept {
 
 template <class Value>
 typename BrickTreeOf<Value>::Space BrickTreeOf<Value>::space() const noexcept {
-    // What has no parts is only space: a tree of nothing has no root that is twice as wide.
+    // An empty tree has no root that is twice as wide as the octree: it is the octree's cube without parts.
     const unsigned height = kBrickHeight + 2 * kLevels - (root_ == nullptr ? 1U : 0U);
     return {place_of_pointer(root_), {.lowest = {}, .height = height}};
 }
@@ -216,12 +216,12 @@ BrickValuesOf<Value>* BrickTreeOf<Value>::OwnBricks::find(MortonCode brick) noex
 
 template <class Value>
 typename BrickTreeOf<Value>::Place& BrickTreeOf<Value>::place_of(MortonCode brick) {
-    // All that is missing is made before any of it is linked.
+    // All missing nodes are allocated before any of them is linked, so that a failure changes nothing.
     const std::size_t missing = nodes_missing(brick);
     std::array<std::unique_ptr<Node>, kLevels> made;
     for (std::size_t i = 0; i < missing; ++i) made[i] = std::make_unique<Node>();
 
-    Place* place = nullptr;  // where `node` stands
+    Place* place = nullptr;  // the place that refers to `node`
     Node* node = root_;
     for (unsigned level = kLevels; level-- > 0;) {
         if (node == nullptr) {
@@ -232,7 +232,7 @@ typename BrickTreeOf<Value>::Place& BrickTreeOf<Value>::place_of(MortonCode bric
             own->places = node->places;
             for (const Place lower : own->places) share(lower, level);
             own->maybe_shared = ~std::uint64_t{0};
-            node->maybe_shared = ~std::uint64_t{0};  // before it is released: its next owner must see it
+            node->maybe_shared = ~std::uint64_t{0};  // before the release: the next owner must see it
             release(place_of_pointer(node), level + 1);
             node = own.release();
         }
@@ -267,7 +267,7 @@ void BrickTreeOf<Value>::forget(MortonCode brick) {
     --bricks_;
     release(place, 0);
     place = 0;
-    // No node stays that has nothing below it.
+    // Removes nodes that have become empty.
     std::array<Node*, kLevels> path{};
     Node* node = root_;
     for (unsigned level = kLevels; level-- > 0;) {
@@ -290,7 +290,7 @@ void BrickTreeOf<Value>::forget(MortonCode brick) {
 template <class Value>
 BrickValuesOf<Value>& BrickTreeOf<Value>::open(MortonCode brick) {
     if (Values* const values = own(brick)) return *values;
-    // Made first: a node that had a place for nothing would remain.
+    // Allocated first: otherwise a failure would leave an empty node.
     const View before = find(brick);
     std::unique_ptr<Dense> made;
     if (before.values == nullptr) {
@@ -331,7 +331,7 @@ void BrickTreeOf<Value>::for_each(const std::function<void(MortonCode, const Vie
 template <class Value>
 void BrickTreeOf<Value>::for_each_difference(const BrickTreeOf& before,
                                              const std::function<void(MortonCode)>& visit) const {
-    // A place of nothing stands for a node of nothings.
+    // An empty place is equivalent to a node with empty places.
     const auto compare = [&](const auto& self, Place now, Place then, MortonCode code,
                              unsigned level) -> void {
         if (now == then) return;

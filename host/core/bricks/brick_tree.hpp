@@ -1,5 +1,5 @@
-// An octree with dense leaves that are shared until they are written: a copy costs nothing, and what is
-// changed after it costs what is changed.
+// An octree with dense leaves that copies share until they are written. A copy is O(1); later changes cost
+// only the changed parts.
 #pragma once
 
 #include <array>
@@ -13,23 +13,23 @@
 
 namespace octoskin {
 
-/// Bricks by the Morton code of their first voxel. Two levels of an octree are one node, with 64 places; a
-/// brick whose voxels are alike takes its place and nothing more.
+/// Maps the Morton code of a brick's first voxel to the brick. One node covers two levels of an octree and
+/// has 64 places. A brick whose voxels all have the same value takes no memory beyond its place.
 ///
-/// Copies share all that they have in common, and each may be used by a thread of its own. One of them is not
-/// safe for use by two threads at once, unless all of them only read. Of the values in UnknownValue.
+/// Copies share all common parts, and each copy may be used by its own thread. Two threads must not use the
+/// same tree, unless both only read. `Value`: a type of UnknownValue.
 template <class Value>
 class BrickTreeOf {
     using View = BrickViewOf<Value>;
     using Values = BrickValuesOf<Value>;
     struct Node;
     struct Dense;
-    /// Of a node: 0, or the node below. Of a lowest node: 0, a dense brick, or, marked by the lowest bit, in
-    /// the upper half the value of all voxels.
+    /// In a node above the lowest level: 0, or the node below. In a lowest node: 0, a dense brick, or a value
+    /// of all voxels in the upper half, marked by the lowest bit.
     using Place = std::uint64_t;
 
   public:
-    /// What a node and a dense brick take of the heap.
+    /// Heap memory of a node and of a dense brick.
     static constexpr std::size_t kNodeBytes = 544;
     static constexpr std::size_t kBrickBytes = kBrickVoxels * sizeof(Value) + 16;
 
@@ -41,15 +41,15 @@ class BrickTreeOf {
     ~BrickTreeOf();
 
     [[nodiscard]] View find(MortonCode brick) const noexcept;
-    /// Nodes that must be made before the brick has a place.
+    /// Number of nodes that must be allocated before the brick has a place.
     [[nodiscard]] std::size_t nodes_missing(MortonCode brick) const noexcept;
 
-    /// The brick's values, if they have a place each that is this tree's alone; null if `open` would have
-    /// something to do first. They may be written until the tree is copied or the brick given one value;
-    /// opening another brick moves none.
+    /// The brick's values if it is dense and belongs to this tree alone; null if `open` must allocate or copy
+    /// first. The values may be written until the tree is copied or the brick is given one value. Opening
+    /// another brick does not move them.
     [[nodiscard]] Values* own(MortonCode brick) noexcept;
-    /// `own` of bricks that lie together: most cost one step down the tree instead of seven. To be used until
-    /// the tree is copied or given a brick.
+    /// `own` for neighbouring bricks: most calls take one step down the tree instead of seven. Valid until
+    /// the tree is copied or receives a brick.
     class OwnBricks {
       public:
         explicit OwnBricks(BrickTreeOf& tree) noexcept : tree_(&tree) {}
@@ -57,31 +57,31 @@ class BrickTreeOf {
 
       private:
         BrickTreeOf* tree_;
-        Node* lowest_ = nullptr;  ///< the node below which `prefix_` is, if it is the tree's alone
+        Node* lowest_ = nullptr;  ///< the lowest node of `prefix_`, if this tree alone owns it
         MortonCode prefix_ = 0;
     };
-    /// Gives all voxels of a brick one value. Throws std::bad_alloc, and then nothing is changed.
+    /// Assigns one value to all voxels of a brick. Throws std::bad_alloc; the tree is then unchanged.
     void set_all(MortonCode brick, Value value);
-    /// Makes all voxels of a brick unknown, and takes nothing for it from then on. Throws std::bad_alloc if a
-    /// copy holds it, too, and there is no memory for others; then nothing is changed.
+    /// Makes all voxels of a brick unknown and frees its memory. Throws std::bad_alloc if a copy also owns
+    /// the brick and there is no memory for new nodes; the tree is then unchanged.
     void forget(MortonCode brick);
-    /// The brick's values, to be written until this tree is used again; those that were alike are so still.
-    /// Throws std::bad_alloc, and then nothing is changed.
+    /// The brick as a dense brick, to be written until this tree is used again. A brick with one value keeps
+    /// it in all voxels. Throws std::bad_alloc; the tree is then unchanged.
     [[nodiscard]] Values& open(MortonCode brick);
 
-    /// What the tree holds in a cube of space, to be followed from the whole octree down to a brick, for as
-    /// long as the tree is unchanged.
+    /// The content of a cube of space. It can be followed from the whole octree down to a brick, as long as
+    /// the tree is unchanged.
     class Space {
       public:
-        /// If the root's has parts, it is twice as wide as the octree: only the first eight of them are
-        /// space.
+        /// If the root's space has parts, its cube is twice as wide as the octree: only the first eight parts
+        /// are inside.
         [[nodiscard]] const VoxelCube& cube() const noexcept { return cube_; }
-        /// It is more than a brick, and not all of it unknown.
+        /// True if it is larger than a brick and not completely unknown.
         [[nodiscard]] bool has_parts() const noexcept { return cube_.height > kBrickHeight && place_ != 0; }
-        /// One of its 64 parts, in Morton order. For space that has parts.
+        /// One of its 64 parts, in Morton order. Only for a space with parts.
         [[nodiscard]] Space part(std::size_t index) const noexcept;
-        /// What all bricks of it hold, of which it has more than one only if they are unknown. For space that
-        /// has no parts.
+        /// The content of its bricks. It has several bricks only if all are unknown. Only for a space without
+        /// parts.
         [[nodiscard]] View bricks() const noexcept;
 
       private:
@@ -94,22 +94,22 @@ class BrickTreeOf {
 
     /// Visits each brick that has a known voxel, in Morton order. O(bricks).
     void for_each(const std::function<void(MortonCode brick, const View&)>& visit) const;
-    /// Visits, in Morton order, each brick that is another one here than in `before`, known or not; what they
-    /// share is passed over, so that it costs what was written since one was the other's copy.
+    /// Visits, in Morton order, each brick that differs from `before`, known or not. Shared parts are
+    /// skipped, so the cost is that of the bricks written since one tree was a copy of the other.
     void for_each_difference(const BrickTreeOf& before,
                              const std::function<void(MortonCode brick)>& visit) const;
 
     [[nodiscard]] std::size_t nodes() const noexcept { return nodes_; }
-    /// Those with a value for each voxel.
+    /// Number of bricks with a value for each voxel.
     [[nodiscard]] std::size_t dense_bricks() const noexcept { return dense_; }
-    /// All that have a place.
+    /// Number of bricks with a known voxel.
     [[nodiscard]] std::size_t bricks() const noexcept { return bricks_; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
         return nodes_ * kNodeBytes + dense_ * kBrickBytes;
     }
 
   private:
-    /// A brick's place, in nodes that are this tree's alone. Throws std::bad_alloc: then no node is empty.
+    /// A brick's place in nodes that this tree alone owns. Throws std::bad_alloc; no empty node remains then.
     [[nodiscard]] Place& place_of(MortonCode brick);
     [[nodiscard]] static View brick_in(Place place) noexcept;
     void release(Place place, unsigned level) noexcept;

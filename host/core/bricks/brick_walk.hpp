@@ -1,4 +1,4 @@
-// The bricks of a box, from large cubes to small ones: most of them need never be looked at one by one.
+// Visits the bricks of a box, from large cubes to small ones, so that most bricks need no test of their own.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace octoskin {
 
-/// Which of a cube's voxels are meant.
+/// Which of a cube's voxels are selected.
 enum class CubeVerdict : std::uint8_t { none, some, all };
 
 inline constexpr VoxelCube kWholeOctree{.lowest = {}, .height = 16};
 
-/// Asks verdict_of(VoxelCube) of an octree's cubes that meet the box, large ones first; what is below a cube
-/// is asked only if it says `some`. Calls visit(VoxelCube, bool is_all), in Morton order, for the largest
-/// cubes that are meant whole and for those of `least_height` of which some voxels are. Recurses 13 deep at
-/// most.
+/// Calls verdict_of(VoxelCube) for the octree's cubes that meet the box, large ones first; the children of a
+/// cube are tested only if the result is `some`. Calls visit(VoxelCube, bool is_all), in Morton order, for
+/// the largest cubes that are selected completely, and for those of `least_height` that are selected in part.
+/// Recursion depth: 13 at most.
 template <class VerdictOf, class Visit>
 void walk_cubes(const KeyBox& box, unsigned least_height, const VerdictOf& verdict_of, const Visit& visit,
                 const VoxelCube& cube = kWholeOctree) {
     if (!do_meet(cube, box)) return;
-    // Of a cube that is larger than the box little can be said.
+    // A cube that is larger than the box seldom has a single result.
     const CubeVerdict verdict = cube.height > 9 ? CubeVerdict::some : verdict_of(cube);
     if (verdict == CubeVerdict::none) return;
     if (verdict == CubeVerdict::all || cube.height == least_height)
@@ -34,7 +34,7 @@ void walk_cubes(const KeyBox& box, unsigned least_height, const VerdictOf& verdi
     }
 }
 
-/// The same of bricks: calls visit(MortonCode brick, bool is_all) for each of which not `none` are meant.
+/// The same for bricks: calls visit(MortonCode brick, bool is_all) for each brick with selected voxels.
 template <class VerdictOf, class Visit>
 void walk_bricks(const KeyBox& box, const VerdictOf& verdict_of, const Visit& visit,
                  const VoxelCube& below = kWholeOctree) {

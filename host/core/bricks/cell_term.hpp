@@ -1,4 +1,4 @@
-// A term of its own for one voxel of a brick.
+// A log-odds term for one voxel of a brick.
 #pragma once
 
 #include <bit>
@@ -12,7 +12,7 @@ struct CellTerm {
     friend bool operator==(const CellTerm&, const CellTerm&) = default;
 };
 
-/// Neither 0 nor infinite nor a NaN.
+/// True if the term is neither 0 nor infinite nor NaN.
 [[nodiscard]] inline bool is_plain(float term) noexcept {
     constexpr std::uint32_t kInfinity = 0x7F80'0000U;
     const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(term) & 0x7FFF'FFFFU;

@@ -8,8 +8,8 @@
 namespace octoskin {
 namespace {
 
-/// Asks for a short while, letting other threads go first. To be woken takes 30 to 100 us, as long as many a
-/// round; the next one of an image begins sooner than that.
+/// Polls the condition for up to 200 us and yields to other threads. Waking a sleeping thread takes 30 to 100
+/// us, as long as many a round lasts; the next round of an image begins sooner than that.
 template <class IsSo>
 void expect(const IsSo& is_so) {
     constexpr std::chrono::microseconds kAwake{200};
@@ -35,7 +35,7 @@ Crew::~Crew() {
 void Crew::start() noexcept {
     try {
         while (others_.size() + 1 < size_) others_.emplace_back([this] { run(); });
-    } catch (const std::exception&) {  // of std::thread, or no memory: whoever is there does it all
+    } catch (const std::exception&) {  // no thread or no memory: the pool works with those it has
         size_ = static_cast<unsigned>(others_.size()) + 1;
     }
 }
@@ -68,7 +68,7 @@ void Crew::take_parts() noexcept {
     for (std::size_t index = next_++; index < count_; index = next_++) {
         try {
             (*part_)(index);
-        } catch (...) {  // it must not leave its thread
+        } catch (...) {  // an exception must not leave its thread
             const std::scoped_lock lock(mutex_);
             if (!thrown_) thrown_ = std::current_exception();
             next_ = count_;

@@ -1,4 +1,4 @@
-// Threads that work on the parts of one thing together.
+// Threads that work together on the parts of one task.
 #pragma once
 
 #include <atomic>
@@ -13,11 +13,12 @@
 
 namespace octoskin {
 
-/// Who works is whoever calls `work`, and threads that wait for it in between. They are started by the first
-/// call, so that they block the signals that its thread blocks.
+/// A thread pool. The caller of `work` and the waiting threads of the pool share the parts. The first call
+/// starts the threads, so they block the same signals as the calling thread.
 class Crew {
   public:
-    /// `size`: the caller included, at least 1 (asserted); of 1 everything is done by the caller.
+    /// `size`: number of threads with the caller, at least 1 (asserted). With 1 the caller does all of the
+    /// work.
     explicit Crew(unsigned size);
     ~Crew();
     Crew(const Crew&) = delete;
@@ -25,11 +26,11 @@ class Crew {
 
     [[nodiscard]] unsigned size() const noexcept { return size_; }
 
-    /// Calls part(0) to part(count - 1), each once, in any order and at the same time, and returns when all
-    /// have ended. What one throws is thrown here again, the first of them; then parts that had not begun are
-    /// left out. Not for two threads at once, nor from within a part. Where there are no threads to be had it
-    /// makes do with fewer. Some 50 us beside the work, or 2 if the call before ended less than 0.2 ms ago:
-    /// so long the threads stay awake.
+    /// Calls part(0) to part(count - 1) once each, in any order and in parallel, and returns when all have
+    /// ended. The first exception of a part is rethrown here, and parts that have not begun are skipped. Two
+    /// threads must not call it at the same time, nor may a part call it. If the system starts fewer threads,
+    /// the pool works with those. Overhead: about 50 us, or 2 us if the call before ended less than 0.2 ms
+    /// ago, because the threads stay awake for that time.
     void work(std::size_t count, const std::function<void(std::size_t index)>& part);
 
   private:
@@ -39,13 +40,13 @@ class Crew {
 
     unsigned size_;
     std::vector<std::thread> others_;
-    std::mutex mutex_;  // to write any of what is below, but `next_`
+    std::mutex mutex_;  // guards writes to all members below except `next_`
     std::condition_variable changed_;
     const std::function<void(std::size_t)>* part_ = nullptr;
     std::size_t count_ = 0;
     std::atomic<std::size_t> next_{0};
     std::atomic<std::uint64_t> round_{0};
-    std::atomic<unsigned> busy_{0};  ///< of the others, in this round
+    std::atomic<unsigned> busy_{0};  ///< pool threads that are still working in this round
     std::atomic<bool> is_ending_{false};
     std::exception_ptr thrown_;
 };

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kMmPerM = 1000.0;
 
-/// Downwards: what is further, by however little, is not within. The rounding of 4 * 0.03 does not count.
+/// Rounds down: a value further away, by however little, is outside the gate. The rounding error of 4 * 0.03
+/// is allowed for.
 std::int16_t whole(double units) {
     constexpr double kRounding = 1e-6;
     assert(units >= 0.0);

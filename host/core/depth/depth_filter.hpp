@@ -1,4 +1,4 @@
-// Removes the camera's noise: a gated median window, then a mean of what lies close to the median.
+// Removes the camera's noise: a gated median window, then a mean of the values near the median.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,9 @@
 
 namespace octoskin {
 
-/// Window around each pixel: values within `gate_sigmas` of the centre, their median, then the mean of those
-/// within `mean_sigmas` of it; no pixel if no more than `min_support` remain in that mean.
+/// The window around each pixel takes the values within `gate_sigmas` of the centre, their median, and then
+/// the mean of the values within `mean_sigmas` of the median. The pixel has no value if that mean has no more
+/// than `min_support` values.
 struct DepthFilterConfig {
     bool is_enabled = false;
     std::uint32_t window = 5;  ///< odd, 1 to 7
@@ -19,27 +20,28 @@ struct DepthFilterConfig {
     double gate_sigmas = 4.0;
     double mean_sigmas = 2.5;
     std::uint32_t min_support = 5;
-    /// Neither gate may be wider.
+    /// Upper limit of both gates.
     static constexpr double kGateMax_m = 1e-3 * FilterWindow::kGateMaxMm;
     [[nodiscard]] double gate_m() const noexcept { return gate_sigmas * sigma_m; }
     [[nodiscard]] double mean_gate_m() const noexcept { return mean_sigmas * sigma_m; }
     friend bool operator==(const DepthFilterConfig&, const DepthFilterConfig&) = default;
 };
 
-/// Filters one image after the other; from the second of a size on it takes no memory.
+/// Filters images one after the other. Allocates no memory after the first image of a size.
 class DepthFilter {
   public:
-    /// `is_enabled` is the caller's business. The window is 1, 3, 5 or 7, and no gate too wide (asserted).
+    /// `is_enabled` is left to the caller. The window is 1, 3, 5 or 7, and no gate exceeds the limit
+    /// (asserted).
     explicit DepthFilter(const DepthFilterConfig& config);
 
-    /// In place. Depths are whole millimetres, as cameras tell them: others are rounded, and those of 63 m
-    /// and more are none. The window is cut off at the image's border; a pixel without a value stays without.
-    /// The median of an even number of values is the mean of the middle two. About 1 ms for 512 x 424 with a
-    /// window of 5.
+    /// Filters in place. Depths are whole millimetres, as cameras report them: other values are rounded, and
+    /// 63 m and more count as no value. The window is cut off at the image's border. A pixel without a value
+    /// stays without. The median of an even number of values is the mean of the middle two. About 1 ms for
+    /// 512 x 424 with a window of 5.
     void filter(DepthImage& image);
 
   private:
-    /// Puts a frame of "none" around the image, so that a window needs no border case.
+    /// Surrounds the image with a frame of "no value", so that no window needs a border case.
     void frame(const DepthImage& image, std::size_t stride);
 
     FilterWindow window_;

@@ -1,4 +1,4 @@
-// One frame of the depth camera, as it comes from any source.
+// A frame of a depth camera, independent of its source.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,8 +11,8 @@
 
 namespace octoskin {
 
-/// A ray goes through a pixel's centre: ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1) of a pinhole; that is
-/// what the lens makes of the ray, otherwise (PixelRays).
+/// The ray through a pixel's centre is ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1) for a pinhole camera.
+/// With a lens, this is the distorted image of the ray (PixelRays).
 struct CameraIntrinsics {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
@@ -29,12 +29,12 @@ struct DepthFrame {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<std::uint16_t> depth_mm;
-    /// Of a camera that moved: where its optical frame was. Empty: where the rig says.
+    /// Pose of the optical frame of a moving camera at the capture time. Empty: the pose of the rig.
     std::optional<Eigen::Isometry3d> T_map_camera = std::nullopt;
 };
 
-/// Depth along the optical axis in metres, height x width row-major; NaN = no value. What filters take and
-/// give.
+/// Depth along the optical axis in metres, height x width row-major; NaN = no value. Input and output of
+/// filters.
 struct DepthImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;

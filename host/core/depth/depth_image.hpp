@@ -1,4 +1,4 @@
-// From a frame as it came to the image that filters take: metres, and NaN for what is no measurement.
+// Converts a frame to the image that filters use: metres, and NaN for pixels without a measurement.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace octoskin {
 
-/// Depth along the optical axis that counts as measured, both ends included, metres.
+/// Range of depths along the optical axis that count as measured, both ends included, metres.
 struct DepthRange {
     double min_m = 0.5;
     double max_m = 4.5;

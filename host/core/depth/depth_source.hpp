@@ -1,4 +1,4 @@
-// Where depth frames come from, seen from the core: a recording now, a camera later.
+// The core's interface to a source of depth frames: a recording or a camera.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace octoskin {
 
-/// Why no further frame will come: what, where and what to do, for a person.
+/// Why no further frame follows: fault, place and remedy, as text for the user.
 struct DepthSourceError {
     std::string what;
-    bool is_reader_missing = false;  ///< the program that reads them: nothing is known of the frames
+    bool is_reader_missing = false;  ///< the program that reads them is missing: nothing is known of them
 };
 
 class DepthSource {
   public:
     virtual ~DepthSource() = default;
-    /// The next frame; empty at the regular end, and then for ever. Capture times never decrease.
+    /// The next frame; empty at the regular end and in all later calls. Capture times never decrease.
     [[nodiscard]] virtual Result<std::optional<DepthFrame>, DepthSourceError> next() = 0;
 };
 

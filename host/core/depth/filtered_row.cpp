@@ -20,24 +20,24 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// So many neighbouring pixels are filtered side by side, a lane each.
+/// One lane per pixel: neighbouring pixels are filtered side by side.
 using Shorts = hn::ScalableTag<std::int16_t>;
 using Short = hn::Vec<Shorts>;
 using Mask = hn::Mask<Shorts>;
-/// Half of them at a time.
+/// Half of the lanes at a time.
 using Floats = hn::Repartition<float, Shorts>;
 using Ints = hn::RebindToSigned<Floats>;
 using Halves = hn::Rebind<std::int16_t, Floats>;
 using Lanes = std::array<std::int16_t, hn::MaxLanes(Shorts())>;
 
-/// In place of what is not near: it sorts beyond all that is, and twice it is no 16-bit number too large.
+/// Replaces values outside the gate: it sorts beyond all values inside, and its double fits 16 bits.
 constexpr std::int16_t kFar = 16'383;
 
-/// Differences to the centre of the values near it, row by row, mm; far ones in place of the others.
+/// Differences of the values within the gate to the centre, row by row, mm; kFar or -kFar for the others.
 template <std::size_t kSide>
 struct NearOffsets {
     std::array<Short, kSide * kSide> mm;
-    Mask are_even;  ///< how many they are
+    Mask are_even;  ///< the number of values within the gate is even
 };
 
 HWY_INLINE Mask is_within(Short value, Short limit) {
@@ -46,7 +46,8 @@ HWY_INLINE Mask is_within(Short value, Short limit) {
     return hn::RebindMask(Shorts(), hn::Eq(hn::Min(size, hn::BitCast(u, limit)), size));
 }
 
-/// What is not near becomes +far and -far by turns: then the median is in the middle however many there are.
+/// Values outside the gate become +kFar and -kFar alternately: the median is then in the middle for any
+/// number of values.
 template <std::size_t kSide>
 HWY_INLINE NearOffsets<kSide> near_offsets(const CodedDepth* corner, std::size_t stride, Short centre,
                                            std::int16_t gate_mm) {
@@ -62,7 +63,7 @@ HWY_INLINE NearOffsets<kSide> near_offsets(const CodedDepth* corner, std::size_t
         near.mm[i] = hn::IfThenElse(is_near, offset, far);
         far = hn::IfThenElse(is_near, far, hn::Neg(far));
     }
-    near.are_even = hn::Lt(far, hn::Zero(s));  // of the odd number of values an odd number was replaced
+    near.are_even = hn::Lt(far, hn::Zero(s));  // an odd number was replaced, of an odd total
     return near;
 }
 
@@ -82,7 +83,7 @@ HWY_INLINE void sort_unrolled(std::array<Short, kCount>& values, std::index_sequ
 template <std::size_t kCount>
 HWY_INLINE void sort(std::array<Short, kCount>& values) {
     static constexpr auto kNetwork = sorting_network<kCount>();
-    // In one piece up to a window of 5: what is larger takes compilers minutes, and does not fit registers.
+    // Unrolled up to a window of 5. Larger networks take compilers minutes and do not fit into registers.
     if constexpr (kNetwork.size() <= 138) {
         sort_unrolled(values, std::make_index_sequence<kNetwork.size()>());
     } else {
@@ -90,7 +91,7 @@ HWY_INLINE void sort(std::array<Short, kCount>& values) {
     }
 }
 
-/// In half millimetres from the centre. Sorted completely by its text; the compiler leaves out what the
+/// The median in half millimetres from the centre. The code sorts all values; the compiler removes what the
 /// middle does not depend on.
 template <std::size_t kSide>
 HWY_INLINE Short median_of(NearOffsets<kSide> near) {
@@ -104,9 +105,9 @@ HWY_INLINE Short median_of(NearOffsets<kSide> near) {
     }
 }
 
-/// Of so many pixels, in half millimetres: the median's difference to the centre, and, of what is near the
-/// median, how many those are and each row's sum of differences to it. All are whole numbers: no rounding, no
-/// order.
+/// Sums of one pixel per lane, in half millimetres: the median's difference to the centre; the number of
+/// values near the median; and per row the sum of their differences to the median. All are whole numbers, so
+/// neither rounding nor the order of the additions matters.
 template <std::size_t kSide>
 struct WindowSums {
     HWY_ALIGN Lanes centre;
@@ -138,7 +139,7 @@ HWY_INLINE void sum_near(const NearOffsets<kSide>& near, Short median, std::int1
     hn::Store(count, s, sums.count.data());
 }
 
-/// The means of the pixels from lane `first` on, metres.
+/// The means of the pixels from lane `first` on, metres; NaN for no value.
 template <std::size_t kSide>
 HWY_INLINE hn::Vec<Floats> means_of(const WindowSums<kSide>& sums, std::size_t first,
                                     const FilterWindow& window) {

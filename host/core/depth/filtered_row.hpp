@@ -1,4 +1,4 @@
-// What the depth filter makes of one row of an image.
+// The depth filter for one row of an image.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace octoskin {
 
-/// See DepthFilterConfig. A camera tells whole millimetres: differences of them fit 16 bits, so that twice as
-/// many pixels are filtered side by side as with floats.
+/// See DepthFilterConfig. A camera reports whole millimetres. Their differences fit 16 bits, so twice as many
+/// pixels are filtered side by side as with floats.
 struct FilterWindow {
     static constexpr std::int16_t kGateMaxMm = 2000;
     std::uint32_t side = 0;          ///< pixels: 1, 3, 5 or 7
@@ -17,10 +17,11 @@ struct FilterWindow {
     float min_support = 0.0F;
 };
 
-/// A depth as the windows hold it. None is as low as can be, and further below any other than a gate.
+/// A depth as stored in the windows. "No value" is the lowest number, and further below any depth than a
+/// gate.
 using CodedDepth = std::int16_t;
 inline constexpr CodedDepth kNoDepth = std::numeric_limits<CodedDepth>::min();
-/// That of 0 mm, which no pixel has.
+/// The code of 0 mm, which no pixel has.
 [[nodiscard]] constexpr int zero_depth(const FilterWindow& window) {
     return kNoDepth + window.gate_mm;
 }
@@ -28,8 +29,8 @@ inline constexpr CodedDepth kNoDepth = std::numeric_limits<CodedDepth>::min();
     return std::numeric_limits<CodedDepth>::max() - zero_depth(window);
 }
 
-/// Where the windows of a row's pixels are: the first pixel's begins at `corner`, its next row is `stride`
-/// values further. Beyond the last window `kFilterLanesMax` more values of each of its rows may be read.
+/// The windows of a row's pixels: the window of the first pixel begins at `corner`, and its next row is
+/// `stride` values further. Up to `kFilterLanesMax` values behind the last window of each row may be read.
 struct WindowedRow {
     const CodedDepth* corner = nullptr;
     std::size_t stride = 0;
@@ -38,8 +39,9 @@ struct WindowedRow {
 
 inline constexpr std::size_t kFilterLanesMax = 64;
 
-/// Writes `row.width` depths in metres to `filtered`, NaN for none. Bit for bit the same on every processor:
-/// the best of its instruction sets is chosen at run time. About 2 us for 512 pixels with a window of 5.
+/// Writes `row.width` depths in metres to `filtered`, NaN for no value. The best instruction set is selected
+/// at run time; the result is the same, bit for bit, on every processor. About 2 us for 512 pixels with a
+/// window of 5.
 void filter_row(const FilterWindow& window, const WindowedRow& row, float* filtered);
 
 }  // namespace octoskin

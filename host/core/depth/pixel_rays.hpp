@@ -1,4 +1,4 @@
-// The ray of every pixel, worked out once: where pixels become rays, the lens is taken out.
+// The ray of each pixel, computed once, with the lens distortion removed.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct PixelSpan {
 
 class PixelRays {
   public:
-    /// Every pixel's centre must have a ray (asserted): the reader of the rig has refused what has not. With
-    /// a lens about 50 ms, and 4 MiB for 512 x 424; without one as good as nothing.
+    /// Each pixel's centre must have a ray (asserted); the rig reader rejects a camera without this. With a
+    /// lens about 50 ms and 4 MiB for 512 x 424; without one the cost is negligible.
     explicit PixelRays(const CameraIntrinsics& camera);
 
     [[nodiscard]] const CameraIntrinsics& camera() const noexcept { return camera_; }
@@ -29,14 +29,14 @@ class PixelRays {
         return rays_[std::size_t{v} * camera_.width + u];
     }
 
-    /// Every column that has a ray whose x is from `low` to `high`, and perhaps a few more; empty if none
-    /// has.
+    /// All columns that have a ray with x from `low` to `high`, and possibly a few more; empty if there is
+    /// none.
     [[nodiscard]] PixelSpan columns(double low, double high) const noexcept;
-    /// The same of the rows and y.
+    /// The same for rows and y.
     [[nodiscard]] PixelSpan rows(double low, double high) const noexcept;
 
   private:
-    /// What the rays of a column have of x, or those of a row of y. Of a pinhole both are the same.
+    /// The range of x of a column's rays, or of y of a row's rays. For a pinhole camera `low` equals `high`.
     struct Extent {
         double low = 0.0;
         double high = 0.0;
@@ -48,7 +48,8 @@ class PixelRays {
     CameraIntrinsics camera_;
     std::vector<Extent> columns_;
     std::vector<Extent> rows_;
-    std::vector<RaySlope> rays_;  ///< row-major; empty for a pinhole, whose rays columns and rows tell
+    /// Row-major. Empty for a pinhole camera, whose rays follow from columns_ and rows_.
+    std::vector<RaySlope> rays_;
 };
 
 }  // namespace octoskin

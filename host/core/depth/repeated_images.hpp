@@ -1,4 +1,5 @@
-// A camera that hangs may hand out its last images again and again, with times that go on.
+// Detects repeated images: a camera driver that hangs can deliver its last images again with new capture
+// times.
 #pragma once
 
 #include <algorithm>
@@ -14,22 +15,24 @@
 
 namespace octoskin {
 
-/// The images of one camera in the order in which they come. Two images of a real camera are never equal bit
-/// by bit for long: they have noise. A driver that hangs may give the images of its ring of buffers by turns,
-/// and now and then one that differs: so each of the last kKnownMax different images is known, with when it
-/// first came, and each of the last kKnownMax that were repetitions, whatever comes between. One that differs
-/// in a few places, or is torn, is known, too: in a real one noise is everywhere.
+/// Takes the images of one camera in the order of arrival. Images of a working camera are never equal bit by
+/// bit for long, because they contain noise. A driver that hangs may deliver the images of its buffer ring in
+/// turn, and sometimes one that differs. Therefore two lists are kept: the last kKnownMax different images,
+/// with the time of each one's first arrival, and the last kKnownMax images that were repetitions. An image
+/// that differs from a known one in a few places, or is torn, also counts as known, because real noise is
+/// everywhere.
 class RepeatedImages {
   public:
-    /// So many images that were known may be chance, or of a device that gives each one twice.
+    /// Up to this number, known images may be chance, or come from a device that delivers each image twice.
     static constexpr unsigned kEqualMax = 5;
     static constexpr Nanoseconds kTimeMax{500'000'000};
     static constexpr std::size_t kKnownMax = 16;
 
-    /// True if this image is a repetition: it is known, was first captured over kTimeMax ago, and with it
-    /// more than kEqualMax known ones came since. One without any value comes again and again from a lens
-    /// that is covered now and then: it is a repetition only as one of more than kEqualMax known ones in a
-    /// row, with the image before that row captured over kTimeMax ago. O(pixels); keeps checksums alone.
+    /// True if this image is a repetition: it is known, it was first captured over kTimeMax ago, and more
+    /// than kEqualMax known images, including this one, have come since. An image without any value recurs
+    /// when the lens is covered now and then. It is a repetition only if it is in an uninterrupted row of
+    /// more than kEqualMax known images, and the image before the row was captured over kTimeMax ago.
+    /// O(pixels); stores only checksums.
     bool take(const DepthFrame& frame) noexcept {
         newest_ = frame.captured;
         has_value_ = std::ranges::any_of(frame.depth_mm, [](std::uint16_t mm) { return mm != 0; });
@@ -49,31 +52,31 @@ class RepeatedImages {
         weigh(is_new, is_repetition);
         return is_repetition;
     }
-    /// The camera is opened anew: what it showed before is known still, as one that hangs may go on with it.
+    /// The camera was reopened. Known images are kept, because a camera that hangs may continue with them.
     void begin_opening() noexcept { opening_since_.reset(); }
 
-    /// How long this opening has shown known images, with new ones among them at most now and then, up to
-    /// the newest, which is known; else 0.
+    /// For how long the camera has delivered known images since it was opened, with only occasional new ones,
+    /// up to the newest image; 0 if the newest image is new.
     [[nodiscard]] Nanoseconds lasted() const noexcept {
         return opening_since_ && again_ > row_.again ? newest_ - *opening_since_ : Nanoseconds{0};
     }
-    /// Of the newest images more than a third are repetitions.
+    /// More than a third of the newest images are repetitions.
     [[nodiscard]] bool are_many() const noexcept { return weight_ >= kMany; }
-    /// The last image has a pixel with a value: what is in front of a covered lens has none.
+    /// The last image has a pixel with a value. With a covered lens it has none.
     [[nodiscard]] bool has_value() const noexcept { return has_value_; }
 
   private:
     static constexpr std::size_t kAtOnce = sizeof(std::uint64_t) / sizeof(std::uint16_t);
     static constexpr std::size_t kParts = 16;
     static constexpr std::size_t kRoughPartsMin = 4;
-    static constexpr unsigned kRoughMin = 64;  ///< noise hardly leaves so many as they were
+    static constexpr unsigned kRoughMin = 64;  ///< noise seldom leaves as many unchanged
     static constexpr int kMany = 6;
     static constexpr int kWeightMax = 12;
     struct Begin {
         HostTime at{0};
-        std::uint64_t again = 0;  ///< known images that had come by then
+        std::uint64_t again = 0;  ///< number of known images up to that time
     };
-    /// What is kept of an image: of each of its parts a checksum, and whether it is rough.
+    /// What is stored of an image: a checksum of each part, and whether the part is rough.
     struct Print {
         std::array<std::uint64_t, kParts> sums{};
         std::array<bool, kParts> is_rough{};
@@ -82,10 +85,10 @@ class RepeatedImages {
         Print print;
         Begin begin;
     };
-    /// kKnownMax images, the one that came last first.
+    /// Up to kKnownMax images, the most recent one first.
     class Images {
       public:
-        /// Null if it is not there.
+        /// Returns null if the image is not in the list.
         const Image* find(const Print& print) noexcept {
             const auto end = images_.begin() + static_cast<std::ptrdiff_t>(count_);
             const auto at = std::find_if(images_.begin(), end,
@@ -94,7 +97,7 @@ class RepeatedImages {
             std::rotate(images_.begin(), at, at + 1);
             return images_.data();
         }
-        /// In place of the one that came least recently.
+        /// Replaces the least recent image if the list is full.
         void add(const Image& image) noexcept {
             std::shift_right(images_.begin(), images_.end(), 1);
             images_.front() = image;
@@ -106,14 +109,14 @@ class RepeatedImages {
         std::size_t count_ = 0;
     };
 
-    /// A repetition outweighs two new images: of those there are none while a camera hangs, or a few.
+    /// One repetition outweighs two new images: while a camera hangs there are few or no new ones.
     void weigh(bool is_new, bool is_repetition) noexcept {
         if (!opening_since_ || (is_new && weight_ == 0)) opening_since_ = newest_;
         if (is_repetition) weight_ = std::min(weight_ + 2, kWeightMax);
         if (is_new) weight_ = std::max(weight_ - 1, 0);
     }
 
-    /// To the last bit, or in at least half of the parts that are rough in one of them.
+    /// True if all parts are equal, or at least half of the parts that are rough in one of the two.
     static bool are_one(const Print& a, const Print& b) noexcept {
         std::size_t equal = 0;
         std::size_t rough = 0;
@@ -129,7 +132,7 @@ class RepeatedImages {
     }
     static Print print_of(std::span<const std::uint16_t> pixels) noexcept {
         Print print;
-        const std::size_t size = (pixels.size() / kParts + kAtOnce) / kAtOnce * kAtOnce;  // of a part
+        const std::size_t size = (pixels.size() / kParts + kAtOnce) / kAtOnce * kAtOnce;  // pixels of a part
         for (std::size_t part = 0; part < kParts; ++part) {
             const auto some = pixels.first(std::min(size, pixels.size()));
             print.sums[part] = checksum(some);
@@ -138,8 +141,8 @@ class RepeatedImages {
         }
         return print;
     }
-    /// kRoughMin pixels differ from the one before; neither lacks a value. So what a camera may fill in for
-    /// no return, and a wall without noise, is not rough.
+    /// True if at least kRoughMin pixels differ from the pixel before, where both have a value. Values that a
+    /// camera fills in for a missing return, and a wall without noise, are not rough.
     static bool is_rough(std::span<const std::uint16_t> pixels) noexcept {
         unsigned changes = 0;
         for (std::size_t i = 1; i < pixels.size(); ++i) {
@@ -150,7 +153,8 @@ class RepeatedImages {
         }
         return changes >= kRoughMin;
     }
-    /// Of parts that differ in one aligned group of kAtOnce pixels it always differs; of others nearly so.
+    /// Parts that differ in one aligned group of kAtOnce pixels always have different checksums; other
+    /// differing parts nearly always.
     static std::uint64_t checksum(std::span<const std::uint16_t> pixels) noexcept {
         std::uint64_t sum = pixels.size();
         while (!pixels.empty()) {
@@ -165,11 +169,12 @@ class RepeatedImages {
     }
 
     Images recent_;
-    Images repeated_;                        ///< those with a value
-    std::uint64_t again_ = 0;                ///< images that were known as they came
-    Begin row_;                              ///< of the row of known ones: the image before it
-    std::optional<HostTime> opening_since_;  ///< the last new image before those that repeat, or the first
-    int weight_ = 0;                         ///< of repetitions less that of new ones, 0 to kWeightMax
+    Images repeated_;          ///< repetitions with a value
+    std::uint64_t again_ = 0;  ///< number of images that were known on arrival
+    Begin row_;                ///< the image before the current row of known images
+    /// The last new image before those that repeat, or the first image.
+    std::optional<HostTime> opening_since_;
+    int weight_ = 0;  ///< weight of repetitions less that of new images, 0 to kWeightMax
     HostTime newest_{0};
     bool has_value_ = false;
 };

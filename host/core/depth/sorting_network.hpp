@@ -1,4 +1,5 @@
-// Comparisons that sort so many values, whatever these are: lanes of vectors can be sorted side by side.
+// Sorting networks: the sequence of comparisons does not depend on the values, so the lanes of vectors are
+// sorted side by side.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 
 namespace octoskin {
 
-/// Afterwards the smaller of two values is at `low`, the larger at `high`.
+/// One comparison: afterwards the smaller of two values is at `low`, the larger at `high`.
 struct Exchange {
     std::size_t low = 0;
     std::size_t high = 0;
@@ -32,7 +33,7 @@ constexpr void for_each_exchange(std::size_t count, Visit&& visit) {
     }
 }
 
-/// Those comparisons, known while compiling: 26 sort 9 values, 138 sort 25, 383 sort 49.
+/// The comparisons at compile time: 26 for 9 values, 138 for 25, 383 for 49.
 template <std::size_t kCount>
 consteval auto sorting_network() {
     constexpr std::size_t kExchanges = [] {

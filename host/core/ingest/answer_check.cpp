@@ -38,7 +38,7 @@ std::optional<SampleVerdict> AnswerCheck::take(std::span<const SyncSample> answe
     return own ? std::optional(clock.add(*own)) : std::nullopt;
 }
 
-/// Of answers that may be one sender's the first that fits.
+/// If all answers may come from one sender: the first that fits the clock.
 std::optional<SyncSample> AnswerCheck::own_of(std::span<const SyncSample> answers) const {
     const auto fits = [this](const SyncSample& answer) { return uncontested_->fits(answer); };
     const auto found = std::ranges::find_if(answers, fits);

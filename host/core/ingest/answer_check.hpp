@@ -1,4 +1,4 @@
-// Which of several answers to one SYNC is the node's own.
+// Selects which of several answers to one SYNC is the node's own.
 #pragma once
 
 #include <cstdint>
@@ -11,40 +11,41 @@
 
 namespace octoskin {
 
-/// A node answers each SYNC once. Where two answers under its id tell different times, another sender wants
-/// to set its clock, and with it the place of all that it measures. The one is used that goes on where the
-/// clock was when it was last not contested, so that nobody leads it away by little and little; where that is
-/// none or more than one, none is. What the first one did to the clock until then is undone: no reading can
-/// have been placed by it, as an exchange counts only for what comes ClockMapConfig::settling later.
+/// A node answers each SYNC once. Two answers under its id that contain different times mean that a second
+/// sender tries to set the node's clock, and with it the time of every reading. Used is the one answer that
+/// continues the clock as it was when it was last uncontested. Comparing with that clock prevents a second
+/// sender from shifting it in small steps. If no answer fits, or more than one, none is used. The effect of
+/// an earlier answer to the same SYNC is undone. No reading can have been placed by it: an exchange applies
+/// only to what arrives ClockMapConfig::settling later.
 class AnswerCheck {
   public:
-    /// `answers` to one SYNC, at least one, in the order of arrival; again with each one more. What the one
-    /// that is used did to the clock; empty: none is used.
+    /// `answers`: all answers to one SYNC so far, at least one, in order of arrival. Call again for each
+    /// further answer. Returns the effect of the used answer on the clock; empty if none is used.
     std::optional<SampleVerdict> take(std::span<const SyncSample> answers, ClockMap& clock);
-    /// The node started anew: its clock of before does not come back.
+    /// The node restarted: its earlier clock does not come back.
     void forget() noexcept {
         taken_.reset();
         uncontested_.reset();
     }
 
-    /// Two answers contradicted each other within the last kTold.
+    /// True if two answers contradicted each other within the last kTold.
     [[nodiscard]] bool hears_two(HostTime now) const noexcept;
-    /// Answers that contradicted those before them.
+    /// Number of answers that contradicted earlier ones.
     [[nodiscard]] std::uint64_t contradictions() const noexcept { return contradictions_; }
 
-    /// Over two exchanges, so that a problem at each of them goes on.
+    /// Longer than two exchanges, so that a fault at each exchange is reported without interruption.
     static constexpr Nanoseconds kTold{2'500'000'000};
 
   private:
     struct Taken {
-        HostTime host;  ///< the SYNC, on the host's clock
+        HostTime host;  ///< time of the SYNC on the host's clock
         ClockMap before;
     };
     [[nodiscard]] std::optional<SyncSample> own_of(std::span<const SyncSample> answers) const;
 
     std::optional<Taken> taken_;
-    std::optional<ClockMap> uncontested_;  ///< the clock, before there were two answers to each SYNC
-    bool are_contested_ = false;           ///< the answers to the newest SYNC
+    std::optional<ClockMap> uncontested_;  ///< the clock before the SYNCs had two answers each
+    bool are_contested_ = false;           ///< about the answers to the newest SYNC
     std::optional<HostTime> contradicted_;
     std::uint64_t contradictions_ = 0;
 };

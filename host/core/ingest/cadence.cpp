@@ -8,12 +8,12 @@
 namespace octoskin {
 namespace {
 
-/// Capture times are known to some 0.3 ms, and a period changes by thousandths from one range to the next.
+/// Capture times are known to about 0.3 ms. A period changes by thousandths from one range to the next.
 constexpr Nanoseconds kToleranceMax{3'000'000};
-/// Of these many ranges in a row the mean is the period; more may hide a turn of the numbers.
+/// The mean over this many consecutive ranges is the period. A longer span may hide a wrap of the numbers.
 constexpr int kMeasuredMax = 8;
 
-/// -31 to 32.
+/// Signed distance of two sequence numbers, -31 to 32.
 int steps(std::uint8_t from, std::uint8_t to) {
     constexpr int kTurn = wire::kSequenceCount;
     const int ahead = (to - from + kTurn) % kTurn;

@@ -1,5 +1,5 @@
-// Whether a reading comes when those before it say that it must: its sensor ranges once a period, so that its
-// number tells its time. A clock that jumped between the two shows.
+// Checks that a reading arrives when the readings before it predict. A sensor ranges once a period, so that
+// the sequence number determines the time. A jump of the node's clock between two readings becomes visible.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,18 @@ namespace octoskin {
 
 class Cadence {
   public:
-    /// `period`: as configured; what the sensor truly does is measured.
+    /// `period`: as configured. The actual period is measured.
     explicit Cadence(Nanoseconds period) : period_(period) {}
 
-    /// The time is the one that the number has by the last confirmed step, to within an eighth of a period
-    /// and 3 ms. False while there is none, or over half a turn of the numbers after it.
+    /// True if the time matches the sequence number, counted from the last confirmed step, to within an
+    /// eighth of a period and 3 ms. False while there is no such step, or more than half a wrap of the
+    /// numbers after it.
     [[nodiscard]] bool fits(std::uint8_t sequence, HostTime captured) const;
-    /// A reading was accepted, later than those before.
+    /// An accepted reading that is later than those before.
     void on_accepted(std::uint8_t sequence, HostTime captured);
-    /// An exchange showed that the node's clock goes on: the newest two readings tell the period.
+    /// An exchange confirmed the node's clock: the newest two readings give the period.
     void confirm();
-    /// The numbers begin anew, or the times of the newest readings were wrong.
+    /// The numbers restart, or the times of the newest readings were wrong.
     void restart() noexcept {
         step_.reset();
         newest_.reset();
@@ -34,7 +35,7 @@ class Cadence {
         HostTime captured;
     };
     Nanoseconds period_;
-    std::optional<Step> step_;  ///< the newest that is in step with a confirmed one
+    std::optional<Step> step_;  ///< the newest reading in step with a confirmed one
     std::optional<Step> newest_;
     std::optional<Step> before_;
 };

@@ -48,7 +48,7 @@ FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
         outcome.rejected = FrameReason::unknown_node;
         return outcome;
     }
-    // Only now: a stranger on another interface of the log must not move "now".
+    // Only after these checks: an unknown node on another interface of the log must not move the host time.
     host_clock_.observe(stamp);
     nodes_.on_running(host_clock_.running());
     note_time();
@@ -62,7 +62,7 @@ FrameOutcome CanIntake::on_frame(const wire::CanFrame& frame, WallTime stamp) {
     return outcome;
 }
 
-/// By what was last known of the time: whatever came with such a frame moves nothing.
+/// Uses the last known host time: the time stamp of a damaged frame changes nothing.
 void CanIntake::note_damage(const wire::CanFrame& frame, wire::DecodeError error) {
     const wire::NodeId node = wire::node_of(frame.can_id);
     const auto now_known = now();
@@ -75,7 +75,7 @@ void CanIntake::end_joint_samples(FrameOutcome& outcome) {
     const auto now_known = now();
     if (!now_known) return;
     const bool has_relocked =
-        std::exchange(relocks_, host_clock_.relocks()) != host_clock_.relocks();  // "now" may be as before
+        std::exchange(relocks_, host_clock_.relocks()) != host_clock_.relocks();  // host time may be equal
     if (has_relocked) joint_senders_.settle(outcome.joint_samples_of_before);
     joint_senders_.settle_if_back(*now_known, outcome.joint_samples_of_before);
     joint_senders_.advance(*now_known, outcome.joint_samples);
@@ -152,8 +152,9 @@ void CanIntake::note_fate(wire::NodeId node, const wire::RangeReading& reading,
     }
 }
 
-/// One that says something else under its number is its twin's fault, or its twin its own. Where numbers go
-/// back none of the sensor's can be told from a second sender's, nor where that is sure.
+/// A reading that repeats a number with other contents is rejected together with the held reading of the same
+/// number: either may be the foreign one. If no reading of that number is held (an earlier number came with a
+/// later time), or the sensor is already disputed, all held readings of the sensor are rejected.
 void CanIntake::give_up_held(wire::NodeId node, const wire::RangeReading& reading, ReadingReason reason,
                              FrameOutcome& outcome) {
     if (reason != ReadingReason::contradicts_reading) {
@@ -285,7 +286,7 @@ CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::FollowUp& message, 
     host_clock_.learn(*stamp);
     for (const auto& [node, clock] : clocks_) {
         if (host_clock_.relocks() > relocks_before) {
-            ranges_.forget_order(node);  // what came since the step had wrong times
+            ranges_.forget_order(node);  // readings since the clock step had wrong times
         }
         add_exchange(node);
     }
@@ -309,12 +310,12 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Reflex& messag
     return std::nullopt;
 }
 
-/// Nothing for the map in it: `octoskin black-box` reads it out of the log.
+/// Not used by the map: `octoskin black-box` reads it from the log.
 CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::BlackBox&, FrameOutcome&) {
     return FrameReason::for_people;
 }
 
-/// `octoskin calibrate` waits for it.
+/// Not used by the map: `octoskin calibrate` waits for it.
 CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Calibration&, FrameOutcome&) {
     return FrameReason::for_people;
 }
@@ -364,13 +365,14 @@ Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& readi
     if (sampled->time - reading.begun > Nanoseconds{config_.clock.now_slack}) {
         return unexpected(JointReason::contradictory);
     }
-    // Frames of the next round come a round after this sample was taken, give or take a period of jitter.
+    // Frames of the next round arrive one round after this sample was taken, plus or minus a period of
+    // jitter.
     const bool may_be_mixed = !reading.is_in_order && now - sampled->time > joints_.round() * 7 / 8;
     if (may_be_mixed) return unexpected(JointReason::contradictory);
     if (now - sampled->time > config_.joint_age_max) {
         return unexpected(JointReason::too_old);
     }
-    if (!reading.has_pace) {  // last: a source's first samples come before its clock is known
+    if (!reading.has_pace) {  // checked last: a source's first samples precede its clock's first exchange
         return unexpected(JointReason::too_frequent);
     }
     return JointMeasurement{sampled->time, reading.position_rad, host_clock_.relocks()};

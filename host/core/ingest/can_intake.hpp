@@ -1,5 +1,5 @@
-// From a frame on the bus to measurements in host time: the gate that everything passes. It keeps who is on
-// the bus, how their clocks run, and the order of their readings; it counts nothing and places nothing.
+// Converts CAN frames to measurements in host time. Every frame passes here. Keeps the state of the nodes,
+// their clocks and the order of their readings. Does not count inputs and does not compute positions.
 #pragma once
 
 #include <map>
@@ -33,24 +33,25 @@ struct IntakeConfig {
     ClockMapConfig clock;
     HostClockConfig host_clock;
     bool uses_no_return = false;  ///< beams without return may clear space
-    /// A joint sample that arrives later than this after it was sampled is not used. Less than what a
-    /// stepping wall clock needs to make a range's time field ambiguous: host/core/time/README.md.
+    /// A joint sample that arrives later than this after its sampling time is not used. Smaller than the
+    /// shift at which a stepping wall clock makes a range's time field ambiguous: host/core/time/README.md.
     Nanoseconds joint_age_max{50'000'000};
-    /// Joint states come from this machine and from nowhere else: who sends them is checked before they
-    /// become frames.
+    /// Joint states come from this machine only. Their sender is checked before they become frames.
     bool has_local_joints = false;
 };
 
-/// What one frame brought: either a reason why it was not used, or any of the rest.
+/// Result of one frame: either the reason why it was not used, or any of the other fields.
 struct FrameOutcome {
     std::optional<FrameReason> rejected;
-    /// One for each reading in the frame that need not wait.
+    /// One for each reading in the frame that is not held.
     std::vector<Result<RangeMeasurement, ReadingReason>> readings;
-    std::uint64_t readings_held = 0;               ///< those that do: CanIntake::take_due
-    std::vector<ReadingReason> readings_given_up;  ///< of those that waited
+    std::uint64_t readings_held = 0;               ///< readings that are held: CanIntake::take_due
+    std::vector<ReadingReason> readings_given_up;  ///< rejected after they were held
     std::uint64_t joint_samples_begun = 0;
-    std::vector<Result<JointMeasurement, JointReason>> joint_samples;  ///< those that this frame ended
-    /// Those that waited when "now" went back, or was told anew: their times are of before.
+    /// samples that this frame completed or ended
+    std::vector<Result<JointMeasurement, JointReason>> joint_samples;
+    /// Samples that were waiting when the host time jumped back or was relocked: their times refer to the
+    /// time before the jump.
     std::vector<Result<JointMeasurement, JointReason>> joint_samples_of_before;
     std::optional<wire::Mark> mark;
 };
@@ -59,46 +60,46 @@ class CanIntake {
   public:
     explicit CanIntake(const HostRig& rig, const IntakeConfig& config = {});
 
-    /// Frames in the order of arrival. `stamp`: when it was received. About 1 us.
+    /// Takes frames in order of arrival. `stamp`: time of reception. About 1 us.
     [[nodiscard]] FrameOutcome on_frame(const wire::CanFrame& frame, WallTime stamp);
 
-    /// Readings that waited whether a second sender would contradict them, and are good now.
+    /// Readings that were held in case a second sender contradicts them, and are now due.
     [[nodiscard]] std::vector<RangeMeasurement> take_due(HostTime now) { return held_.take_due(now); }
-    /// All that wait: no frame comes that could contradict them.
+    /// All held readings, when no further frame can contradict them.
     [[nodiscard]] std::vector<RangeMeasurement> take_held() { return held_.take_all(); }
     [[nodiscard]] std::size_t readings_held() const noexcept { return held_.size(); }
 
-    /// A node's readings have times that cannot be: an exchange would tell whether its clock goes on. False
-    /// again after it.
+    /// True while a node's readings have impossible times: a SYNC exchange would show whether its clock
+    /// continues. False again after such an exchange.
     [[nodiscard]] bool wants_exchange() const;
-    /// Of a node of the rig: what it loses at `now`, if that is worth a word.
+    /// What a node of the rig loses at `now`; empty if that is too little to report.
     [[nodiscard]] std::optional<NodeLosses::Loss> losses(wire::NodeId node, HostTime now) const {
         return losses_.at(node).worth_a_word(now);
     }
 
-    /// What became in the map of a reading that was accepted here; empty: it was used.
+    /// Result, in the map, of a reading that was accepted here; empty: it was used.
     void on_fate_in_map(const BeamSource& source, std::optional<ReadingReason> rejected) {
         ranges_.on_fate_in_map(source.node_id, source.sensor, rejected);
         losses_.at(source.node_id).on_fate(rejected);
     }
-    /// One that was accepted here is rejected on its way into the map; no sensor is to blame.
+    /// An accepted reading was rejected on its way into the map, through no fault of its sensor.
     void on_lost(wire::NodeId node, ReadingReason reason) { losses_.at(node).on_fate(reason); }
-    /// Of all readings of a node of the rig; what waits is pending.
+    /// Counters of all readings of a node of the rig; held readings are pending.
     [[nodiscard]] AccountTable reading_table(wire::NodeId node) const { return losses_.at(node).table(); }
 
-    /// The host's clock at the newest stamp; empty while unknown.
+    /// Host time at the newest time stamp; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return host_clock_.now(); }
-    /// Joint samples begun and not ended.
+    /// Joint samples that have begun and not ended.
     [[nodiscard]] std::uint64_t joint_samples_pending() const {
         return joints_.pending() + joint_senders_.waiting();
     }
-    /// No frame comes for now, and it is `now`: whole samples that need not wait any longer.
+    /// No frame arrives at present and the time is `now`: returns complete samples that need not wait longer.
     [[nodiscard]] JointSenderCheck::Ended joints_due(HostTime now) {
         JointSenderCheck::Ended ended;
         joint_senders_.advance(now, ended);
         return ended;
     }
-    /// Whole samples that wait, as if nothing more would come.
+    /// Returns all waiting complete samples, as if nothing more would arrive.
     [[nodiscard]] JointSenderCheck::Ended settle_joints() {
         JointSenderCheck::Ended ended;
         joint_senders_.settle(ended);
@@ -109,18 +110,18 @@ class CanIntake {
     [[nodiscard]] const NodeRegistry& nodes() const noexcept { return nodes_; }
     [[nodiscard]] const RangeGate& ranges() const noexcept { return ranges_; }
     [[nodiscard]] const HostClockEstimate& host_clock() const noexcept { return host_clock_; }
-    /// Of a node of the rig.
+    /// For a node of the rig.
     [[nodiscard]] const ClockMap& clock(wire::NodeId node) const { return clocks_.at(node); }
-    /// Likewise: what it answered to SYNC.
+    /// For a node of the rig: its answers to SYNC.
     [[nodiscard]] const AnswerCheck& answers(wire::NodeId node) const { return answers_.at(node); }
 
-    /// Likewise: what it told about itself.
+    /// For a node of the rig: what it reported about itself.
     [[nodiscard]] const SelfReportCheck& self_reports(wire::NodeId node) const {
         return self_reports_.at(node);
     }
 
   private:
-    // One for each message. What they return goes into FrameOutcome::rejected.
+    // One overload for each message type. The result goes into FrameOutcome::rejected.
     using Rejection = std::optional<FrameReason>;
     Rejection on(wire::NodeId node, const wire::Range& message, FrameOutcome& outcome);
     Rejection on(wire::NodeId node, const wire::RangeFd& message, FrameOutcome& outcome);
@@ -138,13 +139,13 @@ class CanIntake {
     Rejection on(wire::NodeId node, const wire::BlackBox& message, FrameOutcome& outcome);
     Rejection on(wire::NodeId node, const wire::Calibration& message, FrameOutcome& outcome);
 
-    /// In host time, if the node is usable and its clock known.
+    /// The capture time in host time, if the node is usable and its clock is known.
     [[nodiscard]] Result<MappedTime, ReadingReason> capture_time(wire::NodeId node,
                                                                  const wire::TimeResidue& capture) const;
     void accept(wire::NodeId node, const wire::RangeReading& reading, FrameOutcome& outcome);
     void note_fate(wire::NodeId node, const wire::RangeReading& reading,
                    const Result<RangeMeasurement, ReadingReason>& measurement);
-    /// Of those that wait: what this reading shows to be nobody's.
+    /// Rejects the held readings that this reading contradicts.
     void give_up_held(wire::NodeId node, const wire::RangeReading& reading, ReadingReason reason,
                       FrameOutcome& outcome);
     [[nodiscard]] Result<RangeMeasurement, ReadingReason> measure(wire::NodeId node,
@@ -156,7 +157,8 @@ class CanIntake {
     void end_joint_samples(FrameOutcome& outcome);
     void note_time();
     void begin_time();
-    /// "Now", once the stamps have not jumped for a second: before, what was held back may still come.
+    /// The host time, once the time stamps have not jumped for a second: until then, delayed frames may
+    /// arrive.
     [[nodiscard]] std::optional<HostTime> steady_now() const;
 
     IntakeConfig config_;
@@ -164,20 +166,20 @@ class CanIntake {
     HostClockEstimate host_clock_;
     SyncExchange exchange_;
     std::map<wire::NodeId, ClockMap> clocks_;
-    std::map<wire::NodeId, AnswerCheck> answers_;           ///< of the same nodes
-    std::map<wire::NodeId, ClockQuestion> questions_;       ///< of the same nodes
-    std::map<wire::NodeId, NodeLosses> losses_;             ///< likewise
-    std::map<wire::NodeId, SelfReportCheck> self_reports_;  ///< likewise
+    std::map<wire::NodeId, AnswerCheck> answers_;           ///< for the same nodes
+    std::map<wire::NodeId, ClockQuestion> questions_;       ///< for the same nodes
+    std::map<wire::NodeId, NodeLosses> losses_;             ///< for the same nodes
+    std::map<wire::NodeId, SelfReportCheck> self_reports_;  ///< for the same nodes
     ReadingHold held_;
     NodeRegistry nodes_;
     RangeGate ranges_;
     JointAssembler joints_;
     JointSenderCheck joint_senders_;
     std::uint64_t relocks_ = 0;            ///< of the host's clock, at the newest frame
-    WallTime stamp_;                       ///< of the frame at hand
-    std::uint64_t jumps_ = 0;              ///< of the stamps, so far
-    bool is_time_known_ = false;           ///< "now", at the newest frame
-    std::optional<HostTime> known_since_;  ///< "now" after the last of them
+    WallTime stamp_;                       ///< of the current frame
+    std::uint64_t jumps_ = 0;              ///< of the time stamps, so far
+    bool is_time_known_ = false;           ///< whether the host time was known at the newest frame
+    std::optional<HostTime> known_since_;  ///< the host time after the last jump
 };
 
 }  // namespace octoskin

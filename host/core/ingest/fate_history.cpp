@@ -6,7 +6,7 @@ namespace octoskin {
 
 namespace {
 
-/// The sensor works: nothing is within its reach, or the robot's own body, as in many a pose.
+/// The sensor works: nothing is in range, or only the robot's own body, as in many poses.
 bool is_well(ReadingReason reason) noexcept {
     return reason == ReadingReason::no_return || reason == ReadingReason::self_hit;
 }

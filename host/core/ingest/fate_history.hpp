@@ -1,4 +1,4 @@
-// What became of one sensor's newest readings: whether it is of any use to the map.
+// Results of one sensor's newest readings: shows whether the sensor contributes to the map.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace octoskin {
 
-/// True for what only the sensor, its place or its settings can be blamed for. What its node, a clock or the
-/// joints lack stops every sensor, and has a name of its own, as have what the camera says of it and a second
-/// sender under its name; to see nothing, or the robot itself, is no fault.
+/// True for reasons that only the sensor, its mounting or its settings can cause. Faults of its node, a clock
+/// or the joints affect every sensor and are reported separately, as are contradictions by the camera and a
+/// second sender under its id. Seeing nothing, or the robot itself, is no fault.
 [[nodiscard]] bool is_of_sensor(ReadingReason reason) noexcept;
 
 class FateHistory {
@@ -19,14 +19,14 @@ class FateHistory {
     static constexpr std::size_t kKept = 32;
     static constexpr std::size_t kStreak = 31;
 
-    /// Empty: it was used. Reasons that are not the sensor's are left out, but for no_return and self_hit:
-    /// such a sensor works.
+    /// Empty: the reading was used. Reasons that are not the sensor's are ignored, except no_return and
+    /// self_hit, which show that the sensor works.
     void note(std::optional<ReadingReason> rejected) noexcept;
-    /// The most frequent reason, if kStreak of the last kKept were rejected. O(kKept).
+    /// The most frequent reason, if at least kStreak of the last kKept readings were rejected. O(kKept).
     [[nodiscard]] std::optional<ReadingReason> streak() const noexcept;
 
   private:
-    std::array<std::optional<ReadingReason>, kKept> newest_{};  ///< a ring
+    std::array<std::optional<ReadingReason>, kKept> newest_{};  ///< ring buffer
     std::size_t noted_ = 0;
 };
 

@@ -50,8 +50,8 @@ void JointAssembler::give_up_stale(HostTime now, Outcome& outcome) {
     }
 }
 
-/// Frames that were held up come in a burst, the next round before this one is stale: of an arm at rest they
-/// look like this round's again. But a repeated frame follows its original, and no newer sample's.
+/// Delayed frames arrive in a burst, the next round before this one is stale. For an arm at rest, they look
+/// like repeats of this round. But a repeated frame follows its original, never a frame of a newer sample.
 void JointAssembler::begin_round(std::uint8_t sequence, Outcome& outcome) {
     const int ahead = (sequence - newest_ + wire::kJointSequenceCount) % wire::kJointSequenceCount;
     if (ahead == 0 || ahead > wire::kJointSequenceCount / 2) return;
@@ -80,7 +80,8 @@ JointAssembler::Outcome JointAssembler::on_frame(const wire::JointState& frame, 
     bool is_contested = false;
     if (sample && sample->parts[part]) {
         const bool is_equal = *sample->parts[part] == frame;
-        // Equal, but not to the frame before: the next round's, of a sample that is never complete.
+        // Equal, but not to the frame before: it is of the next round, and this sample will never be
+        // complete.
         if (is_equal && (sample->is_complete || sample->newest_part == part)) {
             outcome.is_repeated = true;
             return outcome;

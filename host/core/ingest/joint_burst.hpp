@@ -1,4 +1,4 @@
-// Joint samples without a time that were held up on their way.
+// Handles joint samples without a time of their own that were delayed in transport.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,19 @@
 
 namespace octoskin {
 
-/// A sample without a time counts as taken when it comes. Where a pipe or a network held samples up they come
-/// in a burst behind a gap, the oldest first, and only the newest of them says where the arm is now.
+/// A sample without a time counts as taken when it arrives. Samples that a pipe or a network delayed arrive
+/// in a burst after a gap, the oldest first. Only the newest of them gives the arm's present position.
 class JointBurst {
   public:
-    /// Behind a shorter gap there is no burst: 20 ms are common, and move no arm far.
+    /// A shorter gap is no sign of a burst: gaps of 20 ms are common, and no arm moves far in one.
     static constexpr Nanoseconds kGapMin{50'000'000};
-    /// No sample waits for longer: its readings wait for it.
+    /// No sample waits longer, because readings wait for the sample.
     static constexpr Nanoseconds kWaitMax{20'000'000};
 
-    /// Of samples that come `rate_hz` times a second, the rig's rate, 1 or more.
+    /// `rate_hz`: the rig's rate of joint samples, at least 1.
     explicit JointBurst(double rate_hz) { expect(rate_hz); }
 
-    /// Of samples that come at another rate from now on.
+    /// Changes the expected rate from now on.
     void expect(double rate_hz) {
         const double period_ns = 1e9 / rate_hz;
         gap_ = std::max(kGapMin, Nanoseconds{std::llround(1.5 * period_ns)});
@@ -31,11 +31,12 @@ class JointBurst {
 
     enum class Turn : std::uint8_t {
         use,
-        drop,  ///< a newer one of its burst has come
-        wait,  ///< a newer one of its burst may come yet
+        drop,  ///< a newer sample of its burst has arrived
+        wait,  ///< a newer sample of its burst may still arrive
     };
-    /// Of the oldest sample that waits, which came at `came`; the one behind it came at `next`. All that came
-    /// before `now` is known. To be asked of each sample in turn, again where it waits.
+    /// Decision for the oldest waiting sample, which arrived at `came`; the next one arrived at `next`.
+    /// Everything that arrived before `now` is known. Call for each sample in turn, and again for one that
+    /// waits.
     [[nodiscard]] Turn turn_of(WallTime came, std::optional<WallTime> next, WallTime now) {
         const bool is_behind_gap = !used_ || came.ns - used_->ns > gap_.count();
         if (!is_behind_gap) return use(came);
@@ -43,14 +44,14 @@ class JointBurst {
         if (next && is_of_burst(*next)) return Turn::drop;
         return next || !is_of_burst(now) ? use(came) : Turn::wait;
     }
-    /// Of the oldest of samples that wait, which are not none.
+    /// The same for the oldest of `waiting`, which is not empty.
     template <class Samples>
     [[nodiscard]] Turn turn_of_oldest(const Samples& waiting, WallTime now) {
         const auto& oldest = waiting.front();
         if (oldest.has_own_time) return use(oldest.came);
         return turn_of(oldest.came, waiting.size() > 1 ? std::optional(waiting[1].came) : std::nullopt, now);
     }
-    /// A sample with a time, which is right however late it comes.
+    /// A sample with its own time is correct however late it arrives.
     Turn use(WallTime came) {
         used_ = came;
         begun_.reset();
@@ -58,15 +59,15 @@ class JointBurst {
     }
 
   private:
-    /// A clock that was set back ends it.
+    /// A clock that was set back ends the burst.
     [[nodiscard]] bool is_of_burst(WallTime time) const {
         return time >= *begun_ && time.ns - begun_->ns < lasts_.count();
     }
 
-    Nanoseconds gap_{0};             ///< a burst comes behind a longer one; a stream at its rate has none
-    Nanoseconds lasts_{0};           ///< what comes within it of a burst's first sample is of the burst
-    std::optional<WallTime> used_;   ///< when the sample came that was used last
-    std::optional<WallTime> begun_;  ///< when the first of the burst came that is not over
+    Nanoseconds gap_{0};    ///< a burst follows a longer gap; a stream at its rate has no such gap
+    Nanoseconds lasts_{0};  ///< what arrives within this time of a burst's first sample belongs to the burst
+    std::optional<WallTime> used_;   ///< arrival of the last sample that was used
+    std::optional<WallTime> begun_;  ///< arrival of the first sample of the current burst
 };
 
 }  // namespace octoskin

@@ -12,8 +12,8 @@ namespace octoskin {
 struct JointMeasurement {
     HostTime sampled;
     std::array<double, wire::kJointsPerSample> position_rad{};
-    /// Of the host's clock (HostClockEstimate), when this time was told: two times that differ in it may be
-    /// further apart, or less far, than they say.
+    /// Relock count of the host's clock (HostClockEstimate) at this time. The distance of two times with
+    /// different counts is not reliable.
     std::uint64_t relocks = 0;
 };
 

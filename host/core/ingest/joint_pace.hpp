@@ -1,4 +1,4 @@
-// Whether a source of joint states keeps the rate that the rig says.
+// Checks that a source of joint states is not faster than the rig's rate.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,22 @@
 
 namespace octoskin {
 
-/// Samples are told apart by a sequence of three bits. At twice the rig's rate it comes round while frames of
-/// the round before are still waited for, and four frames of two rounds can look like one sample. Each whole
-/// sample carries its own time, so two of them tell the pace, whatever was lost or late between them.
+/// Samples are distinguished by a sequence number of three bits. At twice the rig's rate, the number wraps
+/// while frames of the round before are still expected, and four frames of two rounds can look like one
+/// sample. Each complete sample contains its own time. Two of them give the rate, whatever was lost or late
+/// between them.
 class JointPace {
   public:
     explicit JointPace(double rate_hz) noexcept : rate_hz_(rate_hz) {}
 
-    /// Takes whole samples in the order in which they became whole.
+    /// Takes complete samples in the order of completion.
     void observe(std::uint8_t sequence, const wire::TimeResidue& sampled) noexcept;
 
-    /// False before five pairs in a row were as they should be: at the start, and after two that were more
-    /// than 1 / kPeriodMin times as quick.
+    /// False until five consecutive pairs kept the rate: at the start, and after two pairs that were more
+    /// than 1 / kPeriodMin times too fast.
     [[nodiscard]] bool is_kept() const noexcept { return evidence_ < 2 * kQuick; }
 
-    /// Of a period: what jitter may leave of the distance between two samples.
+    /// Fraction of a period that jitter may leave between two samples.
     static constexpr double kPeriodMin = 0.6;
 
   private:
@@ -36,7 +37,7 @@ class JointPace {
     };
     double rate_hz_;
     std::optional<Newest> newest_;
-    int evidence_ = kEvidenceMax;  ///< against it
+    int evidence_ = kEvidenceMax;  ///< evidence against the rate
 };
 
 }  // namespace octoskin

@@ -33,7 +33,8 @@ bool JointRounds::is_of_no_round(const wire::JointState& frame, HostTime now) {
 
     const auto& here = current.parts.at(part);
     const bool is_contradiction = here && *here != frame;
-    // Frames that were held up, and come at once, may be of several rounds: then others are among them.
+    // Delayed frames that arrive at once may be of several rounds; then frames of other numbers are among
+    // them.
     const bool is_soon = current.is_in_one_go && now - current.begun <= period_ / 2;
     bool is_foreign = false;
     if (is_contradiction && is_soon && was_whole_in_its_time(rounds.before, now)) {

@@ -1,4 +1,4 @@
-// Whether a frame of a joint sample can be one that its own sender sent.
+// Decides whether a frame of a joint sample can come from the sample's own sender.
 #pragma once
 
 #include <array>
@@ -10,21 +10,21 @@
 
 namespace octoskin {
 
-/// A number comes again after a round of eight samples. A frame that contradicts one of its number may be of
-/// the round before, and late; but not where of that round each frame was here in its time.
+/// A sequence number repeats after a round of eight samples. A frame that contradicts one of its number may
+/// be a late frame of the round before. It is not, if every frame of that round arrived in time.
 class JointRounds {
   public:
     explicit JointRounds(Nanoseconds period) : period_(period) {}
 
-    /// Takes frames in the order of arrival. True if it contradicts one of its own sample, shortly after that
-    /// sample began, and the round before cannot have it: two senders use one number.
+    /// Takes frames in order of arrival. True if the frame contradicts one of its own sample shortly after
+    /// that sample began, and cannot be of the round before: two senders use one number.
     [[nodiscard]] bool is_of_no_round(const wire::JointState& frame, HostTime now);
 
   private:
     struct Round {
         HostTime begun;
         HostTime newest;
-        bool is_in_one_go = true;  ///< no frame of another number came among its own
+        bool is_in_one_go = true;  ///< no frame of another number arrived among its own
         std::array<std::optional<wire::JointState>, 4> parts;
     };
     struct Rounds {

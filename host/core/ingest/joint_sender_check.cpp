@@ -11,15 +11,16 @@ namespace octoskin {
 namespace {
 
 constexpr unsigned kRound = wire::kJointSequenceCount;
-/// Of a period: within it a second sender's sample meets that of the first one with the same number.
+/// In periods: within this time, a second sender's sample meets the first sender's sample of the same number.
 constexpr double kWaitMin = 1.25;
-/// Where the next sample does not come: half a round, but no more than poses are interpolated across.
+/// In periods, if the next sample does not arrive: half a round. At most the gap that poses are interpolated
+/// over.
 constexpr double kWaitMax = 4.0;
 constexpr Nanoseconds kWaitLongest{100'000'000};
-/// Of the samples of the last round no more than a flood of them.
+/// Limits the stored samples of the last round during a flood.
 constexpr std::size_t kRecentMax = 4UL * kRound;
 
-/// Of a bus that delays one frame in twenty, by most of a round.
+/// Contradictions per second on a bus that delays one frame in twenty by most of a round.
 std::size_t late_max(double rate_hz) {
     return static_cast<std::size_t>(std::max(1.0, rate_hz / 4.0));
 }
@@ -55,7 +56,7 @@ void JointSenderCheck::on_sample(std::uint8_t sequence, const JointMeasurement& 
         return;
     }
     waiting_.push_back(sample);
-    if (waiting_.size() > kRound) {  // held back, and here at once: each of them has a successor
+    if (waiting_.size() > kRound) {  // delayed, and arrived at once: each has a successor
         ended.emplace_back(waiting_.front().joints);
         waiting_.pop_front();
     }
@@ -90,10 +91,10 @@ bool JointSenderCheck::hears_two(HostTime now) const {
     return found_ && std::chrono::abs(now - *found_) < kHeardFor;
 }
 
-/// One sender has no two samples under one number within a round, and none whose numbers are further apart
-/// than their times: as much as JointPace allows for jitter, and half a period more.
+/// One sender has no two samples with one number within a round, and no two samples whose numbers are further
+/// apart than their times. Tolerance: the jitter that JointPace allows and half a period.
 bool JointSenderCheck::contradict(const Sample& a, const Sample& b) const {
-    if (a.joints.relocks != b.joints.relocks) return false;  // what passed between them nobody knows
+    if (a.joints.relocks != b.joints.relocks) return false;  // their distance in time is unknown
     const bool is_ordered = a.joints.sampled <= b.joints.sampled;
     const Sample& first = is_ordered ? a : b;
     const Sample& second = is_ordered ? b : a;
@@ -116,7 +117,7 @@ void JointSenderCheck::find_two(HostTime now, Ended& ended) {
     for (std::size_t i = 0; i < waiting_.size(); ++i)
         ended.emplace_back(unexpected(JointReason::second_sender));
     waiting_.clear();
-    recent_.clear();  // what came so far has told what it has to tell
+    recent_.clear();  // already evaluated
 }
 
 }  // namespace octoskin

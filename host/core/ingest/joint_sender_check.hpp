@@ -1,4 +1,4 @@
-// Whether the joint states under the rig's joint node come from one sender.
+// Checks that the joint states under the rig's joint node come from one sender.
 #pragma once
 
 #include <cstddef>
@@ -15,46 +15,49 @@
 
 namespace octoskin {
 
-/// Each sender counts its samples from 0 to 7, one a period. What a second one sends takes a number that the
-/// first one uses a moment later, for another time or posture, or it is out of step with the numbers about
-/// it. Which of the two is true cannot be decided, so that a sample is used only once its successor is here
-/// and nothing has contradicted it: a quarter of a period after the first sender's own sample of that number
-/// must have come. From the first contradiction on no sample is used until a second after the last one.
+/// Each sender counts its samples from 0 to 7, one a period. A sample of a second sender takes a number that
+/// the first sender uses shortly before or after for another time or posture, or its number does not fit the
+/// numbers around it. Which sender is the true one cannot be decided. A sample is therefore used only once
+/// its successor has arrived and nothing has contradicted it: a quarter of a period after the first sender's
+/// own sample of that number must have arrived. After a contradiction, no sample is used until a second after
+/// the last one.
 class JointSenderCheck {
   public:
-    /// `waits`: false where joint states come from this machine alone, and nobody else can send under their
-    /// node: then each is used as it comes.
+    /// `waits`: false if joint states come from this machine only, so that no other sender can use their node
+    /// id. Each sample is then used as it arrives.
     JointSenderCheck(double rate_hz, bool waits);
 
-    /// A sample that need not wait any longer, or why it is not used.
+    /// A sample that need not wait any longer, or the reason why it is not used.
     using Ended = std::vector<Result<JointMeasurement, JointReason>>;
 
-    /// A whole sample whose time is known and whose source keeps the rig's rate, in the order of arrival.
+    /// Takes complete samples whose time is known and whose source keeps the rig's rate, in order of arrival.
     void on_sample(std::uint8_t sequence, const JointMeasurement& joints, HostTime now, Ended& ended);
-    /// Of which rounds two frames of one number are that contradict each other.
+    /// The rounds of two frames of one number that contradict each other.
     enum class Rounds : std::uint8_t {
-        any,   ///< nobody knows
+        any,   ///< unknown
         none,  ///< one of them is of no round that the number's sender has sent
-        one,   ///< both tell their time
+        one,   ///< both contain their time, and are of one round
     };
-    /// A frame came that differs from one of the same number. If that one's sample waits, or both are of one
-    /// round, it is of another sender. If it is not whole, the frame may as well be late by most of a round,
-    /// as no sound bus has it: more of them within a second than a quarter of the rig's samples are of
-    /// another sender, and two of those that are of no round: one may have been altered on its way.
+    /// A frame differs from an earlier one of the same number. If that one's sample waits, or both are of one
+    /// round, the frame is from another sender. If the sample is incomplete, the frame may also be late by
+    /// most of a round, which does not happen on a healthy bus. Another sender is then assumed after more
+    /// such frames within a second than a quarter of the rig's samples, or after two frames of no round: one
+    /// alone may have been corrupted.
     void on_contradiction(std::uint8_t sequence, Rounds rounds, HostTime now, Ended& ended);
-    /// It is `now`: what has waited long enough has ended.
+    /// Advances to `now`: ends samples that have waited long enough.
     void advance(HostTime now, Ended& ended);
-    /// It is `now`: if that is before what waits came, the time went back, and what waits is used.
+    /// If `now` is before the arrival of the newest waiting sample, the time jumped back: ends and uses all
+    /// of them.
     void settle_if_back(HostTime now, Ended& ended);
-    /// Nothing more will come: what waits is used.
+    /// Nothing more will arrive: uses all waiting samples.
     void settle(Ended& ended);
 
     [[nodiscard]] std::size_t waiting() const noexcept { return waiting_.size(); }
     [[nodiscard]] bool hears_two(HostTime now) const;
-    /// How often two senders were found to contradict each other.
+    /// Number of contradictions found between two senders.
     [[nodiscard]] std::uint64_t contradictions() const noexcept { return contradictions_; }
 
-    /// A sender that was silent for so long is heard no more.
+    /// Time without a contradiction after which a second sender is no longer assumed.
     static constexpr Nanoseconds kHeardFor{1'000'000'000};
 
   private:
@@ -69,11 +72,11 @@ class JointSenderCheck {
 
     Nanoseconds period_;
     bool waits_;
-    std::deque<Sample> waiting_;  ///< in the order of arrival; a round at most
-    std::deque<Sample> recent_;   ///< of the last round, in the order of arrival
+    std::deque<Sample> waiting_;  ///< in order of arrival; at most one round
+    std::deque<Sample> recent_;   ///< samples of the last round, in order of arrival
     RateLimit late_;
     RateLimit foreign_{1};
-    std::optional<HostTime> found_;  ///< the newest contradiction
+    std::optional<HostTime> found_;  ///< time of the newest contradiction
     std::uint64_t contradictions_ = 0;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMicro = 1e6;
 
-/// A node's 32-bit counter of microseconds, running as the host's clock does.
+/// A node's 32-bit microsecond counter that runs with the host's clock.
 NodeTime node_time(HostTime time) {
     return {static_cast<std::uint32_t>(time.ns / 1000)};
 }
@@ -29,7 +29,7 @@ Result<std::array<wire::CanFrame, wire::kFramesPerJointSample>, LocalJointFault>
         if (std::abs(position[i]) > kLargest) return unexpected(LocalJointFault::too_large);
         micro[i] = static_cast<std::int32_t>(std::nearbyint(position[i] * kMicro));
     }
-    // A sample from before the newest is for the gate to refuse.
+    // A sample older than the newest one is rejected later, by the intake.
     if (newest_ && sampled >= *newest_ && sampled - *newest_ < distance_min_)
         return unexpected(LocalJointFault::too_soon);
     newest_ = sampled;

@@ -1,5 +1,5 @@
-// Joint states that come from this machine rather than from the bus: a node in all but the wire, whose clock
-// is the host's own. So they take the same way, and a recording's log holds them, as if a node had sent them.
+// Converts joint states of this machine to CAN frames, as if a node whose clock is the host's own had sent
+// them. They take the same path as bus frames and are recorded in the same log.
 #pragma once
 
 #include <array>
@@ -15,12 +15,12 @@
 
 namespace octoskin {
 
-/// Why a sample cannot be put into frames.
+/// Why a sample cannot be converted to frames.
 enum class LocalJointFault : std::uint8_t {
-    wrong_count,  ///< not one value for each of the rig's joints
+    wrong_count,  ///< number of values differs from the number of the rig's joints
     not_a_number,
-    too_large,  ///< beyond the +-8.38 rad of the wire
-    too_soon,   ///< after the sample before it
+    too_large,  ///< beyond the +-8.38 rad of the wire format
+    too_soon,   ///< too soon after the sample before
 };
 [[nodiscard]] constexpr std::array<const char*, 4> names_of(LocalJointFault) {
     return {"wrong_count", "not_a_number", "too_large", "too_soon"};
@@ -28,14 +28,15 @@ enum class LocalJointFault : std::uint8_t {
 
 class LocalJoints {
   public:
-    /// `node_id`: the rig's source of joint states; `joint_count`: as many as it sends, 1..7. `rate_hz`: the
-    /// rig's. An arm's driver may tell a thousand samples a second: those less than three quarters of a
-    /// period after the one before are left out, since nobody on the bus can tell so many apart.
+    /// `node_id`: the rig's source of joint states. `joint_count`: number of joints it sends, 1..7.
+    /// `rate_hz`: the rig's rate. An arm's driver may deliver 1000 samples a second. Samples less than three
+    /// quarters of a period after the one before are refused, because their sequence numbers would wrap too
+    /// fast.
     LocalJoints(wire::NodeId node_id, std::size_t joint_count, double rate_hz);
 
-    static constexpr double kLargest = 8.388607;  ///< what a frame's 24 bits with sign hold
-    /// The frames of one sample, taken at `sampled` on the host's clock. Radians (metres for a prismatic
-    /// joint), in the rig's order.
+    static constexpr double kLargest = 8.388607;  ///< limit of a frame's signed 24-bit field
+    /// The frames of one sample taken at `sampled` on the host's clock. `position`: radians (metres for a
+    /// prismatic joint), in the rig's order.
     [[nodiscard]] Result<std::array<wire::CanFrame, wire::kFramesPerJointSample>, LocalJointFault> frames(
         HostTime sampled, std::span<const double> position);
 
@@ -45,8 +46,8 @@ class LocalJoints {
   private:
     wire::NodeId node_id_;
     std::size_t joint_count_;
-    Nanoseconds distance_min_;        ///< the least time between two samples
-    std::optional<HostTime> newest_;  ///< when the newest sample was taken that became frames
+    Nanoseconds distance_min_;        ///< minimum time between two samples
+    std::optional<HostTime> newest_;  ///< time of the newest sample that became frames
     std::uint8_t sequence_ = 0;
 };
 

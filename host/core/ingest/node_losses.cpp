@@ -17,7 +17,7 @@ std::int64_t index_of(HostTime at) {
 
 bool is_loss(ReadingReason reason) noexcept {
     const bool is_of_clock = reason == ReadingReason::clock_in_doubt || reason == ReadingReason::clock_silent;
-    const bool is_of_word =  // a node that is usable now has told nothing of that but by another sender
+    const bool is_of_word =  // a usable node reported none of these itself: another sender did
         reason == ReadingReason::node_time_suspect || reason == ReadingReason::node_info_mismatch;
     return is_of_clock || is_of_word ||
            (reason > ReadingReason::duplicate && reason <= ReadingReason::too_old);

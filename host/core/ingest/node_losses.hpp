@@ -1,4 +1,4 @@
-// What became of a node's readings: of the last second, and of all.
+// Results of a node's readings: over the last second, and in total.
 #pragma once
 
 #include <array>
@@ -11,28 +11,29 @@
 
 namespace octoskin {
 
-/// Because of the time, the numbers, the sender or what the node seemed to tell: nothing of these is usual,
-/// and no sensor can be blamed for it. Not: what comes before the clock is known, nor a sensor whose times
-/// its own node calls uncertain.
+/// True for rejections because of the time, the sequence numbers, the sender or what the node seemed to
+/// report. None of these is usual, and no sensor causes them. False for readings before the clock is known,
+/// and for a sensor whose capture times its own node reports as uncertain.
 [[nodiscard]] bool is_loss(ReadingReason reason) noexcept;
 
 class NodeLosses {
   public:
-    /// More than this share, and more than one, is worth a word.
+    /// A larger share than this, and more than one reading, is worth reporting.
     static constexpr double kShareMax = 0.05;
 
-    /// A reading came while "now" was known; a bus that repeats one brings none.
+    /// A reading arrived while the host time was known. A repeated frame does not count.
     void on_reading(HostTime now) {
         tenth_of(now).readings += 1;
         all_.take_in();
     }
-    /// One was refused, maybe of an earlier moment.
+    /// A reading was rejected, perhaps one that arrived earlier.
     void on_refused(HostTime now, ReadingReason reason);
-    /// What became of one that was not refused; empty: it is in the map.
+    /// Result of a reading that was not rejected; empty: it is in the map.
     void on_fate(std::optional<ReadingReason> rejected) noexcept {
         rejected ? all_.reject(*rejected) : all_.use();
     }
-    /// Of all that came while "now" was known; those without a fate so far are pending.
+    /// Counters of all readings that arrived while the host time was known; those without a result are
+    /// pending.
     [[nodiscard]] AccountTable table() const {
         return tabulate("readings", all_, all_.in() - all_.used() - all_.rejected());
     }
@@ -41,21 +42,21 @@ class NodeLosses {
         double share = 0.0;  ///< of the readings of the last second
         ReadingReason most = ReadingReason::duplicate;
     };
-    /// Empty: no more than `kShareMax`.
+    /// Empty if no more than `kShareMax` is lost.
     [[nodiscard]] std::optional<Loss> worth_a_word(HostTime now) const;
 
   private:
     static constexpr std::size_t kTenths = 10;
     static constexpr std::size_t kReasons = names_of(ReadingReason{}).size();
-    /// What came within a tenth of a second.
+    /// What arrived within a tenth of a second.
     struct Tenth {
-        std::int64_t index = -1;  ///< of the tenth, on the host's clock
+        std::int64_t index = -1;  ///< number of the tenth on the host's clock
         std::uint32_t readings = 0;
         std::array<std::uint32_t, kReasons> refused{};
     };
     [[nodiscard]] Tenth& tenth_of(HostTime now);
 
-    std::array<Tenth, kTenths> tenths_{};  ///< a ring
+    std::array<Tenth, kTenths> tenths_{};  ///< ring buffer
     Account<ReadingReason> all_;
 };
 

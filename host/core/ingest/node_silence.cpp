@@ -11,11 +11,11 @@ struct Look {
     SensorSilence what;
 };
 
-/// Of another sensor, or of all others: whether that comes of it which does not come of a silent one.
+/// Whether the data that one sensor does not deliver arrive from another sensor, or from all others.
 enum class Comes : std::uint8_t { no, unclear, yes };
 
-/// All that fall silent at once were heard last within a second of each other, as SENSOR_HEALTH comes once a
-/// second; and as much may pass until all are heard again.
+/// All sensors that fall silent at once were last heard within a second of each other, because SENSOR_HEALTH
+/// comes once a second. Another second may pass until all are heard again.
 Comes are_words_of(const SensorRecord& other, const SensorRecord& silent, HostTime now) {
     constexpr Nanoseconds kSure{1'500'000'000};
     const auto& newest = other.words.newest();
@@ -25,8 +25,8 @@ Comes are_words_of(const SensorRecord& other, const SensorRecord& silent, HostTi
     return now - *newest < kSure ? Comes::unclear : Comes::no;
 }
 
-/// In the newest step or in all: where all lose as much, or lose no more, each is found out at its own next
-/// SENSOR_HEALTH.
+/// Loses readings in the newest step or over all steps. If all sensors lose about as many, or none loses any
+/// more, each one's own next SENSOR_HEALTH shows it.
 bool loses_some(const SentCount& sent, HostTime now) {
     constexpr double kSome = 0.2;
     const auto is_some = [](const std::optional<SentCount::Loss>& loss) {
@@ -35,13 +35,14 @@ bool loses_some(const SentCount& sent, HostTime now) {
     return is_some(sent.newest_loss(now, 1)) || is_some(sent.newest_loss(now));
 }
 
-/// And still: in the newest step it loses half of that.
+/// Mostly lost, and still so: in the newest step it loses half of that share.
 bool is_mostly_lost(const SentCount& sent, HostTime now) {
     const auto loss = sent.newest_loss(now);
     return loss && loss->is_over(kMostlyLost) && sent.newest_loss(now, 1)->is_over(kMostlyLost / 2);
 }
 
-/// One that came by chance is no sign, nor one of a slow sensor that was on its way when all fell silent.
+/// A single reading that arrives by chance is no sign, nor is a slow sensor's reading that was on its way
+/// when all sensors fell silent.
 Comes are_readings_of(const Look& other, const Look& silent, HostTime now) {
     constexpr Nanoseconds kSure{1'000'000'000};
     const Stretch& arrivals = other.record.arrivals;
@@ -68,7 +69,7 @@ Comes comes_of_others(const std::vector<Look>& looks, const Look& silent, HostTi
     return most;
 }
 
-/// Unheard is what all are; of readings that are lost the lesser is true of all.
+/// `unheard` holds for all if it holds for one; of the two kinds of lost readings, the lesser holds for all.
 SensorSilence of_both(SensorSilence some, SensorSilence others) {
     const bool is_first = some == SensorSilence::none;
     const bool is_unheard = some == SensorSilence::unheard || others == SensorSilence::unheard;
@@ -94,7 +95,8 @@ bool is_unheard(const SensorRecord& sensor, std::optional<HostTime> now) {
 
 SensorSilence silence_of(const SensorRecord& sensor, Nanoseconds period, HostTime now) {
     constexpr Nanoseconds kSilent{1'000'000'000};
-    constexpr Nanoseconds kOvertaken{200'000'000};  // by a health message, on a bus that was away
+    // a health message may overtake readings on a bus that was interrupted
+    constexpr Nanoseconds kOvertaken{200'000'000};
     if (is_unheard(sensor, now)) return SensorSilence::unheard;
     const bool is_ranging = sensor.health && sensor.health->state == wire::SensorState::ranging;
     const auto& newest = sensor.arrivals.newest();

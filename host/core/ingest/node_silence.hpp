@@ -1,4 +1,4 @@
-// What does not come of the sensors of a node that is usable.
+// What is missing from the sensors of a usable node.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,21 @@
 
 namespace octoskin {
 
-/// The worst that holds of a sensor.
+/// The worst condition that holds for a sensor.
 enum class SensorSilence : std::uint8_t {
-    none,         ///< or what there is to judge by does not suffice yet
-    mostly_lost,  ///< of the readings that its node sent within some 3 s over half did not come
-    /// No reading for a second and three periods, though its node says that it ranges, and sent more
-    /// meanwhile than may be on the way.
+    none,         ///< none, or too little data to decide yet
+    mostly_lost,  ///< over half of the readings that its node sent within about 3 s did not arrive
+    /// No reading for a second and for three periods, although its node reports that it ranges and has sent
+    /// more readings meanwhile than can be on their way.
     no_readings,
     unheard,  ///< is_unheard()
 };
 
-/// Neither a reading nor SENSOR_HEALTH came of it for SensorRecord::kUnheardAfter, nor was its node unusable
-/// meanwhile: how it is, is not known. False while "now" is unknown.
+/// Neither a reading nor SENSOR_HEALTH of the sensor arrived for SensorRecord::kUnheardAfter, while its node
+/// was usable throughout: the sensor's condition is unknown. False while the host time is unknown.
 [[nodiscard]] bool is_unheard(const SensorRecord& sensor, std::optional<HostTime> now);
 
-/// More than this share of what is sent is mostly lost.
+/// A sensor is mostly lost if more than this share of its sent readings does not arrive.
 inline constexpr double kMostlyLost = 0.5;
 /// `period`: as configured.
 [[nodiscard]] SensorSilence silence_of(const SensorRecord& sensor, Nanoseconds period, HostTime now);
@@ -36,14 +36,14 @@ struct NodeSilence {
         std::size_t index = 0;
         SensorSilence what = SensorSilence::none;
     };
-    /// It is the whole node's: of its other sensors it does not come either. What is in `sensors` beside it
-    /// is worse.
+    /// A condition of the whole node: the node's other sensors have it, too. Entries in `sensors` beside it
+    /// are worse.
     SensorSilence of_all = SensorSilence::none;
-    /// Of these alone. One is in neither while it is not clear yet whether it is alone: of others that comes
-    /// again what did not come of them.
+    /// Sensors that have a condition alone. A sensor is in neither field while it is undecided whether it is
+    /// alone, because data from the other sensors have just resumed.
     std::vector<OfSensor> sensors;
 };
-/// Of a node of the rig that is usable at `now`. O(sensors squared) where some are silent.
+/// For a node of the rig that is usable at `now`. O(sensors squared) if some are silent.
 [[nodiscard]] NodeSilence silence_of(const RangeGate& ranges, const HostNode& node, HostTime now);
 
 }  // namespace octoskin

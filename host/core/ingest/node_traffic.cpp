@@ -22,7 +22,7 @@ std::uint32_t readings_per_s(const HostNode& node) {
     return readings;
 }
 
-/// Frames that the rig has a node send in a second. A reading counts as one, shared or not.
+/// Frames per second of a node by the rig. Each reading counts as one frame, even if several share one.
 std::size_t frames_per_s(const HostNode& node, double joint_rate_hz) {
     const std::uint32_t readings = readings_per_s(node);
     const auto sensors = static_cast<std::uint32_t>(node.sensors.size());

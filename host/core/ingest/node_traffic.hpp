@@ -1,5 +1,5 @@
-// Whether what comes under a node id is what the rig has one node say: not over twice as much, and not two
-// senders' readings.
+// Checks that the traffic under a node id fits one node of the rig: at most twice the expected rate, and
+// readings of one sender only.
 #pragma once
 
 #include <cstddef>
@@ -14,32 +14,33 @@
 
 namespace octoskin {
 
-/// Judged by "now" on the bus, so that a replay judges as the daemon did.
+/// Decides by host time, so that a replay decides as the daemon did.
 ///
-/// Frames that a stalled machine held back come in a bunch, and that is no fault of their node. After a pause
-/// of over 140 ms "now" is unknown until an exchange confirms it (HostClockConfig::ahead_tolerance); whoever
-/// calls gives no time then, nor in the second that follows: what comes is not counted. A shorter pause moves
-/// a seventh of a second's frames at most into another second, and a node sends half of what it may.
+/// Frames that a stalled machine delayed arrive in a bunch, which is not the node's fault. After a pause of
+/// over 140 ms, the host time is unknown until an exchange confirms it (HostClockConfig::ahead_tolerance).
+/// The caller then passes no time, nor in the second that follows, and frames are not counted. A shorter
+/// pause moves the frames of at most a seventh of a second into another second, and a node sends half of what
+/// it may.
 class NodeTraffic {
   public:
-    /// `joint_rate_hz`: of the joint states that it sends; 0 for none.
+    /// `joint_rate_hz`: rate of the joint states that it sends; 0 for none.
     NodeTraffic(const HostNode& node, double joint_rate_hz);
 
-    /// A frame of this node that passed the checks of its format. False: over `frames_max` came within a
-    /// second. `now`: empty while nothing is to be counted.
+    /// A frame of this node that passed the format checks. False: more than `frames_max` arrived within a
+    /// second. `now`: empty while frames are not to be counted.
     [[nodiscard]] bool keeps_with_frame(std::optional<HostTime> now);
-    /// A reading of a sensor that it has. False: the readings of more than half of its sensors are doubled.
-    /// Those of one are where more of a second's were numbered as the one before, or lower, than half of what
-    /// the rig has of it in a second, and one. Of two senders' readings at least every second one is; a bus
-    /// that repeats and delays makes fewer, and so does a node that begins anew. Of fewer sensors the node is
-    /// not to blame: SenderWatch.
+    /// A reading of a sensor that the node has. False: the readings of more than half of its sensors are
+    /// doubled. A sensor's readings are doubled if, within a second, more readings than half the rig's rate
+    /// plus one have the number of the reading before or a lower one. With two senders, at least every second
+    /// reading is such. A bus that repeats and delays causes fewer, and so does a node that restarts. If
+    /// fewer sensors are doubled, the node is not at fault: SenderWatch.
     [[nodiscard]] bool keeps_with_reading(const wire::RangeReading& reading, std::optional<HostTime> now);
 
-    /// Twice what the rig has the node send in a second, and `kHeldBack`.
+    /// Twice the node's frames per second by the rig, plus `kHeldBack`.
     [[nodiscard]] std::size_t frames_max() const noexcept { return frames_max_; }
 
-    /// Frames beyond the limit that a second may hold: what waited in a controller, or in a socket's queue,
-    /// when it began was sent in the one before.
+    /// Frames beyond the limit that a second may contain: frames that waited in a controller or a socket's
+    /// queue at its beginning were sent in the second before.
     static constexpr std::size_t kHeldBack = 8;
 
   private:
@@ -49,10 +50,10 @@ class NodeTraffic {
         explicit Numbers(const HostSensor& sensor);
         RateLimit repeated;
         std::optional<std::uint8_t> newest;
-        std::optional<HostTime> doubled;  ///< the newest that was one too many
+        std::optional<HostTime> doubled;  ///< the newest repeated number beyond the limit
     };
     [[nodiscard]] bool are_most_doubled(HostTime now) const;
-    std::vector<Numbers> numbers_;  ///< of each sensor
+    std::vector<Numbers> numbers_;  ///< one for each sensor
 };
 
 }  // namespace octoskin

@@ -9,8 +9,8 @@
 namespace octoskin {
 namespace {
 
-/// The classical frame's field ends at 127 mm and then only says "at least": taken as the largest that a
-/// device can tell, so that a limit means the same on both kinds of bus.
+/// The field of a classical frame saturates at 127 mm and then means "at least". It is read as the largest
+/// value that a device can report, so that a limit means the same on both kinds of bus.
 double sigma_m_of(const wire::RangeReading& reading) {
     constexpr std::uint16_t kClassicalEnd = 127 * 4;
     constexpr std::uint16_t kLargest = 0xFFFF;
@@ -19,7 +19,7 @@ double sigma_m_of(const wire::RangeReading& reading) {
     return 0.25e-3 * (is_saturated ? kLargest : reading.sigma_quarter_mm);
 }
 
-/// A reading waits 50 ms at most on its node; the rest is bus and host.
+/// A reading waits at most 50 ms on its node; the rest is transport and host.
 constexpr Nanoseconds kTransportMax{100'000'000};
 
 ReadingReason reason_of(SequenceFault fault) {
@@ -36,14 +36,15 @@ ReadingReason reason_of(SequenceFault fault) {
     return ReadingReason::out_of_window;
 }
 
-/// By its node's last word. A node sends no readings of such a sensor; one that does, or one that comes
-/// before the word that all is well again, has no right to the map.
+/// By the newest report of its node. A node sends no readings of such a sensor. Readings that arrive all the
+/// same, or before the report that the sensor is well again, are refused.
 bool is_misconfigured(const SensorRecord& record) {
     return record.health && record.health->state == wire::SensorState::degraded &&
            record.health->fault == wire::SensorFault::config_mismatch;
 }
 
-/// Its age makes no capture time possible; empty: it may be true. "Now" may be `now_early` behind.
+/// Why its age makes the capture time impossible; empty: it is possible. The host time may be `now_early`
+/// behind.
 std::optional<ReadingReason> age_fault(Nanoseconds age, Nanoseconds half_window, Nanoseconds now_early) {
     if (age < half_window - now_early) {
         return ReadingReason::too_young;
@@ -82,7 +83,7 @@ void RangeGate::on_arrival(wire::NodeId node, const wire::RangeReading& reading,
 void RangeGate::on_fate(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected) {
     SensorRecord& record = sensors_.at({node, sensor}).record;
     record.newest_rejected = rejected;
-    if (rejected) {  // of the others the map has the last word
+    if (rejected) {  // the result of an accepted reading comes from the map
         record.fates.note(rejected);
     }
 }
@@ -99,9 +100,9 @@ bool RangeGate::is_certain(const Sensor& sensor, const MappedTime& captured) con
     return told && captured.error_bound + *told <= limits_.time_uncertainty_max;
 }
 
-/// Ranging windows of one sensor do not overlap. The sensor's oscillator may be 7 % fast, and each time
-/// carries an error: three quarters of the nominal window leave room for both. A sensor that keeps to its
-/// period is never twice as quick: of a slow one no second sender's readings fit between.
+/// Ranging windows of one sensor do not overlap. The sensor's oscillator may be 7 % fast, and each time has
+/// an error: three quarters of the nominal window leave room for both. A sensor that keeps its period is
+/// never twice as fast: a second sender's readings do not fit between those of a slow sensor.
 Nanoseconds RangeGate::spacing_min(const Sensor& sensor, wire::NodeId node, HostTime now) const {
     const auto since = rate_overridden_since_.find(node);
     const bool is_as_configured =
@@ -123,10 +124,11 @@ void RangeGate::on_contradiction(Sensor& sensor, wire::NodeId node, HostTime now
     contradicted_[node] = now;
 }
 
-/// What a frame says beside its time: whether its number was here before.
+/// Checks whether the reading's number was received before, independent of its time.
 std::optional<ReadingReason> RangeGate::number_fault(Sensor& sensor, wire::NodeId node,
                                                      const wire::RangeReading& reading, HostTime now) {
-    constexpr Nanoseconds kDelayMax{250'000'000};  // of one frame against another: transport, a held bus
+    // delay of one frame relative to another: transport, or a stalled bus
+    constexpr Nanoseconds kDelayMax{250'000'000};
     const Nanoseconds turn_min = spacing_min(sensor, node, now) * wire::kSequenceCount - kDelayMax;
     switch (sensor.said.compare(reading, now, turn_min)) {
         case SaidNumbers::Fate::is_new:
@@ -142,8 +144,8 @@ std::optional<ReadingReason> RangeGate::number_fault(Sensor& sensor, wire::NodeI
     return std::nullopt;
 }
 
-/// A reading whose time is known takes its number only if that can be true: the one that has the number may
-/// come yet.
+/// A reading of known time takes its number only if the time is possible: otherwise the true reading of that
+/// number may still arrive.
 std::optional<ReadingReason> RangeGate::place_fault(Sensor& sensor, const Arrival& arrival) {
     const Nanoseconds half_window = Nanoseconds{sensor.expected.timing_budget} / 2;
     if (const auto fault = age_fault(arrival.now - arrival.captured, half_window, now_early_)) {
@@ -212,7 +214,7 @@ Result<RangeMeasurement, ReadingReason> RangeGate::check(wire::NodeId node, cons
                                                          const MappedTime& captured, HostTime now,
                                                          bool is_clock_questioned) {
     Sensor& sensor = sensors_.at({node, reading.sensor});
-    if (!is_certain(sensor, captured)) {  // such a time is no evidence of what came before what
+    if (!is_certain(sensor, captured)) {  // such a time does not determine the order of readings
         return unexpected(skip(node, reading, now).value_or(ReadingReason::time_uncertain));
     }
     if (const auto fault = number_fault(sensor, node, reading, now)) {
@@ -255,10 +257,11 @@ Result<RangeMeasurement, ReadingReason> RangeGate::check(wire::NodeId node, cons
     return measurement;
 }
 
-/// Its twin comes within the age limit if both have one time; if not, half a period after it at the latest,
-/// and 60 ms for the node and the bus.
+/// The reading of the same number arrives within the age limit if both have the same time. Otherwise it
+/// arrives at most half a period later, plus 60 ms for the node and the bus.
 std::optional<HostTime> RangeGate::held_until(const RangeMeasurement& measurement, HostTime now) const {
-    constexpr Nanoseconds kPeriodMax{250'000'000};  // of what docs/reliability.md promises for
+    // the longest period that docs/reference/reliability.md covers
+    constexpr Nanoseconds kPeriodMax{250'000'000};
     constexpr Nanoseconds kOnItsWay{60'000'000};
     const auto contradicted = contradicted_.find(measurement.source.node_id);
     if (contradicted == contradicted_.end() || std::chrono::abs(now - contradicted->second) >= kSuspicion) {

@@ -1,5 +1,5 @@
-// The last check before a reading becomes a measurement: how certain its time is, its place in the sequence,
-// its age, its status, its zone, its figures.
+// The last check before a reading becomes a measurement: certainty of its time, place in the sequence, age,
+// status, zone and values.
 #pragma once
 
 #include <algorithm>
@@ -27,32 +27,32 @@
 
 namespace octoskin {
 
-/// What is known of one sensor, for a person to read.
+/// Everything that is known about one sensor, for people.
 struct SensorRecord {
-    std::uint64_t received = 0;                     ///< readings that came, each counted once
-    std::optional<wire::RangeReading> newest;       ///< of those, whatever became of it
-    Stretch arrivals;                               ///< of readings, without breaks (`break_after`)
+    std::uint64_t received = 0;                     ///< readings that arrived, each counted once
+    std::optional<wire::RangeReading> newest;       ///< the newest of them, whatever its result
+    Stretch arrivals;                               ///< arrivals of readings without a break (`break_after`)
     std::optional<ReadingReason> newest_rejected;   ///< why it was not accepted, or not put into the map
-    FateHistory fates;                              ///< of the newest readings
+    FateHistory fates;                              ///< results of the newest readings
     std::array<std::uint64_t, 32> device_status{};  ///< how often each code came
     SequenceTracker sequence;
     std::optional<wire::SensorHealth> health;
     std::optional<wire::SignalReading> signal;
-    /// Bound on the error of its capture times, as the node told it last in its present life.
+    /// Bound on the error of its capture times, from the node's newest report since it started.
     std::optional<Nanoseconds> capture_bound;
-    std::uint64_t reflexes = 0;          ///< times that something came closer than the sensor's limit
+    std::uint64_t reflexes = 0;          ///< how often something came closer than the sensor's limit
     std::optional<wire::Reflex> reflex;  ///< the newest
-    SentCount sent;                      ///< and what of it was lost
-    /// Its readings and SENSOR_HEALTH; begun when its node became usable (RangeGate::expect).
+    SentCount sent;                      ///< readings sent and lost
+    /// Its readings and SENSOR_HEALTH; begins when its node becomes usable (RangeGate::expect).
     Stretch words;
     static constexpr Nanoseconds kUnheardAfter{3'000'000'000};
-    /// What was lost while nothing at all came is no sign of what is lost from here on.
+    /// Losses during complete silence do not predict the losses that follow.
     void note_word(std::optional<HostTime> now) noexcept {
         const auto& before = words.newest();
         if (!now || !before || *now - *before > kUnheardAfter) sent.forget_steps();
         words.note(now, kUnheardAfter);
     }
-    /// Of a sensor of this period, configured, the readings do not come while none does for so long.
+    /// A sensor of this configured period has stopped delivering if no reading arrives for this time.
     [[nodiscard]] static constexpr Nanoseconds break_after(Nanoseconds period) noexcept {
         return std::max(Nanoseconds{500'000'000}, 2 * period);
     }
@@ -60,71 +60,71 @@ struct SensorRecord {
 
 class RangeGate {
   public:
-    /// `uses_no_return`: beams without return may clear space; if not, they are rejected here. `now_early`:
-    /// "now" may be this much behind (ClockMapConfig::now_slack).
+    /// `uses_no_return`: beams without return may clear space; otherwise they are rejected here. `now_early`:
+    /// the host time may be this much behind (ClockMapConfig::now_slack).
     explicit RangeGate(const HostRig& rig, bool uses_no_return,
                        Nanoseconds now_early = ClockMapConfig{}.now_slack);
 
     [[nodiscard]] bool knows(wire::NodeId node, std::uint8_t sensor) const {
         return sensors_.contains({node, sensor});
     }
-    /// Any reading of a known sensor, whatever becomes of it.
+    /// For every reading of a known sensor, whatever its result.
     void on_arrival(wire::NodeId node, const wire::RangeReading& reading, std::optional<HostTime> now);
-    /// What became of the newest reading, at this gate or before it.
+    /// Result of the newest reading, at this gate or before it.
     void on_fate(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected);
-    /// What became of a reading that was accepted here.
+    /// Result, in the map, of a reading that was accepted here.
     void on_fate_in_map(wire::NodeId node, std::uint8_t sensor, std::optional<ReadingReason> rejected);
-    /// After `on_arrival`, for a reading whose node is usable and whose time is known.
-    /// `is_clock_questioned`: others of its node have impossible times, so that it must show by its own that
-    /// the clock goes on.
+    /// Call after `on_arrival`, for a reading whose node is usable and whose time is known.
+    /// `is_clock_questioned`: other readings of its node have impossible times, so that its own time must
+    /// show that the clock continues.
     [[nodiscard]] Result<RangeMeasurement, ReadingReason> check(wire::NodeId node,
                                                                 const wire::RangeReading& reading,
                                                                 const MappedTime& captured, HostTime now,
                                                                 bool is_clock_questioned = false);
 
-    /// Until when a reading that was accepted has to wait, because a second sender may speak under its node's
-    /// name: until its true twin would have come. Empty: not at all.
+    /// Until when an accepted reading is held because a second sender may send under its node's id: until the
+    /// true reading of the same number would have arrived. Empty: not held.
     [[nodiscard]] std::optional<HostTime> held_until(const RangeMeasurement& measurement, HostTime now) const;
-    /// For so long after a contradiction the readings of its node wait.
+    /// The readings of a node are held for this time after a contradiction.
     static constexpr Nanoseconds kSuspicion{60'000'000'000};
-    /// No reading waits longer after its capture: less than a map in the order of capture waits for it.
+    /// Maximum hold after capture: shorter than the delay of a map that takes readings in order of capture.
     static constexpr Nanoseconds kHeldMax{240'000'000};
 
-    /// After `on_arrival`, for a reading that cannot be checked: its node is not usable, or its time not
-    /// known. Its number is compared and taken all the same: else another sender, that has the node's
-    /// readings refused for what the node seems to tell, could send its own under their numbers. Returns what
-    /// is wrong with its number. `now`: empty while unknown, and then there is nothing to compare by.
+    /// Call after `on_arrival`, for a reading that cannot be checked: its node is not usable, or its time is
+    /// unknown. Its number is compared and recorded all the same. Otherwise another sender that makes the
+    /// node's readings refused could send its own under their numbers. Returns the fault of its number.
+    /// `now`: empty while unknown; then nothing is compared.
     [[nodiscard]] std::optional<ReadingReason> skip(wire::NodeId node, const wire::RangeReading& reading,
                                                     std::optional<HostTime> now);
 
     /// `now`: empty while unknown.
     void on_health(wire::NodeId node, const wire::SensorHealth& health,
                    std::optional<HostTime> now = std::nullopt);
-    /// By what its node told last, its capture times alone are within what the rig allows.
+    /// True if, by its node's newest report, the capture times alone are within the rig's limit.
     [[nodiscard]] bool is_certain(wire::NodeId node, std::uint8_t sensor) const {
         return is_certain(sensors_.at({node, sensor}), MappedTime{});
     }
     void on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal);
-    /// Counted whoever the node is: it is for people and for arms, and does not touch the map.
+    /// Counted for every state of the node: it serves people and arms and does not affect the map.
     void on_reflex(wire::NodeId node, const wire::Reflex& reflex);
-    /// The node was not usable so far, or "now" is another than before: what its sensors say is expected from
-    /// here on.
+    /// The node was not usable until now, or the host time has jumped: data of its sensors are expected from
+    /// now on.
     void expect(wire::NodeId node, std::optional<HostTime> now);
-    /// The node began anew: its sequences, its counts, and what it told.
+    /// The node restarted: clears its sequences, its counts and its reports.
     void forget(wire::NodeId node);
-    /// The times of the newest readings were wrong: their order says nothing.
+    /// The times of the newest readings were wrong: clears the order of the readings.
     void forget_order(wire::NodeId node);
-    /// An exchange with the node agrees with those before: its clock goes on.
+    /// An exchange with the node agrees with earlier ones: its clock continues.
     void on_clock_confirmed(wire::NodeId node);
-    /// One does not: what was refused for its time was no second sender's.
+    /// An exchange disagrees: readings refused for their time do not show a second sender.
     void on_clock_contradicted(wire::NodeId node);
-    /// Its node's newest heartbeat: its sensors range at another period than configured, or as configured.
-    /// The former counts once all heartbeats of a second have said so: one alone may be another sender's,
-    /// which wants room for its readings between those of a slow sensor.
+    /// The node's newest heartbeat: its sensors range at another period than configured (`is_overridden`), or
+    /// as configured. An override counts once all heartbeats of a second have reported it. A single one may
+    /// come from another sender that wants room for its readings between those of a slow sensor.
     void on_rate(wire::NodeId node, bool is_overridden, std::optional<HostTime> now);
     static constexpr Nanoseconds kOverriddenFor{1'000'000'000};
 
-    /// A frame under this node's id did not fit its checksum.
+    /// A frame under this node's id had a wrong checksum.
     void on_damage(wire::NodeId node, HostTime now);
 
     [[nodiscard]] const SensorRecord& record(wire::NodeId node, std::uint8_t sensor) const {
@@ -148,7 +148,7 @@ class RangeGate {
         for (auto& [id, sensor] : sensors_)
             if (id.node_id == node) act(sensor);
     }
-    /// One reading, with all that its place depends on.
+    /// One reading, with everything that its place depends on.
     struct Arrival {
         wire::NodeId node = 0;
         const wire::RangeReading& reading;
@@ -169,8 +169,10 @@ class RangeGate {
     bool uses_no_return_;
     Nanoseconds now_early_;
     SensorTable<Sensor> sensors_;
-    std::map<wire::NodeId, HostTime> rate_overridden_since_;  ///< all heartbeats have said so
-    std::map<wire::NodeId, HostTime> contradicted_;  ///< the newest contradiction of any of its sensors
+    /// since when all heartbeats have reported an override
+    std::map<wire::NodeId, HostTime> rate_overridden_since_;
+    /// the newest contradiction of any of the node's sensors
+    std::map<wire::NodeId, HostTime> contradicted_;
 };
 
 }  // namespace octoskin

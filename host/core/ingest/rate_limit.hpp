@@ -1,4 +1,4 @@
-// Whether something happens more often than a limit allows, by the bus's own time.
+// Checks whether events occur more often than a limit allows, by host time.
 #pragma once
 
 #include <cstddef>
@@ -8,19 +8,20 @@
 
 namespace octoskin {
 
-/// Exact: of all seconds that there are, wherever they begin, none may hold more than `per_second` events.
+/// Exact: no interval of one second, wherever it begins, may contain more than `per_second` events.
 class RateLimit {
   public:
-    /// At least one. Allocates its memory here, and none later.
+    /// `per_second`: at least one. Allocates its memory here, and none later.
     explicit RateLimit(std::size_t per_second);
 
-    /// One more event; false if it is one too many for the second that ends with it. Before the newest one
-    /// it counts as if at that; a second or more before, those until then were of another time. O(1).
+    /// Adds an event; false if it exceeds the limit in the second that ends with it. An event before the
+    /// newest counts as simultaneous with it; one a second or more before starts a new count, because the
+    /// time jumped. O(1).
     [[nodiscard]] bool keeps_with_event(HostTime at);
 
   private:
-    std::vector<HostTime> times_;  ///< of the last `per_second` events, a ring
-    std::size_t next_ = 0;         ///< where the oldest is, once all are taken
+    std::vector<HostTime> times_;  ///< times of the last `per_second` events, a ring buffer
+    std::size_t next_ = 0;         ///< position of the oldest, once the buffer is full
     std::size_t taken_ = 0;
     HostTime newest_;
 };

@@ -21,7 +21,7 @@ std::size_t ReadingHold::drop(wire::NodeId node, std::uint8_t sensor) {
 }
 
 std::vector<RangeMeasurement> ReadingHold::take_due(HostTime now) {
-    constexpr Nanoseconds kLeapt{1'000'000'000};  // none waits a quarter as long
+    constexpr Nanoseconds kLeapt{1'000'000'000};  // no hold is a quarter as long
     std::vector<RangeMeasurement> due;
     std::erase_if(waiting_, [&](const auto& entry) {
         const Waiting& waiting = entry.second;

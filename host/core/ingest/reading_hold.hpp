@@ -1,4 +1,4 @@
-// Readings that wait whether another sender contradicts them.
+// Holds readings that another sender may still contradict.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,19 @@
 
 namespace octoskin {
 
-/// Bounded: each sensor has 64 numbers, and of each number one waits at most.
+/// Bounded: each sensor has 64 numbers, and at most one reading of each number is held.
 class ReadingHold {
   public:
-    /// False: one of its sensor and number waits already, and this one does not.
+    /// False: a reading of the same sensor and number is already held; this one is not stored.
     [[nodiscard]] bool put(const RangeMeasurement& measurement, std::uint8_t sequence, HostTime until);
-    /// Takes out the one of this number: how many there were, 0 or 1.
+    /// Removes the reading of this number. Returns how many there were, 0 or 1.
     std::size_t drop(wire::NodeId node, std::uint8_t sensor, std::uint8_t sequence);
-    /// Takes out all of this sensor: how many there were.
+    /// Removes all readings of this sensor. Returns how many there were.
     std::size_t drop(wire::NodeId node, std::uint8_t sensor);
-    /// Takes out those that have waited long enough, or from which "now" has leapt away, the earliest first.
+    /// Removes and returns readings that are due, or whose due time is far from `now` after a time jump,
+    /// earliest first.
     [[nodiscard]] std::vector<RangeMeasurement> take_due(HostTime now);
-    /// Takes out all.
+    /// Removes and returns all readings, earliest first.
     [[nodiscard]] std::vector<RangeMeasurement> take_all();
     [[nodiscard]] std::size_t size() const noexcept { return waiting_.size(); }
 

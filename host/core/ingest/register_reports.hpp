@@ -1,5 +1,5 @@
-// What a node says of registers that its sensors do not read back as written: each on one sensor, or alike on
-// several, where it is how this type of part is.
+// Registers that, by a node's reports, its sensors do not read back as written: on single sensors, or the
+// same on several, which is a property of this type of part.
 #pragma once
 
 #include <array>
@@ -14,15 +14,16 @@ namespace octoskin {
 
 class RegisterReports {
   public:
-    /// A page with another fault changes nothing.
+    /// Takes a fault page. A page with another kind of fault changes nothing.
     void take(const wire::InfoFault& fault);
 
-    /// Of one sensor; empty if its node named none, or has learnt since that it is alike on several.
+    /// For one sensor; empty if its node reported none, or later found the same on several sensors.
     [[nodiscard]] const std::optional<wire::RegisterReport>& of_sensor(std::uint8_t sensor) const {
         return of_sensors_.at(sensor);
     }
-    /// Alike on several sensors: of each register and value read one, at most as many as a node learns. Their
-    /// subject is how many sensors had shown it when it was learnt.
+    /// Registers that read the same on several sensors: one report for each register and value read, at most
+    /// as many as a node stores. The `subject` of a report is the number of sensors that had shown it at that
+    /// time.
     [[nodiscard]] const std::vector<wire::RegisterReport>& alike() const noexcept { return alike_; }
 
   private:
@@ -33,9 +34,9 @@ class RegisterReports {
 
 /// "register 0x47 was written 0x0B and reads 0x0C".
 [[nodiscard]] std::string text_of(const wire::RegisterReport& report);
-/// How to leave it out, for a person: the rig's key with that register. `node`: its name in the rig.
+/// Text for people: the rig's key that leaves this register out. `node`: its name in the rig.
 [[nodiscard]] std::string leave_out_text(const wire::RegisterReport& report, const std::string& node);
-/// That several sensors have it alike, and that nothing is withheld for it.
+/// Text for people: several sensors have it, and no reading is withheld for it.
 [[nodiscard]] std::string alike_text(const wire::RegisterReport& report);
 
 }  // namespace octoskin

@@ -1,4 +1,4 @@
-// Which counter counts what the parts of the intake refuse.
+// Maps the faults of the intake's parts to the reasons that are counted.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ namespace octoskin {
 [[nodiscard]] FrameReason reason_of(SyncFault fault);
 
 /// Times that no sensor can produce: the node's clock has jumped since the last exchange, or the reading is
-/// not the node's. A jump shows at the next reading unless it shifts readings by less than their distance
-/// less the least that the gate allows.
+/// from another sender. A jump shows at the next reading, unless it shifts readings by less than their
+/// distance minus the smallest distance that the gate allows.
 [[nodiscard]] bool contradicts_clock(ReadingReason reason);
 
 template <class Reason>

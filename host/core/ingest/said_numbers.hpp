@@ -1,5 +1,5 @@
-// What one sensor's readings said under each of the last 64 numbers: whether one that has a number of those
-// is the same again, or another sender's.
+// Contents of one sensor's readings under each of the last 64 numbers: decides whether a reading that reuses
+// one of these numbers is a repeat or comes from another sender.
 #pragma once
 
 #include <array>
@@ -14,23 +14,24 @@ namespace octoskin {
 class SaidNumbers {
   public:
     enum class Fate : std::uint8_t {
-        is_new,  ///< nothing came under its number within this turn of the numbers
-        same,    ///< it was here already
-        other,   ///< one with its number said something else
+        is_new,  ///< no reading arrived under its number within this round of the numbers
+        same,    ///< the same reading was received before
+        other,   ///< a reading with its number had other contents
     };
-    /// By arrival, which a node's clock cannot make wrong. `turn_min`: the numbers never come round quicker.
-    /// Of one that says something else the contents are kept, too: a bus that repeats it tells nothing new.
+    /// Compares by arrival time, which a wrong node clock does not affect. `turn_min`: the shortest time in
+    /// which the numbers wrap. Of a reading with other contents, the contents are stored, too: its repeats
+    /// are not counted again.
     [[nodiscard]] Fate compare(const wire::RangeReading& reading, HostTime now, Nanoseconds turn_min);
     /// This reading has its number from now on.
     void take(const wire::RangeReading& reading, HostTime now);
-    /// The numbers begin anew.
+    /// The numbers restart.
     void restart() noexcept { said_ = {}; }
 
   private:
     struct Said {
         wire::RangeReading reading;
         HostTime came;
-        std::optional<wire::RangeReading> other;  ///< the newest that said something else
+        std::optional<wire::RangeReading> other;  ///< the newest with other contents
     };
     std::array<std::optional<Said>, wire::kSequenceCount> said_;
 };

@@ -1,4 +1,4 @@
-// Whether what a node reports about itself comes from two senders: one thing and the contrary, by turns.
+// Checks whether two senders report about one node: contradicting values that alternate.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,24 @@
 
 namespace octoskin {
 
-/// What decides whether a node's readings count: whether it suspects its time, its node_hash, its build, and
-/// of each sensor whether its times are certain enough. A node changes none of the first three while it runs.
-/// It reports a sensor's bound once a second, and at once where that grows: its verdict changes up to three
-/// times within a second. A damaged frame that passes CRC-8 makes two changes. More are two senders.
+/// Covers the reports that decide whether a node's readings count: whether it suspects its time, its
+/// node_hash, its build, and for each sensor whether its times are certain enough. A node does not change the
+/// first three while it runs. It reports a sensor's bound once a second, and at once when the bound grows:
+/// that result changes at most three times within a second. A damaged frame that passes CRC-8 causes two
+/// changes. More changes come from two senders.
 class SelfReportCheck {
   public:
     enum class Fact : std::uint8_t { time_suspect, hash_low, hash, build, certain };
 
-    /// `sensor`: 0 where the fact is not of one. `now`: empty while unknown; then nothing is judged.
-    /// Allocates at the first of each fact.
+    /// `sensor`: 0 if the fact is not about a sensor. `now`: empty while unknown; then nothing is decided.
+    /// Allocates at the first report of each fact.
     void on_report(Fact fact, std::uint8_t sensor, std::uint32_t value, std::optional<HostTime> now);
-    /// The node started anew, and may be another build.
+    /// The node restarted, perhaps with another build.
     void forget() noexcept;
 
-    /// One fact changed too often within the last kNamedFor.
+    /// True if one fact changed too often within the last kNamedFor.
     [[nodiscard]] bool hears_two(HostTime now) const noexcept;
-    /// Changes that were one too many for their second.
+    /// Number of changes beyond the limit.
     [[nodiscard]] std::uint64_t contradictions() const noexcept { return contradictions_; }
 
     static constexpr std::size_t kChangesMax = 3;  ///< within a second

@@ -7,14 +7,14 @@
 namespace octoskin {
 namespace {
 
-/// "Now" may leap: as far in the future is as long ago.
+/// The host time may jump: a time in the future counts as equally long ago.
 bool is_within(const std::optional<HostTime>& then, HostTime now, Nanoseconds span) noexcept {
     return then && std::chrono::abs(now - *then) < span;
 }
 
 std::size_t strays_max(Nanoseconds period) {
     constexpr Nanoseconds kSecond{1'000'000'000};
-    constexpr std::int64_t kAtLeast = 6;  // of a slow sensor, too, five a second are only named
+    constexpr std::int64_t kAtLeast = 6;  // also for a slow sensor, five a second are only reported
     const std::int64_t readings_per_s = kSecond / std::max(period, Nanoseconds{1'000});
     return static_cast<std::size_t>(std::max(kAtLeast, readings_per_s / 4));
 }

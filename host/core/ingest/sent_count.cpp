@@ -35,7 +35,7 @@ void SentCount::on_health(std::uint16_t sent, std::uint64_t received, std::optio
     if (now) set_mark({*now, sent_, received});
 }
 
-/// Steps of a second: a node that is asked, or whose sensor changes, sends more messages between.
+/// Steps of about a second: a node that is queried, or whose sensor changes, sends additional messages.
 void SentCount::set_mark(const Mark& mark) noexcept {
     constexpr Nanoseconds kStep{900'000'000};
     if (marks_count_ > 0) {

@@ -40,7 +40,7 @@ Result<SequencePlace, SequenceFault> SequenceTracker::place(std::uint8_t sequenc
 
 Result<SequencePlace, SequenceFault> SequenceTracker::place_later(std::uint8_t sequence, HostTime captured,
                                                                   Nanoseconds spacing_min) const {
-    // The same number again is a whole turn later: 63 are missing.
+    // The same number again is a whole wrap later: 63 are missing.
     const unsigned ahead = sequence == *newest_ ? wire::kSequenceCount : steps(*newest_, sequence);
     if (captured - *captured_[*newest_] < spacing_min * ahead) {
         return unexpected(ahead > kWindow ? SequenceFault::behind : SequenceFault::too_soon);

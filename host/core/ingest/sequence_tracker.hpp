@@ -1,4 +1,4 @@
-// The readings of one sensor in their order: which are new, which were here before, how many are missing.
+// Tracks the order of one sensor's readings: which are new, which are repeats, how many are missing.
 #pragma once
 
 #include <array>
@@ -14,34 +14,35 @@ namespace octoskin {
 enum class SequenceFault : std::uint8_t {
     duplicate,      ///< the same reading again
     out_of_window,  ///< more than 32 readings old, or a later number with an earlier time
-    too_soon,       ///< closer to its neighbours than so many ranging windows can be
-    behind,         ///< an earlier number with a later time: no clock makes one sender say that
+    too_soon,       ///< closer to its neighbours than that many ranging windows allow
+    behind,  ///< an earlier number with a later time, which one sender never sends, whatever its clock does
 };
 
-/// Where a reading belongs.
+/// The place of a reading in the sequence.
 struct SequencePlace {
-    bool is_newest = true;   ///< false: it came late
-    unsigned left_out = 0;   ///< numbers between it and the newest before it
-    bool is_counted = true;  ///< false: readings of unknown time came between, or none before
+    bool is_newest = true;   ///< false: it arrived late
+    unsigned left_out = 0;   ///< numbers between it and the newest reading before it
+    bool is_counted = true;  ///< false: readings of unknown time came between, or there is none before it
 };
 
-/// Six bits of sequence number alone cannot tell 40 lost readings from one that is 24 late: the capture time
-/// does. A reading that is refused takes no number: the one that has it may still come.
+/// Six bits of sequence number alone do not distinguish 40 lost readings from one that is 24 late. The
+/// capture time does. A refused reading takes no number: the true reading of that number may still arrive.
 class SequenceTracker {
   public:
-    /// For readings in the order of arrival. `spacing_min`: two readings of a sensor are never closer.
+    /// Takes readings in order of arrival. `spacing_min`: the smallest distance of two readings of the
+    /// sensor.
     [[nodiscard]] Result<SequencePlace, SequenceFault> place(std::uint8_t sequence, HostTime captured,
                                                              Nanoseconds spacing_min) const;
     /// The reading has its number from now on, at the place that was found.
     void take(std::uint8_t sequence, HostTime captured, const SequencePlace& place);
-    /// Both: takes it if it has a place.
+    /// Calls `place`, and `take` if there is a place.
     [[nodiscard]] Result<SequencePlace, SequenceFault> observe(std::uint8_t sequence, HostTime captured,
                                                                Nanoseconds spacing_min);
 
-    /// A reading came whose time nobody knows: what the next one leaves out is no gap.
+    /// A reading of unknown time arrived: the numbers that the next one leaves out are not counted as a gap.
     void skip() noexcept { has_skipped_ = true; }
 
-    /// The numbers begin anew, or the times of the newest readings were wrong. Gaps found so far stay
+    /// The numbers restart, or the times of the newest readings were wrong. Gaps that were counted stay
     /// counted.
     void restart() noexcept {
         captured_ = {};
@@ -49,15 +50,15 @@ class SequenceTracker {
         has_skipped_ = false;
     }
 
-    /// Readings that never came, so far as sequence numbers tell: exact while fewer than 64 are lost at once.
-    /// A late one that is still used is taken off again.
+    /// Readings that never arrived, by sequence numbers: exact while fewer than 64 are lost at once. A late
+    /// reading that is still used is subtracted.
     [[nodiscard]] std::uint64_t gaps() const noexcept { return gaps_; }
 
   private:
     [[nodiscard]] Result<SequencePlace, SequenceFault> place_later(std::uint8_t sequence, HostTime captured,
                                                                    Nanoseconds spacing_min) const;
 
-    /// What is known of the last 64 numbers.
+    /// Capture times under the last 64 numbers, where known.
     std::array<std::optional<HostTime>, wire::kSequenceCount> captured_;
     std::optional<std::uint8_t> newest_;
     std::uint64_t gaps_ = 0;

@@ -1,4 +1,4 @@
-// What comes again and again: when it came last, and since when without a break.
+// Time of the newest of repeated events, and since when they have occurred without a break.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@ namespace octoskin {
 
 class Stretch {
   public:
-    /// It comes. After more than `break_after` without it, that is a new stretch; so is what comes while
-    /// "now" is unknown (empty), and after.
+    /// An event occurs. A new stretch begins after more than `break_after` without an event, and with an
+    /// event while the host time is unknown (empty) or the first one after that.
     void note(std::optional<HostTime> now, Nanoseconds break_after) noexcept {
         const bool goes_on = now && newest_ && *now - *newest_ <= break_after;
         if (!goes_on) since_ = now;
         newest_ = now;
     }
-    /// The newest of the stretch; empty: none yet, or "now" was unknown then.
+    /// The newest event of the stretch; empty: none yet, or the host time was unknown then.
     [[nodiscard]] const std::optional<HostTime>& newest() const noexcept { return newest_; }
-    /// From the first of the stretch to its newest.
+    /// From the first event of the stretch to its newest.
     [[nodiscard]] Nanoseconds length() const noexcept {
         return newest_ && since_ ? *newest_ - *since_ : Nanoseconds{0};
     }

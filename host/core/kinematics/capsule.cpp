@@ -5,16 +5,16 @@
 namespace octoskin {
 namespace {
 
-/// The nearer root of |offset + range * slope|^2 = radius^2 that lies ahead, for an origin outside. `offset`
-/// and `slope` may be full vectors (a sphere) or their parts across an axis (an infinite cylinder).
+/// The nearer positive root of |offset + range * slope|^2 = radius^2 for an origin outside. `offset` and
+/// `slope` are full vectors for a sphere, or their parts across the axis for an infinite cylinder.
 std::optional<double> first_root(const Eigen::Vector3d& offset, const Eigen::Vector3d& slope,
                                  double radius_m) {
     const double quadratic = slope.squaredNorm();
     const double half_linear = offset.dot(slope);
-    // Across an axis the slope vanishes for a ray along it: such a ray enters through an end, or not at all.
+    // For a ray along the axis, the slope across it is 0: such a ray enters through an end or not at all.
     if (!(quadratic > 1e-18) || !(half_linear < 0.0)) return std::nullopt;
-    // Distance of closest approach from its own vector: the textbook b^2 - ac loses half the digits for a far
-    // origin.
+    // The distance of closest approach is computed from its own vector: the usual b^2 - ac loses half the
+    // digits for a far origin.
     const Eigen::Vector3d closest = offset - (half_linear / quadratic) * slope;
     const double chord_squared = radius_m * radius_m - closest.squaredNorm();
     if (!(chord_squared >= 0.0)) return std::nullopt;
@@ -27,7 +27,7 @@ std::optional<double> nearer(std::optional<double> left, std::optional<double> r
     return std::min(*left, *right);
 }
 
-/// Where the ray enters the wall between the two ends.
+/// Range at which the ray enters the wall between the two ends.
 std::optional<double> wall_entry(const PosedCapsule& capsule, const Eigen::Vector3d& origin,
                                  const Eigen::Vector3d& direction) {
     const Eigen::Vector3d axis = capsule.p_b - capsule.p_a;
@@ -49,7 +49,8 @@ std::optional<double> wall_entry(const PosedCapsule& capsule, const Eigen::Vecto
 std::optional<double> ray_entry(const PosedCapsule& capsule, const Eigen::Vector3d& origin,
                                 const Eigen::Vector3d& direction) noexcept {
     if (distance_to_surface(capsule, origin) <= 0.0) return 0.0;
-    // Outside a convex body, the nearest point where the ray meets a part of its surface is the entry.
+    // For an origin outside a convex body, the entry is the nearest point at which the ray meets a part of
+    // the surface.
     const auto ends = nearer(first_root(origin - capsule.p_a, direction, capsule.radius_m),
                              first_root(origin - capsule.p_b, direction, capsule.radius_m));
     return nearer(wall_entry(capsule, origin, direction), ends);

@@ -1,5 +1,5 @@
-// A robot body as a capsule placed in space, and the two questions the self-filter asks of it: how far is a
-// point from its surface, and where does a ray enter it.
+// A part of the robot's body as a capsule in space, with the distance of a point from its surface and the
+// entry point of a ray.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +12,8 @@ namespace octoskin {
 /// Index of a link in its RobotModel.
 using LinkId = std::uint16_t;
 
-/// All points within `radius_m` of the segment from p_a to p_b, metres; equal ends are a sphere. The frame is
-/// stated by whoever holds it.
+/// All points within `radius_m` of the segment from p_a to p_b, metres; equal ends are a sphere. The owner
+/// states the frame.
 struct PosedCapsule {
     Eigen::Vector3d p_a = Eigen::Vector3d::Zero();
     Eigen::Vector3d p_b = Eigen::Vector3d::Zero();

@@ -61,7 +61,7 @@ const JointHistory::Sample& JointHistory::sample(std::size_t age_rank) const noe
     return ring_[(oldest_ + age_rank) % ring_.size()];
 }
 
-/// How many samples are older than `instant`, by bisection.
+/// The number of samples older than `instant`, by bisection.
 std::size_t JointHistory::first_not_before(HostTime instant) const noexcept {
     std::size_t low = 0;
     std::size_t high = size_;

@@ -1,4 +1,5 @@
-// Where the joints were: samples in, positions at any instant between them out. Never beyond them.
+// The history of the joints: takes samples and returns positions at any instant between them, never beyond
+// them.
 #pragma once
 
 #include <array>
@@ -15,14 +16,14 @@
 
 namespace octoskin {
 
-/// The position of every moved joint, radians (metres for a prismatic joint).
+/// Positions of all moved joints, radians (metres for a prismatic joint).
 struct JointPosition {
     std::array<double, kJointsMax> values{};
     std::size_t count = 0;
     [[nodiscard]] std::span<const double> span() const noexcept { return std::span(values).first(count); }
 };
 
-/// Why a sample was not taken; the history is unchanged.
+/// Why a sample was rejected; the history is unchanged.
 enum class JointRejection : std::uint8_t {
     wrong_count,
     not_finite,
@@ -33,23 +34,23 @@ inline constexpr std::size_t kJointRejections = 4;
 
 /// Why there is no position for an instant.
 enum class JointLookup : std::uint8_t {
-    not_yet,       ///< newer than every sample: ask again after the next one
-    gap,           ///< the samples about it are too far apart, now and for ever
-    before_first,  ///< older than the oldest sample held
+    not_yet,       ///< newer than all samples: repeat the query after the next sample
+    gap,           ///< the samples around it are too far apart; this is final
+    before_first,  ///< older than the oldest sample in the history
 };
 
 struct JointHistoryConfig {
     Nanoseconds nearest_max = std::chrono::milliseconds(50);   ///< from the instant to the nearest sample
-    Nanoseconds bracket_max = std::chrono::milliseconds(100);  ///< between the samples about it
-    /// A sample this far outside its limits is still taken: encoders and the wire's microradians round.
+    Nanoseconds bracket_max = std::chrono::milliseconds(100);  ///< between the samples around it
+    /// Tolerance of the joint limits: encoders and the wire's microradians round.
     double limit_tolerance = 0.005;
-    std::size_t capacity = 1024;  ///< samples; the oldest gives way. 10 s at 100 Hz
+    std::size_t capacity = 1024;  ///< samples; the oldest is overwritten. 10 s at 100 Hz
 };
 
-/// Two samples that no position is given between.
+/// Two samples that are too far apart for interpolation.
 struct JointGap {
     Nanoseconds between{0};
-    HostTime instant;  ///< that was asked for
+    HostTime instant;  ///< the requested instant
     HostTime from;     ///< the earlier of the two
 };
 
@@ -58,26 +59,26 @@ class JointHistory {
     /// `limits`: one per joint, at most kJointsMax; `config.capacity` at least 2.
     explicit JointHistory(std::span<const JointLimits> limits, const JointHistoryConfig& config = {});
 
-    /// Takes a sample or says why not. O(joints), no allocation.
+    /// Adds a sample or returns the reason for the rejection. O(joints), no allocation.
     Status<JointRejection> add(HostTime sampled, std::span<const double> position);
 
-    /// As if there had been no sample: their clock began anew.
+    /// Clears the history, because the samples' clock was reset.
     void forget() noexcept { size_ = 0; }
 
-    /// The position at an instant: a sample's own, or interpolated linearly between the two about it.
-    /// Equality with a limit of the configuration is within it. O(log capacity), no allocation.
+    /// The position at an instant: a sample's own, or interpolated linearly between the two samples around
+    /// it. A value equal to a limit of the configuration is within it. O(log capacity), no allocation.
     [[nodiscard]] Result<JointPosition, JointLookup> at(HostTime instant) const;
 
-    /// The samples about an instant for which `at` answers `gap` (asserted: there are two).
+    /// The samples around an instant for which `at` returns `gap` (asserted: there are two).
     [[nodiscard]] JointGap gap_about(HostTime instant) const;
 
-    /// Whether `at` gives its last word on this instant: a sample of that time or later is here. O(1).
+    /// True if the result of `at` for this instant is final: there is a sample of that time or later. O(1).
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept {
         return size_ > 0 && instant <= sample(size_ - 1).sampled;
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
-    /// Every sample that is held, the oldest first.
+    /// Visits all samples, the oldest first.
     void for_each(const std::function<void(HostTime, std::span<const double>)>& visit) const {
         for (std::size_t i = 0; i < size_; ++i) {
             visit(sample(i).sampled, std::span(sample(i).values).first(limits_.size()));

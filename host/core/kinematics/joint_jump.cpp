@@ -56,7 +56,7 @@ JointJump::Distance JointJump::distance(const Point& from, const Point& to) cons
     return largest;
 }
 
-/// The least time in which the arm comes from there to here, at its velocity limits.
+/// The least time, at the velocity limits, in which the arm moves between the two points.
 double JointJump::seconds_between(const Point& from, const Point& to) const {
     double longest = 0.0;
     for (std::size_t joint = 0; joint < limits_.size(); ++joint) {
@@ -66,8 +66,8 @@ double JointJump::seconds_between(const Point& from, const Point& to) const {
     return longest;
 }
 
-/// While the other track alone is heard, what the arm may have moved since the used one grows beyond the
-/// distance between the two: then the nearer one counts.
+/// While only the other track has new samples, the allowed movement since the used track's newest sample
+/// grows beyond the distance between the tracks. Then the track with the shorter travel time is taken.
 bool JointJump::is_on_used_track(const Point& point) const {
     if (distance(*used_, point).excess > 1.0) return false;
     const bool is_other_newer =
@@ -99,7 +99,8 @@ void JointJump::note_jump(const Point& point) {
     jumped_ = point.sampled;
 }
 
-/// The track that was used is heard no more. Those that jumped were this one's, unless some strayed.
+/// The used track is silent: changes to the track of `point`. The jumps belonged to this track, unless some
+/// strayed.
 void JointJump::adopt(const Point& point) {
     used_ = point;
     other_.reset();

@@ -1,5 +1,5 @@
-// Whether the arm can have moved from one joint sample to the next in the time between. Where two programs
-// tell joint states under one name, and nothing else tells them apart, this does.
+// Checks whether the arm can have moved from one joint sample to the next in the time between. It detects two
+// programs that send joint states under the same identifier, when nothing else separates them.
 #pragma once
 
 #include <array>
@@ -16,31 +16,31 @@
 namespace octoskin {
 
 struct JointJumpConfig {
-    /// Times the velocity limit of the joint: drivers round, and controllers overshoot.
+    /// Factor on the joint's velocity limit: drivers round, and controllers overshoot.
     double velocity_margin = 1.5;
-    /// Of the two times together. A sample without a time of its own is dated by when it came, and what is
-    /// sent every 10 ms may come in bursts every 20 ms.
+    /// Error of the two times together. A sample without its own time has that of its arrival, and samples
+    /// sent every 10 ms may arrive in bursts every 20 ms.
     Nanoseconds time_uncertainty{20'000'000};
-    /// Radians or metres: a text of two decimals.
+    /// Radians or metres. Covers sources that send text with two decimals.
     double resolution = 0.01;
-    /// Who has been silent for so long is heard no more.
+    /// After this silence a sender no longer counts as active.
     Nanoseconds heard_for{1'000'000'000};
 };
 
-/// A sample that is too far from the one before it.
+/// A sample that is too far from the sample before it.
 struct JointJumped {
-    std::size_t joint = 0;  ///< the one that is the furthest beyond what it may
+    std::size_t joint = 0;  ///< the joint that exceeds its limit the most
     double from = 0.0;      ///< radians or metres
     double to = 0.0;
-    double step_max = 0.0;  ///< what the joint may move in that time
+    double step_max = 0.0;  ///< the joint's allowed movement in that time
     Nanoseconds passed{0};
     HostTime sampled;
 };
 
-/// Follows two tracks: the one whose samples are used, and the newest that is too far from it. One sample
-/// that jumps is refused alone. After two within a second two senders are heard: neither is used until no
-/// sample has jumped for a second, or the track that was used has been silent for one. So a first sample that
-/// was wrong costs a second, and no track is shut out for ever.
+/// Follows two tracks: the used track and the newest one that is too far from it. A single sample that jumps
+/// is rejected alone. After two jumps within a second there are two senders: neither is used until no sample
+/// has jumped for a second, or until the used track has been silent for a second. So a wrong first sample
+/// costs one second, and no track is excluded permanently.
 class JointJump {
   public:
     /// `limits`: one per joint, at most kJointsMax, each with a velocity above 0 (asserted).
@@ -48,15 +48,15 @@ class JointJump {
 
     enum class Verdict : std::uint8_t {
         fits,
-        jumped,    ///< the sample is too far from the track that is used
-        withheld,  ///< it is on that track, and another is heard
+        jumped,    ///< the sample is too far from the used track
+        withheld,  ///< it is on the used track, but another track is active
     };
-    /// Samples in the order of their times: one that is not later than the newest is for the history to
-    /// refuse. `position` has one finite value per joint (asserted). `clock`: times of two clocks say nothing
-    /// of what passed between them: with another one it begins anew. O(1), no allocation.
+    /// Takes samples in the order of their times; the history rejects one that is not later than the newest.
+    /// `position` has one finite value per joint (asserted). `clock` identifies the clock of the times: times
+    /// of two clocks are not comparable, so a new clock resets the state. O(1), no allocation.
     [[nodiscard]] Verdict judge(HostTime sampled, std::span<const double> position, std::uint64_t clock = 0);
 
-    /// As if there had been no sample.
+    /// Clears all samples.
     void forget() noexcept;
 
     /// The newest sample that jumped; empty if none did.
@@ -67,7 +67,8 @@ class JointJump {
         HostTime sampled;
         std::array<double, kJointsMax> position{};
     };
-    /// The largest movement of a joint from there to here, as a multiple of what it may; and that joint.
+    /// The largest movement of a joint between two points, as a multiple of the allowed movement; and that
+    /// joint.
     struct Distance {
         double excess = 0.0;
         std::size_t joint = 0;
@@ -84,8 +85,8 @@ class JointJump {
     std::vector<JointLimits> limits_;
     JointJumpConfig config_;
     std::uint64_t clock_ = 0;
-    std::optional<Point> used_;             ///< the newest sample of the track that is used
-    std::optional<Point> other_;            ///< the newest that jumped
+    std::optional<Point> used_;             ///< the newest sample of the used track
+    std::optional<Point> other_;            ///< the newest sample that jumped
     std::optional<HostTime> jumped_;        ///< the newest jump
     std::optional<HostTime> jumped_twice_;  ///< the newest jump less than a second after another
     std::optional<HostTime> strayed_;       ///< the newest jump that was on neither track

@@ -1,4 +1,4 @@
-// How what a robot carries moves with one of its joints.
+// The motion of a body on the robot with one of its joints.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,18 +7,18 @@
 
 namespace octoskin {
 
-inline constexpr std::size_t kJointsMax = 7;  ///< a joint-state sample on the wire has as many
+inline constexpr std::size_t kJointsMax = 7;  ///< the limit of a joint-state sample on the wire
 
-/// A point p moves by turn x p + shift for each radian of the joint, or metre of a prismatic one. Zero: the
-/// joint does not move it. The frame is stated by whoever holds it.
+/// A point p moves by turn x p + shift per radian of the joint, or per metre of a prismatic joint. Zero: the
+/// joint does not move it. The owner states the frame.
 struct JointTwist {
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();
     Eigen::Vector3d shift = Eigen::Vector3d::Zero();
 };
-/// In the order of every joint vector.
+/// In the order of all joint vectors.
 using JointTwists = std::array<JointTwist, kJointsMax>;
 
-/// The same in frame a. About 10 ns.
+/// Transforms a twist from frame b to frame a. About 10 ns.
 [[nodiscard]] inline JointTwist placed(const Eigen::Isometry3d& T_a_b, const JointTwist& twist_b) {
     const Eigen::Vector3d turn = T_a_b.linear() * twist_b.turn;
     return {.turn = turn, .shift = T_a_b.linear() * twist_b.shift - turn.cross(T_a_b.translation())};

@@ -1,5 +1,5 @@
-// The robot's kinematics: joint positions in, the pose of every link out. KDL does the arithmetic and shows
-// nowhere outside the .cpp.
+// The robot's kinematics: joint positions in, the pose of each link out. KDL does the arithmetic and is used
+// only in the .cpp.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,14 +23,14 @@ enum class JointKind : std::uint8_t { fixed, revolute, continuous, prismatic };
 struct JointLimits {
     double min = 0.0;
     double max = 0.0;
-    double velocity_max = 0.0;  ///< per second; 0 in a description: it does not say
-    /// Or it is beyond them by no more than `tolerance`; false for a NaN.
+    double velocity_max = 0.0;  ///< per second; 0 in a description: not given
+    /// True if the position is within the limits or beyond them by at most `tolerance`; false for a NaN.
     [[nodiscard]] bool hold(double position, double tolerance) const noexcept {
         return position >= min - tolerance && position <= max + tolerance;
     }
 };
 
-/// A joint as its robot description has it.
+/// A joint of a robot description.
 struct JointDescription {
     std::string name;
     std::string parent_link;
@@ -42,13 +42,13 @@ struct JointDescription {
 };
 
 enum class RobotModelError : std::uint8_t {
-    unknown_joint,   ///< a joint to be moved is not in the description, or is fixed
-    repeated_joint,  ///< a joint is to be moved twice, or two joints have one name
+    unknown_joint,   ///< a moved joint is not in the description, or is fixed
+    repeated_joint,  ///< a joint is listed twice, or two joints have one name
     unmoved_joint,   ///< a joint that moves gets no position
-    two_parents,     ///< a link hangs from two joints: the description has a loop
-    unreachable,     ///< no way from the base link to this link
+    two_parents,     ///< a link has two parent joints: the description has a loop
+    unreachable,     ///< the link is not connected to the base link
     non_unit_axis,
-    invalid_number,  ///< NaN, infinity, a rotation that is none, or limits the wrong way round
+    invalid_number,  ///< NaN, infinity, an invalid rotation, or reversed limits
     too_large,       ///< more than 1000 links
 };
 struct RobotModelFault {
@@ -61,8 +61,8 @@ class RobotModel {
     static constexpr double kRevoluteVelocity = 4.0;   ///< rad/s
     static constexpr double kPrismaticVelocity = 1.0;  ///< m/s
 
-    /// `joints` in any order; `moved`: the joints that get positions, in the order of every joint vector. All
-    /// links must hang below `base_link`. Links are numbered so that parents come first; the base is link 0.
+    /// `joints`: in any order. `moved`: the joints that get positions, in the order of all joint vectors. All
+    /// links must be below `base_link`. Links are numbered with parents first; the base is link 0.
     [[nodiscard]] static Result<RobotModel, RobotModelFault> build(const std::string& base_link,
                                                                    std::span<const JointDescription> joints,
                                                                    std::span<const std::string> moved);
@@ -77,8 +77,9 @@ class RobotModel {
     /// By LinkId.
     [[nodiscard]] std::span<const std::string> link_names() const noexcept;
     [[nodiscard]] std::optional<LinkId> find_link(std::string_view name) const noexcept;
-    /// Of the moved joints, in their order; min and max are infinite for a continuous joint. `velocity_max`
-    /// is never 0: kRevoluteVelocity or kPrismaticVelocity where the description does not say.
+    /// Limits of the moved joints, in their order; min and max are infinite for a continuous joint.
+    /// `velocity_max` is never 0: it is kRevoluteVelocity or kPrismaticVelocity if the description gives
+    /// none.
     [[nodiscard]] std::span<const JointLimits> limits() const noexcept;
 
     /// T_base_link of every link, by LinkId. `position`: joint_count() radians or metres, finite;
@@ -86,14 +87,15 @@ class RobotModel {
     /// allocation; about 1 us for a 7-joint arm.
     void forward(std::span<const double> position, std::span<Eigen::Isometry3d> T_base_link) const noexcept;
 
-    /// Of each joint above `link`, base frame; the others' are zero. `T_base_link`: what forward() gave;
-    /// `twists`: at least joint_count() long. About 20 ns a joint.
+    /// Twists of `link` for each joint above it, base frame; zero for the other joints. `T_base_link`: the
+    /// result of forward(); `twists`: at least joint_count() long. About 20 ns per joint.
     void twists(LinkId link, std::span<const Eigen::Isometry3d> T_base_link,
                 std::span<JointTwist> twists) const noexcept;
 
-    /// By LinkId, metres: wherever the joints are, no origin of a link is further from the axis of any joint
-    /// that turns it. Of a prismatic joint only as long as it is no further from its 0 than `farthest`
-    /// (joint_count() long) says. It is the sum of the lengths between the joints, not the least there is.
+    /// By LinkId, metres: for all joint positions, the upper bound of the distance from a link's origin to
+    /// the axis of any joint that turns it. For a prismatic joint the bound holds up to `farthest`
+    /// (joint_count() long) from its zero. The bound is the sum of the lengths between the joints, not the
+    /// least possible bound.
     [[nodiscard]] std::vector<double> levers_m(std::span<const double> farthest) const;
 
   private:

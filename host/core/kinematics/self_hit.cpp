@@ -38,7 +38,7 @@ std::optional<double> predict_self_hit(std::span<const PosedCapsule> capsules, c
 
 namespace {
 
-/// False only if the ball about a capsule lies outside the cone.
+/// False only if the bounding sphere of the capsule lies outside the cone.
 bool may_meet(const PosedCapsule& capsule, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,
               double half_angle_rad) {
     const Eigen::Vector3d to_middle = 0.5 * (capsule.p_a + capsule.p_b) - origin;

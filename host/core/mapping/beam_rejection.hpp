@@ -1,4 +1,4 @@
-// Whether a beam can be mapped at all.
+// Checks that a beam can be mapped.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,7 @@ enum class BeamRejection : std::uint8_t {
     cone_too_large,      ///< its cone may have more voxels than `kConeVoxelsMax`
 };
 
-/// What is wrong with the beam's figures; `outside_map` and `cone_too_large` are not looked for. Empty:
-/// nothing.
+/// Checks the beam's values only, not `outside_map` and `cone_too_large`. Empty: no fault.
 [[nodiscard]] std::optional<BeamRejection> fault_of(const Beam& beam);
 
 }  // namespace octoskin

@@ -10,7 +10,7 @@
 namespace octoskin {
 namespace {
 
-/// Of a brick's voxels those whose stamp is `first` or more, and below the limit.
+/// The brick's voxels with a time stamp of at least `first` and below `limit`.
 BrickMask stamped_from_to(const StampView& view, std::uint16_t first, std::uint16_t limit) {
     BrickMask voxels{};
     if (view.values == nullptr) {
@@ -36,7 +36,7 @@ BrickMask known_in(const BrickView& view) {
 }
 
 BrickTree clamped_tree(const BrickTree& tree, const VoxelRules& rules) {
-    const auto clamp = [&](float& log_odds) {  // a NaN, which is an unknown voxel, stays one
+    const auto clamp = [&](float& log_odds) {  // a NaN (unknown voxel) stays a NaN
         log_odds = rules.clamped(log_odds);
     };
     BrickTree clamped = tree;
@@ -50,11 +50,11 @@ BrickTree clamped_tree(const BrickTree& tree, const VoxelRules& rules) {
     return clamped;
 }
 
-/// Of the limit of memory, in sixteenths.
+/// Shares of the memory limit, in sixteenths.
 constexpr std::size_t kCountShare = 3;
 constexpr std::size_t kAgeShare = 9;
 
-/// Of which that share is so much, or a byte more.
+/// The smallest limit of which this share holds `bytes`.
 constexpr std::size_t limit_for(std::size_t bytes, std::size_t share) {
     return (16 * bytes + share - 1) / share;
 }
@@ -104,7 +104,7 @@ void BrickEditor::date(MortonCode brick, const BrickMask& voxels, SensorKind kin
     if (!ages.has_begun()) return;
     bool is_dated = !ages.find(brick).is_unknown();
     if (!is_dated) {
-        // Refused, or of counts alone where nothing ever expires.
+        // Refused; or counts only, in a map where nothing expires.
         const bool is_to_expire = config_.age.unknown_after_s > 0 && has_counts(brick);
         if (layers_.log_odds.find(brick).is_unknown() && !is_to_expire) return;
         is_dated = has_room_to_date(brick);
@@ -131,7 +131,7 @@ void BrickEditor::date_all() {
         }
     };
     layers_.log_odds.for_each([&](MortonCode brick, const BrickView&) { date(brick); });
-    if (config_.age.unknown_after_s == 0) return;  // what is counted alone has a time to expire by
+    if (config_.age.unknown_after_s == 0) return;  // voxels with counts only need a time stamp only to expire
     layers_.counts.hits.for_each([&](MortonCode brick, const BrickView&) {
         if (layers_.log_odds.find(brick).is_unknown()) date(brick);
     });
@@ -151,7 +151,7 @@ BrickMask BrickEditor::measured_in(MortonCode brick) const noexcept {
 void BrickEditor::expire() {
     VoxelAges& ages = layers_.ages;
     const std::uint16_t limit = ages.stamp_before(config_.age.unknown_after_s);
-    // What was there before the clock has its time from then on.
+    // Voxels measured before the clock began have aged since it began.
     const bool takes_all = ages.runs_for_s() >= std::int64_t{config_.age.unknown_after_s};
     const auto first = static_cast<std::uint16_t>(takes_all ? 1 : VoxelAges::kOfBefore + 1);
     ages.look_at_due(first, limit, [&](MortonCode brick) {
@@ -159,7 +159,7 @@ void BrickEditor::expire() {
         if (count_of(voxels) == 0) return;
         expire_log_odds(brick, voxels);
         if (has_counts(brick)) layers_.counts.expire(brick, voxels);
-        ages.forget(brick, voxels);  // last: what there was no memory for is found again
+        ages.forget(brick, voxels);  // last: after a memory failure, the voxels are found again
     });
 }
 
@@ -182,9 +182,9 @@ void BrickEditor::expire_log_odds(MortonCode brick, const BrickMask& voxels) {
 bool BrickEditor::fill(const VoxelCube& cube, float log_odds) {
     assert(layers_.counts.empty());
     const std::size_t bricks = (std::size_t{1} << (3 * cube.height)) / kBrickVoxels;
-    // At once: a file may claim the whole octree.
+    // Checked in advance: a file may claim the whole octree.
     if (bricks > bytes_max() / BrickTree::kBrickBytes) return false;
-    // Adding 0 turns a -0 into a 0: equal values must be equal bytes in a file.
+    // Adding 0 turns -0 into 0: in a file, equal values must be equal bytes.
     const float value = rules_.clamped(log_odds) + 0.0F;
     const MortonCode first = morton_of(cube.lowest);
     const MortonCode end = first + (MortonCode{1} << (3 * cube.height));
@@ -229,7 +229,7 @@ void BrickEditor::fuse(MortonCode brick) {
         fused[cell] = voxel.log_odds;
         is_any_known = is_any_known || !std::isnan(voxel.log_odds);
     }
-    if (!is_any_known) return;  // counted only: it needs no place
+    if (!is_any_known) return;  // counts only: no log-odds to store
     BrickValues& values = layers_.log_odds.open(brick);
     for (std::size_t cell = 0; cell < kBrickVoxels; ++cell) set(values[cell], fused[cell]);
 }

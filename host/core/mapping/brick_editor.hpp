@@ -1,4 +1,5 @@
-// The only way to a map's bricks: opens them where there is room, counts what is refused, clamps, and dates.
+// The only writer of a map's bricks: opens them if there is room, counts refusals, clamps, and sets time
+// stamps.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +15,8 @@
 
 namespace octoskin {
 
-/// Of a map, for one change of it; TermWriter, ImageWriter and CountWriter use it for evidence. Holds
-/// references to what it is made of.
+/// Serves one change of a map; TermWriter, ImageWriter and CountWriter use it to apply evidence. Holds
+/// references to its constructor's arguments.
 class BrickEditor {
   public:
     BrickEditor(MapLayers& layers, const VoxelRules& rules, const MapConfig& config,
@@ -31,8 +32,8 @@ class BrickEditor {
         return rules_.is_occupied(layers_.log_odds.find(brick).at(cell));
     }
 
-    /// Makes `write` write a brick of the log-odds, unless there is no room or no memory for it. Space counts
-    /// as if each of its voxels had a value of its own, for each may come to have one.
+    /// Calls `write` to write a brick of the log-odds, unless there is no room or no memory for it. Room is
+    /// computed as if each of its voxels had its own value, because each may get one.
     template <class Write>
     [[nodiscard]] Status<MapRefusal> change(MortonCode brick, Write&& write) noexcept {
         if (layers_.log_odds.find(brick).is_unknown() && !has_room_for(brick))
@@ -44,9 +45,9 @@ class BrickEditor {
             return unexpected(&MapCounters::no_memory);
         }
     }
-    /// Begins to count in a brick, if that is to be, and gives its counts a place each.
+    /// Begins counting in a brick if it has no counts yet, and makes its counts writable.
     [[nodiscard]] Status<MapRefusal> open_counts(MortonCode brick) noexcept;
-    /// Counts what became of so many voxels.
+    /// Counts the result for `voxels` voxels.
     void note(const Status<MapRefusal>& done, std::size_t voxels) noexcept {
         counters_.*(done ? &MapCounters::applied : done.error()) += voxels;
     }
@@ -54,30 +55,30 @@ class BrickEditor {
         counters_.*counter += voxels;
     }
     [[nodiscard]] const MapCounters& counters() const noexcept { return counters_; }
-    /// Writes a voxel of an open brick; a NaN, if it had one.
+    /// Writes a voxel of an open brick. `log_odds` may be a NaN only if the voxel is one.
     void set(float& voxel, float log_odds) noexcept {
         layers_.known_voxels += std::isnan(voxel) && !std::isnan(log_odds) ? 1U : 0U;
         voxel = log_odds;
     }
 
-    /// Sensors of this kind measured these voxels now. Nothing if the map has no clock, for what is unknown
-    /// and never expires, and where there is no room (counted).
+    /// Records that sensors of this kind measured these voxels now. Does nothing if the map has no clock, for
+    /// unknown voxels that never expire, and if there is no room (counted).
     void date(MortonCode brick, const BrickMask& voxels, SensorKind kind) noexcept;
-    /// In this second or the one before, by its stamp.
+    /// True if the time stamp shows a camera in this second or the one before.
     [[nodiscard]] bool is_seen_by_camera(std::uint16_t stamp) const noexcept;
 
-    /// What is known or, if that can expire, counted and has no time: it was there when the clock began, for
-    /// all that is known. Throws std::bad_alloc.
+    /// Gives a time stamp to voxels without one that are known or, if they can expire, have counts: measured
+    /// before the clock began. Throws std::bad_alloc.
     void date_all();
-    /// Makes unknown what was last seen before AgeModel::unknown_after_s. Throws std::bad_alloc: what is left
-    /// then is found the next time.
+    /// Makes unknown all voxels that were last seen longer ago than AgeModel::unknown_after_s. Throws
+    /// std::bad_alloc; the next call finds the remaining ones.
     void expire();
-    /// Gives every voxel of a cube this value, clamped. False if there was no room; then part of the cube may
-    /// be set. There must be no counts (asserted). Throws std::bad_alloc.
+    /// Sets every voxel of a cube to this value, clamped. False if there was no room; part of the cube may
+    /// then be set. The map must have no counts (asserted). Throws std::bad_alloc.
     [[nodiscard]] bool fill(const VoxelCube& cube, float log_odds);
     /// Clamps all log-odds. Throws std::bad_alloc.
     void clamp_all();
-    /// Makes each voxel with counts what the rules come to. Throws std::bad_alloc.
+    /// Recomputes the log-odds of each voxel with counts by the rules. Throws std::bad_alloc.
     void fuse_all();
 
   private:
@@ -88,7 +89,7 @@ class BrickEditor {
     [[nodiscard]] bool has_room_to_count(MortonCode brick) const noexcept;
     [[nodiscard]] bool has_room_to_date(MortonCode brick) const noexcept;
     void fuse(MortonCode brick);
-    /// Voxels that are known, or counted.
+    /// Voxels that are known or have counts.
     [[nodiscard]] BrickMask measured_in(MortonCode brick) const noexcept;
     void expire_log_odds(MortonCode brick, const BrickMask& voxels);
 
@@ -98,11 +99,11 @@ class BrickEditor {
     MapCounters& counters_;
 };
 
-/// The least limit of memory that these layers are within, counts with their share of it. Times are of the
-/// same space, and have what room there is.
+/// The smallest memory limit that these layers comply with, counts with their share of it. Time stamps cover
+/// the same space and use the room that is left.
 [[nodiscard]] std::size_t bytes_needed(const MapLayers& layers) noexcept;
 
-/// What a tree takes if each voxel has a value of its own.
+/// Bytes of a tree if each voxel has its own value.
 [[nodiscard]] std::size_t bytes_at_most(const BrickTree& tree) noexcept;
 
 }  // namespace octoskin

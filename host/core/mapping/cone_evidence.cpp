@@ -15,7 +15,7 @@ void begin(Evidence& evidence, EvidenceRule rule) {
     evidence.hit = 0.0F;
 }
 
-/// In the cap's order, which a sum of shares depends on.
+/// In the cap's order, because the sum of shares depends on it.
 void add_cells(std::span<const CapVoxel> cap, Evidence& evidence) {
     for (const CapVoxel& voxel : cap) {
         BrickEvidence& brick = evidence.last(brick_of(voxel.key));
@@ -24,8 +24,8 @@ void add_cells(std::span<const CapVoxel> cap, Evidence& evidence) {
     }
 }
 
-/// Each brick once, behind the entries that are there, in the order of its first voxel. Voxels come in rows,
-/// and rows beside each other are of the same few bricks: the one wanted is among the last as a rule.
+/// Adds each brick once, after the existing entries, in the order of its first voxel. Voxels come in rows,
+/// and adjacent rows are in the same few bricks: the wanted brick is usually among the last.
 template <class Voxels, class KeyOf>
 void add_voxels(const Voxels& voxels, const KeyOf& key_of, Evidence& evidence) {
     const std::size_t first = evidence.bricks.size();

@@ -1,5 +1,5 @@
-// What the voxels of a cone's range are evidence of. All take the place of what `evidence` holds, keep its
-// memory, and throw std::bad_alloc; some 2 ns a voxel.
+// Converts the voxels of a cone's range to evidence. All functions replace the contents of `evidence`, keep
+// its memory, and throw std::bad_alloc; about 2 ns a voxel.
 #pragma once
 
 #include "host/core/mapping/cone_model.hpp"
@@ -8,13 +8,13 @@
 
 namespace octoskin {
 
-/// Hits for the cap, misses for what was passed. `prefers_occupied`: see Evidence.
+/// Hits for the cap, misses for the passed voxels. `prefers_occupied`: see Evidence.
 void make_counts(const ConeVoxels& cone, const ConeModel& model, bool prefers_occupied, Evidence& evidence);
-/// The middle is occupied, with at least so many hits, unless something in the cap is.
+/// The middle becomes occupied, with at least `hits` hits, unless a voxel of the cap is occupied.
 void make_confirmation(const ConeVoxels& cone, float hits, Evidence& evidence);
-/// The cap's hits mark nothing.
+/// Cap voxels that are not occupied lose their hits.
 void make_withdrawal(const ConeVoxels& cone, Evidence& evidence);
-/// What was passed is free.
+/// The passed voxels become free.
 void make_clearance(const ConeVoxels& cone, Evidence& evidence);
 
 }  // namespace octoskin

@@ -10,13 +10,13 @@
 namespace octoskin {
 namespace {
 
-/// Keys along one axis, first to last; none if last is less.
+/// Keys along one axis from first to last; empty if last is less than first.
 struct KeySpan {
     int first = 0;
     int last = -1;
 };
 
-/// Of the voxels whose centres lie between two coordinates, map frame, and in the octree.
+/// Keys of the voxels in the octree whose centres lie between two coordinates, map frame.
 KeySpan keys_between(double low_m, double high_m, double resolution_m) {
     constexpr double kHalf = 0.5;
     const double low = std::ceil(low_m / resolution_m - kHalf);
@@ -32,7 +32,7 @@ double centre_of(int key, double resolution_m) {
     return (static_cast<double>(key - kOriginKey) + 0.5) * resolution_m;
 }
 
-/// A circular cone of infinite length, looked at in slices across the axis along which it mostly points.
+/// A circular cone of infinite length, cut into slices across the axis along which it mostly points.
 class SlicedCone {
   public:
     SlicedCone(const Eigen::Vector3d& direction, double tan_angle)
@@ -51,15 +51,16 @@ class SlicedCone {
     [[nodiscard]] int across() const { return across_; }
     [[nodiscard]] int row() const { return row_; }
 
-    /// Between which coordinates `across`, from the apex, the slice at x (along, from the apex) lies. A point
-    /// v is in the cone if (v.d)^2 >= cos^2 |v|^2 and v.d >= 0; the slice is an ellipse where the cone's
-    /// angle is less than 35 degrees less than that between the direction and the slice.
+    /// Range of the coordinates `across`, from the apex, in the slice at x (along, from the apex). A point v
+    /// is in the cone if (v.d)^2 >= cos^2 |v|^2 and v.d >= 0. The slice is an ellipse if the cone's angle is
+    /// less than the angle between the direction and the slice, which is at least 35 degrees.
     [[nodiscard]] std::pair<double, double> across_at(double x) const {
         const double b = x * x_ * y_;
         const double root = std::fabs(x) * std::sqrt(-curve_z_ * (1.0 - cos2_));
         return {(-b + root) / curve_y_, (-b - root) / curve_y_};
     }
-    /// Between which coordinates along the row at (x, y) lies in the cone; the first is larger if none.
+    /// Range of the coordinates along the row at (x, y) that lie in the cone; empty (first larger) if none
+    /// does.
     [[nodiscard]] std::pair<double, double> row_at(double x, double y) const {
         const double m = x * x_ + y * y_;
         const double b = m * z_;
@@ -74,14 +75,15 @@ class SlicedCone {
     int along_ = 0;
     int across_ = 1;
     int row_ = 2;
-    double x_ = 0.0;  ///< the direction along `along`, `across` and `row`
+    double x_ = 0.0;  ///< components of the direction along `along`, `across` and `row`
     double y_ = 0.0;
     double z_ = 0.0;
-    double curve_z_ = 0.0;  ///< second derivatives, halved: negative
+    double curve_z_ = 0.0;  ///< half the second derivatives: negative
     double curve_y_ = 0.0;
 };
 
-/// What coordinates a ball's part between two ranges and within an angle of a direction has along one axis.
+/// Range of the coordinates along one axis in the part of a ball between two ranges and within an angle of a
+/// direction.
 std::pair<double, double> extent_of(double direction, double angle_rad, double nearest_m, double furthest_m) {
     const double across = std::sqrt(std::max(0.0, 1.0 - direction * direction));
     const double cos = std::cos(angle_rad);
@@ -155,7 +157,7 @@ void ConeFinder::find_passed(const Beam& beam, const Passed& passed) {
     const auto [end_m, tan_core, margin_m] = passed;
     if (!(end_m > 0.0)) return;
     const double resolution_m = lattice_.resolution_m();
-    // Wider by the margin everywhere is the same cone from further back.
+    // The cone widened by the margin everywhere is the same cone with its apex further back.
     const Eigen::Vector3d apex = beam.p_map_sensor - margin_m / tan_core * beam.direction_map;
     const SlicedCone cone(beam.direction_map, tan_core);
     const auto [along, across, row] = std::array{cone.along(), cone.across(), cone.row()};

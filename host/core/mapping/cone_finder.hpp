@@ -1,4 +1,4 @@
-// From one placed range of a sensor that sees a cone to the voxels of which it speaks.
+// Finds the voxels that one placed range of a sensor with a cone-shaped field of view is about.
 #pragma once
 
 #include <cstdint>
@@ -14,39 +14,39 @@
 
 namespace octoskin {
 
-/// How far off the axis a range marks.
+/// How far off the axis a range marks voxels occupied.
 enum class CapWidth : std::uint8_t {
-    whole,  ///< as the model says
-    core,   ///< and no further than where it would free space: beyond, voxels of the cap have no weight
+    whole,  ///< as the model defines
+    core,   ///< only within the angle in which it frees space; cap voxels beyond have no weight
 };
 
-/// The voxels of ranges, one after the other. Keeps its memory; not for two threads at once.
+/// Finds the voxels of ranges, one after the other. Reuses its memory; not for concurrent use by two threads.
 class ConeFinder {
   public:
     explicit ConeFinder(const MappingConfig& config);
 
     /// The voxels of a beam whose optics are a cone (asserted), by the parameters for these optics
-    /// (`model_of`); valid until the next call. Without return:
-    /// what is passed up to the smaller of `MappingConfig::no_return_clear_m` and the beam's limit. What lies
-    /// outside the octree is left out; more than `kConeVoxelsMax` are refused. O(voxels); about 3 us at 1 m
-    /// and 0.04 m. Throws std::bad_alloc.
+    /// (`model_of`). Valid until the next call. For a beam without return: the passed voxels up to the
+    /// smaller of `MappingConfig::no_return_clear_m` and the beam's limit. Voxels outside the octree are
+    /// omitted; more than `kConeVoxelsMax` are refused. O(voxels); about 3 us at 1 m and 0.04 m. Throws
+    /// std::bad_alloc.
     [[nodiscard]] Result<const ConeVoxels*, BeamRejection> find(const Beam& beam,
                                                                 CapWidth width = CapWidth::whole);
-    /// Why `find` refuses a beam, of whatever width; empty if it does not. O(1).
+    /// The reason why `find` refuses a beam, for any width; empty if it does not. O(1).
     [[nodiscard]] std::optional<BeamRejection> refusal_of(const Beam& beam) const noexcept;
-    /// How far it reaches: its range, or how far it may free space without one.
+    /// Length of the beam, metres: its range or, without a range, how far it may free space.
     [[nodiscard]] double length_m(const Beam& beam) const noexcept { return cone_length_m(beam, config_); }
-    /// Whether a voxel touches the cap of a beam with a range, as far as a cube and a cap can be told apart
-    /// by the cube's centre and half its edge, however long the range.
+    /// True if a voxel touches the cap of a beam with a range. Approximate: uses the voxel's centre and half
+    /// its edge. Works for any range.
     [[nodiscard]] bool ends_about(const Beam& beam, VoxelKey key) const noexcept;
     [[nodiscard]] const VoxelLattice& lattice() const noexcept { return lattice_; }
-    /// By which they are found, and are to be counted.
+    /// The parameters with which its voxels are found and counted.
     [[nodiscard]] const ConeModel& model_of(const Beam& beam) const noexcept {
         return config_.cone_of(beam.optics);
     }
 
   private:
-    /// Which voxels: how far, how wide, how far off the axis.
+    /// Limits of the passed voxels: length, angle, margin.
     struct Passed {
         double end_m = 0.0;
         double tan_core = 0.0;
@@ -57,7 +57,7 @@ class ConeFinder {
         double half_thickness_m = 0.0;
         double angle_rad = 0.0;
         double middle_rad = 0.0;
-        double marks_rad = 0.0;  ///< beyond, they have no weight
+        double marks_rad = 0.0;  ///< cap voxels beyond have no weight
     };
     void find_passed(const Beam& beam, const Passed& passed);
     void find_cap(const Beam& beam, const Cap& cap);

@@ -7,20 +7,20 @@
 namespace octoskin {
 namespace {
 
-/// In voxels, with one on each side, as a voxel counts if its centre is inside.
+/// In voxels, with a margin of one on each side, because a voxel counts if its centre is inside.
 double cube_of(double radius_voxels) {
     const double edge = 2.0 * radius_voxels + 2.0;
     return edge * edge * edge;
 }
 
-/// What is passed: a cone whose tip is cut off, with a voxel more on every side.
+/// Upper bound of the passed voxels: a truncated cone, one voxel larger on every side.
 double passed_at_most(double length_voxels, double tan_core, double margin_voxels) {
     const double near = margin_voxels + 1.0;
     const double far = near + length_voxels * tan_core;
     return std::numbers::pi / 3.0 * (length_voxels + 2.0) * (near * near + near * far + far * far);
 }
 
-/// The box in which a cap is looked for: within that of a ball about the middle of the cap's rim.
+/// Upper bound of the box searched for a cap: the box of a ball about the middle of the cap's rim.
 double cap_box_at_most(double furthest_voxels, double half_voxels, double angle_rad) {
     return cube_of(furthest_voxels * std::sin(angle_rad) + 2.0 * half_voxels);
 }
@@ -37,7 +37,7 @@ double cap_half_m(const Beam& beam, const MappingConfig& config) noexcept {
 }
 
 double core_angle_rad(const BeamOptics& optics, const MappingConfig& config) noexcept {
-    // Wider ones have slices that are no ellipses (ConeFinder).
+    // Slices of wider cones are not ellipses (ConeFinder).
     constexpr double kCoreMax_rad = 0.6;
     const double weight_min = config.cone_of(optics).core_weight_min;
     return std::min(
@@ -57,7 +57,8 @@ double cone_voxels_at_most(const Beam& beam, const MappingConfig& config) noexce
 }
 
 bool is_cone_too_large(const Beam& beam, const MappingConfig& config) noexcept {
-    // A cube of so many on each side of its middle has fewer voxels than a cone may have.
+    // A cube that extends this many voxels from its middle to each side has fewer voxels than
+    // `kConeVoxelsMax`.
     constexpr double kReachAlways_voxels = 126.0;
     const double reach_m = cone_length_m(beam, config) + (beam.range_m ? cap_half_m(beam, config) : 0.0);
     return reach_m > kReachAlways_voxels * config.map.resolution_m &&

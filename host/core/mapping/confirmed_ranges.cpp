@@ -11,19 +11,19 @@ double tolerance_m(const Beam& a, const Beam& b) {
     return ConfirmedRanges::kAgreement_m + ConfirmedRanges::kAgreementSigmas * std::max(a.sigma_m, b.sigma_m);
 }
 
-/// Both have a range.
+/// Both beams have a range.
 bool agree(const Beam& a, const Beam& b) {
     const double angle = std::acos(std::clamp(a.direction_map.dot(b.direction_map), -1.0, 1.0));
     return std::fabs(*a.range_m - *b.range_m) <= tolerance_m(a, b) + angle * *a.range_m;
 }
 
-/// Whether `before` was of what `beam` is of, or of something nearer.
+/// True if `before` measured the surface that `beam` measures, or a nearer one.
 bool is_explained_by(const Beam& before, const Beam& beam) {
     return before.range_m && ConfirmedRanges::are_of_one_place(before, beam) &&
            *before.range_m <= *beam.range_m + tolerance_m(before, beam);
 }
 
-/// Whether it is of what its zone has confirmed.
+/// True if the beam measures the surface that its zone has confirmed.
 bool goes_on(const Beam& confirmed, const Beam& beam) {
     return beam.range_m && ConfirmedRanges::are_of_one_place(confirmed, beam) && agree(confirmed, beam);
 }
@@ -46,14 +46,14 @@ bool ConfirmedRanges::is_stationary(const ZoneHistory& zone) const {
            });
 }
 
-/// By the mean time between its readings so many in a row have not come. All its readings are forgotten: what
-/// is there when it speaks again is new.
+/// Clears the readings of zones that have missed about `kBefore` readings in a row, by the mean time between
+/// their readings. What such a zone sees when it resumes is new.
 void ConfirmedRanges::forget_silent(SensorHistory& sensor, const Beam& beam) {
     for (auto& entry : sensor.zones) {
         ZoneHistory& zone = entry.second;
         if (zone.newest.empty()) continue;
         constexpr double kMissing = static_cast<double>(kBefore) + 0.5;
-        constexpr double kLoneFor_s = 10.0;  // of one reading the rate is not known
+        constexpr double kLoneFor_s = 10.0;  // with a single reading, the rate is unknown
         const auto intervals = static_cast<double>(zone.newest.size() - 1);
         const double lasted_s = seconds_since(zone.newest.front().beam, zone.newest.back().beam.captured);
         const double silent_max_s = intervals > 0.0 ? kMissing * lasted_s / intervals : kLoneFor_s;
@@ -99,8 +99,8 @@ ConfirmedRanges::Answer ConfirmedRanges::take(const Beam& beam, SensorHistories&
     return {confirmed_, ended_, repeats_confirmed, is_stationary(zone)};
 }
 
-/// What is confirmed may move slowly; it has gone if none of so many readings is of it. The answer: the
-/// newest does.
+/// A confirmed range may move slowly. It has gone if none of the last `kBefore` readings agrees with it.
+/// Returns true if the newest reading agrees.
 bool ConfirmedRanges::follow_confirmed(ZoneHistory& zone) {
     if (!zone.confirmed) return false;
     const Beam& newest = zone.newest.back().beam;
@@ -115,7 +115,8 @@ bool ConfirmedRanges::follow_confirmed(ZoneHistory& zone) {
     return false;
 }
 
-/// `now`: the sensor's newest beam. What a sensor that has moved on counted it did not count from one place.
+/// `now`: the sensor's newest beam. A sensor that has moved did not count hits from one place, so nothing is
+/// withdrawn.
 void ConfirmedRanges::end(ZoneHistory& zone, const Beam& now) {
     if (!zone.confirmed) return;
     if (are_of_one_place(*zone.confirmed, now)) ended_.push_back(*zone.confirmed);
@@ -125,7 +126,7 @@ void ConfirmedRanges::end(ZoneHistory& zone, const Beam& now) {
 void ConfirmedRanges::add_persisting(const Beam& newest, const SensorHistory& sensor) {
     for (const auto& entry : sensor.zones) {
         const ZoneHistory& zone = entry.second;
-        if (!zone.confirmed) continue;  // nor need it have a reading, if there was no memory for it
+        if (!zone.confirmed) continue;  // without memory, a zone may have no reading
         const Beam& own_newest = zone.newest.back().beam;
         if (!goes_on(*zone.confirmed, own_newest)) continue;
         const bool is_asked =
@@ -152,7 +153,7 @@ void ConfirmedRanges::confirm(const Beam& newest, const Window& window) {
     }
     if (agreeing_.size() < model_.readings) return;
     for (auto reading = agreeing_.begin(); reading != agreeing_.end();) {
-        // Those of a zone stand together, the newest last.
+        // Readings of one zone are adjacent, the newest last.
         double sum_m = 0.0;
         bool is_confirmed = true;
         auto next = reading;

@@ -1,5 +1,5 @@
-// Which ranges are confirmed at once: those on which the newest readings of a sensor that does not move
-// agree, after it has seen further, or has only just stopped.
+// Finds ranges to confirm at once: ranges on which the newest readings of a stationary sensor agree, after it
+// has seen further or has only just stopped.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,21 @@
 
 namespace octoskin {
 
-/// One reading may be wrong, so that none is confirmed alone. What agrees are either readings of one zone, or
-/// of several zones of a sensor, which are ranged in turn: what has come is before many of them.
+/// A single reading may be wrong and is never confirmed alone. Readings agree either within one zone, or
+/// among several zones of a sensor that range in turn, because a new object is usually in front of many of
+/// them.
 class ConfirmedRanges {
   public:
-    /// Two readings are of one place if the sensor has moved and turned no further between them. So it may
-    /// move by as much within `StationaryModel::readings` - 1 readings, and its ranges are confirmed still.
+    /// Two readings are from one place if the sensor has moved and turned no further between them. A sensor
+    /// may therefore move by this much within `StationaryModel::readings` - 1 readings, and its ranges are
+    /// still confirmed.
     static constexpr double kMovedMax_m = 0.01;
     static constexpr double kTurnedMax_rad = 0.0175;
-    /// Ranges of one zone agree to this and so many of the larger sigma; of two zones to the angle between
-    /// them times the range more, for a surface is seldom square to both.
+    /// Ranges of one zone agree within this plus `kAgreementSigmas` of the larger sigma. Between two zones,
+    /// the angle between them times the range is added, because a surface is seldom perpendicular to both.
     static constexpr double kAgreement_m = 0.02;
     static constexpr double kAgreementSigmas = 3.0;
-    /// Readings of a zone before the window that are held against those in it.
+    /// Number of a zone's readings before the window that are compared with those in it.
     static constexpr std::size_t kBefore = 3;
 
     [[nodiscard]] static bool are_of_one_place(const Beam& a, const Beam& b);
@@ -35,29 +37,30 @@ class ConfirmedRanges {
     explicit ConfirmedRanges(const StationaryModel& model) : model_(model) {}
 
     struct Answer {
-        /// Which ranges are confirmed now, one for each zone: the zone's newest beam, with the mean of the
-        /// ranges that agree. None as a rule; valid until the next call.
+        /// Ranges that are confirmed now, one for each zone: the zone's newest beam, with the mean of the
+        /// ranges that agree. Usually empty; valid until the next call.
         std::span<const Beam> confirmed;
-        /// Those that were, and are no more though the sensor is where it was: what they left in their caps
-        /// that marks nothing is to be taken back (EvidenceRule::withdraw). Valid likewise.
+        /// Ranges that are no longer confirmed although the sensor has not moved. The hits that they left in
+        /// their caps and that mark nothing are to be withdrawn (EvidenceRule::withdraw). Valid until the
+        /// next call.
         std::span<const Beam> ended;
-        /// The beam repeats what was confirmed before it. From one place no number of readings localises that
-        /// within the cap, so its hits go to what is occupied there.
+        /// The beam repeats a range that was confirmed before it. Readings from one place cannot locate the
+        /// surface within the cap, so its hits go to the occupied voxels there.
         bool repeats_confirmed = false;
-        /// The beam is of one place with the last `StationaryModel::window()` before it of its zone: then it
-        /// marks only where it would free space, too.
+        /// The beam is from one place with the last `StationaryModel::window()` beams of its zone. It then
+        /// marks voxels occupied only where it would also free space.
         bool is_stationary = false;
     };
-    /// Takes a beam that goes into the map, in the order in which they do. A range is confirmed first while
-    /// it is new: if none of the `kBefore` readings of its zone before the window was of this place and as
-    /// short. It stays confirmed, with each reading of its zone that agrees with it, and with those of other
-    /// zones that see further, until `kBefore` in a row do not agree; or do not come: then all readings of
-    /// the zone are forgotten. O(zones of the sensor), below 1 us. Throws std::bad_alloc.
+    /// Takes a beam that goes into the map; call in the order of the map. A range is first confirmed while it
+    /// is new: if none of the zone's `kBefore` readings before the window was from this place and as short.
+    /// It stays confirmed with each reading of its zone that agrees with it, and with those of other zones
+    /// that see further. It ends when `kBefore` readings in a row disagree. If that many are missing, all
+    /// readings of the zone are cleared. O(zones of the sensor), below 1 us. Throws std::bad_alloc.
     [[nodiscard]] Answer take(const Beam& beam, SensorHistories& histories);
 
     [[nodiscard]] const StationaryModel& model() const noexcept { return model_; }
-    /// So many readings of a zone it keeps at most, none later than the last; where a range is confirmed, one
-    /// at least.
+    /// Maximum number of readings stored for a zone, none later than the last one. A zone with a confirmed
+    /// range has at least one.
     [[nodiscard]] static std::size_t readings_max(const StationaryModel& model) noexcept {
         return model.window() + kBefore;
     }

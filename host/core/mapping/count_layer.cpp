@@ -43,7 +43,7 @@ std::size_t CountLayer::bytes_at_most() const noexcept {
     const auto bytes = [](const BrickTree& tree) {
         return tree.nodes() * BrickTree::kNodeBytes + tree.bricks() * BrickTree::kBrickBytes;
     };
-    // What has no prior yet may come to have one.
+    // A brick without priors may get them.
     return bytes(hits) + bytes(misses) + std::max(bytes(prior), bytes(hits));
 }
 

@@ -11,7 +11,7 @@ void CountWriter::write(const Evidence& evidence) {
     switch (evidence.rule) {
         case EvidenceRule::image:
         case EvidenceRule::terms:
-            return;  // ImageWriter's and TermWriter's
+            return;  // written by ImageWriter and TermWriter
         case EvidenceRule::counts:
             return count(evidence);
         case EvidenceRule::confirm:
@@ -71,7 +71,8 @@ void CountWriter::count(const Evidence& evidence) {
     for (const BrickEvidence& brick : evidence.bricks) {
         brick_.go_to(brick.first);
         if (sum > 0.0F) {
-            // A voxel comes once in a cap: its share is of what it was before, whoever got theirs first.
+            // A voxel occurs once in a cap: its share depends only on its own earlier state, not on the
+            // order.
             for (const CellTerm& cell : evidence.cells_of(brick)) {
                 const float share = share_of(cell, of_occupied) / sum;
                 if (share > 0.0F) add(brick, cell.cell, evidence.hit * share, 0.0F);
@@ -79,7 +80,7 @@ void CountWriter::count(const Evidence& evidence) {
         }
         for_each_cell(brick.voxels, [&](std::size_t cell) { add(brick, cell, 0.0F, evidence.miss); });
     }
-    // Otherwise none of them is dated: some may not be there.
+    // Otherwise no voxel gets a time stamp: some may not be in the map.
     if (are_refused_known) date_range(evidence, refused);
 }
 

@@ -1,4 +1,4 @@
-// Writes what cones' ranges say into a map: hits and misses, and what repeated ranges confirm or clear.
+// Writes the evidence of cones' ranges into a map: hits, misses, confirmed and cleared voxels.
 #pragma once
 
 #include <span>
@@ -14,7 +14,8 @@ class CountWriter {
     CountWriter(BrickEditor& editor, const EvidenceOptions& options) noexcept
         : editor_(editor), options_(options), brick_(editor) {}
 
-    /// Any evidence but an image and `terms`. About 25 ns a voxel. Throws what appending to the changes does.
+    /// Writes any evidence except `image` and `terms`. About 25 ns a voxel. Throws what appending to the
+    /// changes throws.
     void write(const Evidence& evidence);
 
   private:
@@ -30,10 +31,10 @@ class CountWriter {
     void confirm(const Evidence& evidence);
     void withdraw(const Evidence& evidence);
     void clear(const Evidence& evidence);
-    /// Of voxels of a brick of which some are refused: `date` leaves those out.
+    /// Sets the time stamps of a range's voxels, except the refused ones.
     void date_range(const Evidence& evidence, std::span<const Refused> refused) noexcept;
     void date_one(const BrickEvidence& brick, std::size_t cell) noexcept;
-    /// Counts what became of a voxel. True if it was not refused.
+    /// Counts the result for a voxel. True if it was not refused.
     bool note(const BrickEvidence& brick, std::size_t cell, const Result<float, MapRefusal>& change);
 
     BrickEditor& editor_;

@@ -1,4 +1,4 @@
-// One brick's voxels after the other, each as a VoxelState, where range sensors count.
+// Access to single voxels of one brick after another, each as a VoxelState, for the writer of counts.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace octoskin {
 
-/// Looks into all layers, and opens those that a change needs. A brick in which nothing was counted yet has
-/// its log-odds as priors.
+/// Reads all layers, and opens those that a change needs. In a brick without counts, the log-odds are the
+/// priors.
 class CountedBrick {
   public:
     explicit CountedBrick(BrickEditor& editor) noexcept : editor_(editor) { look_anew(); }
@@ -28,8 +28,8 @@ class CountedBrick {
     [[nodiscard]] float log_odds(std::size_t cell) const noexcept { return log_odds_view_.at(cell); }
     [[nodiscard]] float hits(std::size_t cell) const noexcept { return hits_view_.at(cell); }
 
-    /// Does what `rule` says to a voxel. The answer is by how much that changed its log-odds, where unknown
-    /// counts as 0, or which counter counts the refusal.
+    /// Applies `rule` to a voxel. Returns the change of its log-odds, with unknown as 0, or the counter of
+    /// the refusal.
     template <class Rule>
     [[nodiscard]] Result<float, MapRefusal> change(std::size_t cell, const Rule& rule) noexcept {
         if (const auto is_open = open_counts(); !is_open) return unexpected(is_open.error());
@@ -54,7 +54,7 @@ class CountedBrick {
     [[nodiscard]] static bool are_same(float a, float b) noexcept {
         return a == b || (std::isnan(a) && std::isnan(b));
     }
-    /// After a tree was given a brick.
+    /// Call after a tree has got a new brick.
     void look_anew() noexcept;
     void find() noexcept;
     [[nodiscard]] Status<MapRefusal> open_counts() noexcept {

@@ -20,7 +20,7 @@
 namespace octoskin {
 namespace {
 
-/// The mean over the beams that have something to say about the voxel. A hit with a term of 0 is one of them.
+/// The mean over the rays that pass the voxel or end in it. A hit with a term of 0 is included.
 float mean_term(const VoxelTally& tally, float miss) {
     const double sum = tally.hit_sum + static_cast<double>(miss) * tally.passed;
     return static_cast<float>(sum / (static_cast<double>(tally.hits) + tally.passed));
@@ -29,7 +29,7 @@ float mean_term(const VoxelTally& tally, float miss) {
 KeyBox box_of(const PlacedImage& rays, const VoxelLattice& lattice) {
     const auto lowest = lattice.key_of(rays.lowest.cast<double>());
     const auto highest = lattice.key_of(rays.highest.cast<double>());
-    assert(lowest && highest);  // they are coordinates of ends and of the origin
+    assert(lowest && highest);  // both are coordinates of ray ends and of the origin, which have keys
     return {*lowest, *highest};
 }
 
@@ -42,7 +42,7 @@ void for_each_ray(const PlacedImage& rays, Visit&& visit) {
     }
 }
 
-/// Calls visit(key, range) for each ray that ends in something.
+/// Calls visit(key, range) for each ray that ends on a surface.
 template <class Visit>
 void for_each_hit(const PlacedImage& rays, const VoxelLattice& lattice, Visit&& visit) {
     for_each_ray(rays, [&](const Eigen::Vector3f& end, double range_m) {
@@ -50,7 +50,7 @@ void for_each_hit(const PlacedImage& rays, const VoxelLattice& lattice, Visit&& 
     });
 }
 
-/// The largest hit of each voxel of one brick.
+/// The largest hit term of each voxel of one brick.
 class LargestHits {
   public:
     explicit LargestHits(std::span<const CellHits> hits) {
@@ -58,7 +58,7 @@ class LargestHits {
             std::uint64_t& word = mask_[hit.cell / 64];
             const std::uint64_t bit = std::uint64_t{1} << (hit.cell % 64);
             float& most = most_[hit.cell];
-            // Not a branch: which run is a voxel's first nobody foresees.
+            // Not a branch: it would be unpredictable.
             const float before = (word & bit) == 0 ? -std::numeric_limits<float>::max() : most;
             word |= bit;
             most = hit.most > before ? hit.most : before;
@@ -70,11 +70,11 @@ class LargestHits {
 
   private:
     BrickMask mask_{};
-    std::array<float, kBrickVoxels> most_;  ///< of what is in the mask
+    std::array<float, kBrickVoxels> most_;  ///< valid for voxels in the mask
 };
 
-/// The mean over a voxel's rays of a hit or a miss, if that marks it; a voxel in which rays end is never
-/// freed.
+/// The mean over a voxel's rays of hit and miss terms if it is positive, otherwise 0: a voxel in which rays
+/// end is never freed.
 float voted_term(const RayVote& vote, float hit, float miss) {
     const auto end = static_cast<float>(vote.end);
     const auto go_on = static_cast<float>(vote.go_on);
@@ -82,16 +82,16 @@ float voted_term(const RayVote& vote, float hit, float miss) {
     return sum > 0.0F ? sum / (end + go_on) : 0.0F;
 }
 
-/// What one of a crew does at a time: 4 x 4 x 4 bricks.
+/// Size of one work item of the thread pool: 4 x 4 x 4 bricks.
 constexpr unsigned kPartHeight = kBrickHeight + 2;
 
-/// In cache lines of its own: with each hit its ends are written.
+/// Aligned to cache lines of its own, because each hit writes its ends.
 struct alignas(64) PartTerms {
     Evidence terms;
 };
 
-/// Calls add_below(terms, cube) for each cube, whoever is free, and joins what they say in the cubes' order.
-/// `parts`: working memory.
+/// Calls add_below(terms, cube) for each cube in the thread pool, and joins the results in the order of the
+/// cubes. `parts`: working memory.
 template <class AddBelow>
 void add_together(Crew& crew, const std::vector<VoxelCube>& cubes, const AddBelow& add_below,
                   std::vector<PartTerms>& parts, Evidence& terms) {
@@ -112,7 +112,7 @@ BrickMask without(BrickMask mask, const BrickMask& others) {
 
 }  // namespace
 
-/// What stays allocated from frame to frame.
+/// Memory that stays allocated between frames.
 struct DepthIntegrator::Workspace {
     PlacedImage rays;
     ImageTraversal traversal;
@@ -122,8 +122,8 @@ struct DepthIntegrator::Workspace {
     ReachWindows reach;
     VoxelRays voxel_rays;
     TallyGrid tallies;
-    std::vector<PartTerms> parts;   ///< what each thread's cubes say, before they are joined
-    std::size_t bricks_before = 0;  ///< of the image before: this one will have about as many
+    std::vector<PartTerms> parts;   ///< the evidence of each cube, before it is joined
+    std::size_t bricks_before = 0;  ///< of the previous image: the next one has about as many
     std::size_t hits_before = 0;
 };
 
@@ -151,7 +151,7 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
 
     try {
         return updates_of(image, T_map_camera);
-    } catch (...) {  // no memory: what half an image has left behind must not meet the next one
+    } catch (...) {  // no memory: the next image must not find data of an unfinished one
         *workspace_ = {};
         throw;
     }
@@ -197,8 +197,8 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
     return result;
 }
 
-/// The paper's sets: a hit wins over any number of rays that passed, and the largest hit counts. A hit with a
-/// term of 0 (too near to be trusted) is a hit all the same: it never turns into a miss.
+/// The paper's sets: a hit wins over any number of passing rays, and the largest hit counts. A hit with a
+/// term of 0 (too near to be reliable) is still a hit: it never becomes a miss.
 bool DepthIntegrator::take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                 Evidence& terms) {
     MarkGrid& marks = workspace_->marks;
@@ -226,7 +226,7 @@ bool DepthIntegrator::take_means(const PlacedImage& rays, Evidence& terms) {
     if (!tallies.span(box_of(rays, lattice_), config_.depth_box_voxels_max)) return false;
     for_each_ray(rays, [&](const Eigen::Vector3f& end, double) {
         const auto ray = plan_ray(lattice_, rays.origin, end);
-        assert(ray.has_value());  // origin and end had keys when they were placed
+        assert(ray.has_value());  // origin and end have keys since they were placed
         walk_ray(*ray, tallies.indexing_of(*ray), [&](std::ptrdiff_t index) { tallies.add_pass(index); });
     });
     for_each_hit(rays, lattice_, [&](VoxelKey key, double range_m) {

@@ -1,5 +1,5 @@
-// From one depth image to the log-odds terms of its voxels. It holds no map: the terms are computed once and
-// may go to several.
+// Converts one depth image to the log-odds terms of its voxels. Holds no map: the terms are computed once and
+// may be applied to several maps.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,7 +19,7 @@ namespace octoskin {
 
 /// Why a whole image was refused.
 enum class DepthRejection : std::uint8_t {
-    size_differs,        ///< the image is not of the camera's width and height
+    size_differs,        ///< the image's size differs from the camera's width and height
     pose_not_finite,     ///< T_map_camera has a NaN or an infinity
     camera_outside_map,  ///< the camera lies outside the octree
     box_too_large,       ///< the rays span more voxels than `MappingConfig::depth_box_voxels_max`
@@ -30,32 +30,33 @@ struct DepthUpdates {
     DepthPixelCounts pixels;
 };
 
-/// Keeps its working memory between frames; not for two threads at once.
+/// Reuses its working memory between frames; not for concurrent use by two threads.
 class DepthIntegrator {
   public:
-    /// Takes from `config` the map's resolution, the model, the strategy and the limit of memory. Every pixel
-    /// must have a ray (asserted by PixelRays). `threads`: how many work on an image, the caller included;
-    /// the terms are the same. `robust` is the caller's alone, and all of `paper` but the placing of pixels.
+    /// Takes the map's resolution, the model, the strategy and the memory limit from `config`. Every pixel
+    /// must have a ray (asserted by PixelRays). `threads`: number of threads that work on an image, including
+    /// the caller; the terms do not depend on it. `robust` runs in the caller only, as does `paper` except
+    /// for projecting the pixels.
     DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera, unsigned threads = 1);
     DepthIntegrator(DepthIntegrator&&) noexcept;
     DepthIntegrator& operator=(DepthIntegrator&&) noexcept;
     ~DepthIntegrator();
 
-    /// Of the camera's pixels.
+    /// Rays of the camera's pixels.
     [[nodiscard]] const PixelRays& pixel_rays() const noexcept { return pixel_rays_; }
 
-    /// The terms of one image (depth along the optical axis, metres, NaN = none), already filtered and
-    /// without the robot, seen from `T_map_camera` (optical frame: z forward, x right, y down). What voxels
-    /// are hit and passed is what OctoMap's `computeUpdate` says without discretisation, maximum range
-    /// `depth_range_max_m`; see DepthUpdate for what follows from it. O(pixels * range / resolution).
-    /// Throws std::bad_alloc; the next image is then as if this one had not been.
+    /// The terms of one image (depth along the optical axis, metres, NaN = none), filtered and without the
+    /// robot, seen from `T_map_camera` (optical frame: z forward, x right, y down). Hit and passed voxels are
+    /// those of OctoMap's `computeUpdate` without discretisation, with the maximum range `depth_range_max_m`;
+    /// DepthUpdate defines the terms. O(pixels * range / resolution). Throws std::bad_alloc; the next image
+    /// is not affected.
     [[nodiscard]] Result<DepthUpdates, DepthRejection> integrate(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera);
 
   private:
     [[nodiscard]] Result<DepthUpdates, DepthRejection> updates_of(const DepthImage& image,
                                                                   const Eigen::Isometry3d& T_map_camera);
-    /// Each of them false: the rays span too many voxels.
+    /// Each returns false if the rays span too many voxels.
     [[nodiscard]] bool take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                  Evidence& terms);
     [[nodiscard]] bool take_means(const PlacedImage& rays, Evidence& terms);

@@ -12,8 +12,8 @@ bool is_none(const BrickMask& voxels) {
     return std::ranges::all_of(voxels, [](std::uint64_t word) { return word == 0; });
 }
 
-/// All cells at once: where a run ends no processor foresees. An entry is made in its place, for a copy of
-/// one would wait for what it is made of.
+/// Writes all cells at once, because the end of a run is unpredictable for a processor. Entries are
+/// constructed in place: a copy would wait for the writes that it reads.
 void append_runs(std::span<const VoxelUpdate> updates, const BrickRuns& found, Evidence& evidence) {
     const std::size_t before = evidence.cells.size();
     for (std::size_t i = 0; i < found.updates; ++i)
@@ -84,7 +84,7 @@ void Evidence::take_in_order(std::span<const VoxelUpdate> updates) {
         append_runs(updates, found, *this);
         updates = updates.subspan(found.updates);
         if (updates.empty()) return;
-        // A run's end, or a term that is 0 or not finite: the map counts it.
+        // The end of a run, or a term that is 0 or not finite, which the map counts.
         const VoxelUpdate& next = updates.front();
         if (is_plain(next.log_odds)) continue;
         BrickEvidence& entry = last(brick_of(next.key));

@@ -1,4 +1,4 @@
-// Where evidence goes: one map, or several at once.
+// Target of evidence: one map, or several at once.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,10 @@ namespace octoskin {
 class EvidenceSink {
   public:
     virtual ~EvidenceSink() = default;
-    /// Of one measurement, one evidence after the other. `spares`: see EvidenceOptions; may be null.
+    /// Takes the evidence of one measurement, one after the other. `spares`: see EvidenceOptions; may be
+    /// null.
     virtual void apply(const Evidence& evidence, const std::function<bool(VoxelKey)>* spares) = 0;
-    /// Whether a voxel is occupied now, in all maps.
+    /// True if a voxel is occupied now, in all maps.
     [[nodiscard]] virtual bool is_occupied(VoxelKey key) const = 0;
 };
 

@@ -1,4 +1,4 @@
-// Which of many bricks have voxels that are too old, without looking into the others.
+// Finds the bricks with voxels that are too old, without visiting the other bricks.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,12 @@
 
 namespace octoskin {
 
-/// Of each brick a stamp that is no later than any of its voxels', ten bytes. Voxels are only ever confirmed,
-/// so that it holds until somebody looks. Copies of a map do without: a copy of an agenda is none.
+/// For each brick, a time stamp that is not later than that of any of its voxels; ten bytes. Voxels only
+/// become newer, so the bound stays valid until the brick is visited. Copies of a map do not need it: a copy
+/// of an agenda is empty.
 class ExpiryAgenda {
   public:
-    /// What an entry takes of the heap at most, as vectors grow.
+    /// Maximum heap size of an entry, given the growth of vectors.
     static constexpr std::size_t kEntryBytes = 2 * (sizeof(MortonCode) + sizeof(std::uint16_t));
 
     ExpiryAgenda() = default;
@@ -26,21 +27,22 @@ class ExpiryAgenda {
 
     [[nodiscard]] bool is_kept() const noexcept { return is_kept_; }
     void begin() noexcept { is_kept_ = true; }
-    /// Of one more brick; then `put` one does not throw. Throws std::bad_alloc.
+    /// Makes room for one more brick, so that `put` does not throw. Throws std::bad_alloc.
     void make_room() {
         if (bricks_.size() == bricks_.capacity()) bricks_.reserve(2 * bricks_.size() + 16);
         if (oldest_.size() == oldest_.capacity()) oldest_.reserve(2 * oldest_.size() + 16);
     }
-    /// A brick that is not there. `oldest`: no voxel's is earlier.
+    /// Adds a brick that is not in the agenda. `oldest`: not later than any of its voxels.
     void put(MortonCode brick, std::uint16_t oldest) noexcept {
         bricks_.push_back(brick);
         oldest_.push_back(oldest);
     }
 
-    /// Calls look(brick) for each whose stamp is `first` or later and before `limit`, and for some others, so
-    /// that of those that were confirmed meanwhile not many come at once: each within kRounds calls. It
-    /// answers the earliest stamp that the brick has now, 0 if it has none: then the brick leaves. Throws
-    /// what `look` does, and then some are left to the next call. Some 0.1 ns for each that is not looked at.
+    /// Calls look(brick) for each brick whose time stamp is at least `first` and below `limit`. Also calls it
+    /// for some other bricks, each within kRounds calls, so that bricks that were confirmed meanwhile do not
+    /// all become due at once. `look` returns the earliest time stamp that the brick has now, or 0 if it has
+    /// none, which removes the brick. Throws what `look` throws; the rest is then left to the next call.
+    /// About 0.1 ns for each brick that is not visited.
     template <class Look>
     void look_at_due(std::uint16_t first, std::uint16_t limit, const Look& look) {
         const std::size_t ahead = bricks_.empty() ? 0 : bricks_.size() / kRounds + 1;
@@ -54,7 +56,7 @@ class ExpiryAgenda {
         }
     }
 
-    /// Each stamp becomes another one, in the same order.
+    /// Replaces each time stamp; `change` keeps their order.
     template <class Change>
     void change_stamps(const Change& change) noexcept {
         std::ranges::transform(oldest_, oldest_.begin(), change);
@@ -64,7 +66,7 @@ class ExpiryAgenda {
   private:
     static constexpr std::size_t kRounds = 64;
 
-    /// False if the brick left, and another one took its place.
+    /// False if the brick was removed and another one took its place.
     template <class Look>
     bool look_at(std::size_t place, const Look& look) {
         oldest_[place] = look(bricks_[place]);
@@ -77,7 +79,7 @@ class ExpiryAgenda {
     }
 
     bool is_kept_ = false;
-    std::size_t next_ = 0;  ///< to be looked at ahead
+    std::size_t next_ = 0;  ///< the next brick to visit in advance
     std::vector<MortonCode> bricks_;
     std::vector<std::uint16_t> oldest_;
 };

@@ -37,7 +37,7 @@ void FusedMap::go_on(HostTime now) noexcept {
     has_undated_ = has_undated_ || !layers_.ages.has_begun();
     try {
         if (layers_.ages.go_on(now)) date_and_expire();
-    } catch (const std::bad_alloc&) {  // what is too old expires, or is dated, in a later second
+    } catch (const std::bad_alloc&) {  // expiry and missing time stamps follow in a later second
         ++counters_.undated;
     }
 }
@@ -62,7 +62,7 @@ void FusedMap::date_and_expire() {
 
 void FusedMap::begin_to_wait() noexcept {
     layers_.ages.begin_to_wait();
-    has_undated_ = true;  // it may be of a configuration by which nothing expired
+    has_undated_ = true;  // it may come from a configuration without expiry
 }
 
 void FusedMap::forget_times() noexcept {
@@ -80,7 +80,7 @@ void FusedMap::limit(const MapConfig& config) {
     next.config_ = config;
     next.rules_ = VoxelRules(config);
     next.counters_ = {};
-    // Counts alone have no times where nothing expires.
+    // Without expiry, voxels with counts only have no time stamps.
     next.has_undated_ = has_undated_ || (config_.age.unknown_after_s == 0 && config.age.unknown_after_s > 0);
     BrickEditor editor = next.editor();
     if (clamps_change) editor.clamp_all();

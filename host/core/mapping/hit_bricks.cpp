@@ -1,4 +1,4 @@
-// Compiled once for each instruction set that Highway knows; the best one is chosen at run time.
+// Compiled once for each instruction set that Highway supports; the best one is chosen at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "host/core/mapping/hit_bricks.cpp"
 // clang-format off: foreach_target.h comes before highway.h
@@ -52,8 +52,8 @@ HWY_INLINE void find_terms(const double* ranges_m, const HitModel& model, std::s
     }
 }
 
-/// The terms of a row, and a bit for each pixel whose next one ends elsewhere; both for whole words of 64
-/// pixels, of which those beyond the row mean nothing.
+/// The terms of a row, and a bit for each pixel whose right neighbour ends in another voxel. Both fill whole
+/// words of 64 pixels; those beyond the row are undefined.
 void find_row_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, float* terms,
                    std::uint64_t* run_ends) {
     const hn::CappedTag<std::uint32_t, 16> k;
@@ -129,7 +129,7 @@ void HitBricks::sort() {
     std::uint32_t begin = 0;
     for (std::uint32_t& end : ends_) {
         const std::uint32_t count = end;
-        end = begin;  // for now where it begins
+        end = begin;  // temporarily its begin
         begin += count;
     }
     if (sorted_.size() < count_) sorted_.resize(count_);

@@ -1,4 +1,4 @@
-// The hits of one image, by brick.
+// The hits of one image, grouped by brick.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,20 @@
 
 namespace octoskin {
 
-/// Of neighbouring pixels of a row, whose rays end in one voxel.
+/// The hits of adjacent pixels of a row whose rays end in the same voxel.
 struct CellHits {
     std::uint16_t cell = 0;
-    float most = 0.0F;  ///< of their terms
+    float most = 0.0F;  ///< the largest of their terms
 };
 
-/// Sorts the ends of an image's rays by counting. Its memory stays for the next image.
+/// Groups the ends of an image's rays by brick with a counting sort. Reuses its memory for the next image.
 class HitBricks {
   public:
-    /// Takes all rays that end in something; `box` holds them. False, and nothing done, if it has over
-    /// `voxels_max` voxels. O(pixels + bricks of the box). Throws std::bad_alloc.
+    /// Takes all rays that end on a surface; `box` contains them. False, with nothing done, if the box has
+    /// over `voxels_max` voxels. O(pixels + bricks of the box). Throws std::bad_alloc.
     [[nodiscard]] bool take(const PlacedImage& rays, const KeyBox& box, const HitModel& model,
                             std::size_t voxels_max);
-    /// Of a brick: in the order of pixels.
+    /// The hits in a brick, in the order of pixels.
     [[nodiscard]] std::span<const CellHits> of(MortonCode brick) const noexcept;
     [[nodiscard]] BrickMask mask_of(MortonCode brick) const noexcept;
 
@@ -36,13 +36,13 @@ class HitBricks {
     void sort();
 
     BrickBox box_;
-    std::vector<float> terms_;  ///< of a row's rays
-    /// A bit for each of those: the next one ends in another voxel, or in nothing.
+    std::vector<float> terms_;  ///< one for each ray of a row
+    /// A bit for each of those: the next ray ends in another voxel, or has no end.
     std::vector<std::uint64_t> run_ends_;
-    std::vector<CellHits> runs_;         ///< room for one a pixel; in the order of pixels
-    std::vector<std::uint32_t> bricks_;  ///< of each of those
-    std::size_t count_ = 0;              ///< of runs
-    std::vector<std::uint32_t> ends_;    ///< by brick: where its hits end, and the next one's begin
+    std::vector<CellHits> runs_;         ///< capacity for one each pixel; in the order of pixels
+    std::vector<std::uint32_t> bricks_;  ///< the brick of each run
+    std::size_t count_ = 0;              ///< number of runs
+    std::vector<std::uint32_t> ends_;    ///< by brick: end of its hits, and begin of the next brick's
     std::vector<CellHits> sorted_;
 };
 

@@ -33,7 +33,7 @@ void ImageWriter::write(const Evidence& image) noexcept {
     }
 }
 
-/// A brick whose voxels are alike and stay so takes one value.
+/// A brick whose voxels are equal and stay equal takes a single value.
 Status<MapRefusal> ImageWriter::write_brick(const Evidence& image, const BrickEvidence& brick) noexcept {
     MapLayers& layers = editor_.layers();
     const VoxelRules& rules = editor_.rules();
@@ -58,7 +58,7 @@ Status<MapRefusal> ImageWriter::write_brick(const Evidence& image, const BrickEv
     });
 }
 
-/// Where there are counts the terms go to the priors, and counts that they contradict get fewer.
+/// In bricks with counts, the terms go to the priors, and counts that contradict them are reduced.
 Status<MapRefusal> ImageWriter::write_priors(const Evidence& image, const BrickEvidence& brick) noexcept {
     CountLayer& counts = editor_.layers().counts;
     const VoxelRules& rules = editor_.rules();

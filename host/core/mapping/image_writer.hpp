@@ -10,7 +10,7 @@ class ImageWriter {
   public:
     explicit ImageWriter(BrickEditor& editor) noexcept : editor_(editor) {}
 
-    /// Brick by brick. A brick that is refused is refused as a whole. About 0.1 us a brick.
+    /// Writes brick by brick. A brick is refused as a whole. About 0.1 us a brick.
     void write(const Evidence& image) noexcept;
 
   private:

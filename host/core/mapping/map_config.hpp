@@ -1,4 +1,4 @@
-// What a map is like, whatever goes into it.
+// Properties of a map, independent of its measurements.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,18 @@ struct MapConfig {
     double resolution_m = 0.04;
     float log_odds_min = -2.0F;
     float log_odds_max = 3.5F;
-    /// Clamps of an image's terms alone: what its rays all pass has no more after it, and what it hits no
-    /// less, so that whatever has gone or come is told by a few images, however long it was otherwise.
+    /// Clamps of an image's terms only. After an image, a voxel that all its rays pass is at most at
+    /// `log_odds_passed_max`, and a voxel that it hits at least at `log_odds_hit_min`. An object that appears
+    /// or leaves thus shows after a few images, however long the voxel had the other state.
     float log_odds_passed_max = 100.0F;
     float log_odds_hit_min = -100.0F;
     /// A voxel is occupied at or above this log-odds.
     float log_odds_occupied = 0.0F;
-    /// Beyond this the map takes no new space; what it holds goes on being updated. Space counts as if each
-    /// of its voxels had a value of its own, for each may come to have one.
+    /// Beyond this limit, the map takes no new space; existing bricks are still updated. Room is computed as
+    /// if each voxel had its own value, because each may get one.
     std::uint32_t memory_max_mib = 800;
-    /// What counts of range sensors that see a cone are worth. They may take up to 3/16 of `memory_max_mib`
-    /// more, and the voxels' times 9/16.
+    /// Parameters of the counts of range sensors with a cone. Counts may take up to 3/16 of `memory_max_mib`
+    /// in addition, and the voxels' time stamps 9/16.
     CountModel counts = {};
     AgeModel age = {};
     friend bool operator==(const MapConfig&, const MapConfig&) = default;

@@ -1,4 +1,4 @@
-// Where a map keeps what it knows: one octree of bricks for each thing. Only a BrickEditor writes them.
+// Storage of a map: one octree of bricks for each kind of value. Only a BrickEditor writes them.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace octoskin {
 
-/// VoxelState::log_odds of all voxels, the rest of VoxelState where there are counts, and when each was last
-/// seen. Where there are no counts, a voxel's log-odds are its prior. Copies share what they have in common.
+/// VoxelState::log_odds of all voxels, the rest of VoxelState where there are counts, and when each voxel was
+/// last seen. Without counts, a voxel's log-odds are its prior. Copies share unchanged bricks.
 struct MapLayers {
     BrickTree log_odds;
     CountLayer counts;

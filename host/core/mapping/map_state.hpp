@@ -1,4 +1,4 @@
-// All that later maps follow from, given the same joint samples, readings and images.
+// The complete state on which later maps depend, given the same joint samples, readings and images.
 #pragma once
 
 #include "host/core/mapping/fused_map.hpp"
@@ -6,9 +6,9 @@
 
 namespace octoskin {
 
-/// As of one moment. The map has log-odds, counts and times; its counters are of no consequence for later
-/// maps. What sensors contradict the camera is no part of it: it decides what goes in, not what becomes of
-/// that.
+/// State at one moment. The map has log-odds, counts and times; its counters do not affect later maps.
+/// Sensors that contradict the camera are not part of the state: they affect which readings go into the map,
+/// not the map's response.
 struct MapState {
     FusedMap map;
     SensorHistories histories;

@@ -1,5 +1,5 @@
-// Everything that decides how measurements become voxels. Three named configurations ship; a file may
-// override any value (host/io/mapping).
+// All parameters that decide how measurements become voxels. Three named configurations are built in; a file
+// may override any value (host/io/mapping).
 #pragma once
 
 #include <cstdint>
@@ -14,60 +14,60 @@
 namespace octoskin {
 
 enum class DepthUpdate : std::uint8_t {
-    paper,   ///< set-wise: per frame and voxel one term, hit wins over traversed
-    robust,  ///< each voxel's term is the mean of its beams' terms; meant for a filtered image
-    /// Meant for a filtered image, and voxel by voxel: its rays are those that are in it at its centre's
-    /// depth. If no ray ends in it, one of them that goes on makes a miss. If any does, it gets the mean of
-    /// hits, for its rays that end before the centre, and misses, for those that go on, or nothing if that is
-    /// no more than 0.
+    paper,   ///< sets: one term per frame and voxel, hit wins over passed
+    robust,  ///< each voxel's term is the mean of its rays' terms; for a filtered image
+    /// For a filtered image. A voxel's rays are those that are in it at its centre's depth. If no ray ends in
+    /// the voxel and one of its rays continues, the voxel gets a miss. If rays end in it, the voxel gets the
+    /// mean of hits (rays that end before the centre) and misses (rays that continue), or nothing if the mean
+    /// is not above 0.
     fast,
 };
 
 enum class RangeUpdate : std::uint8_t {
     ray,   ///< the paper's: a miss for each voxel along the axis, a hit at its end
-    cone,  ///< a sensor whose optics are a cone counts hits and misses; others are as with `ray`
+    cone,  ///< a sensor with a cone counts hits and misses; others as with `ray`
 };
 
-/// For a zone of 6 x 6 SPADs of a VL53L1X, one of 3 x 3: a narrow beam's range tells more of where its
-/// surface is, and marks from further away.
+/// For a zone of 6 x 6 SPADs of a VL53L1X, in a 3 x 3 grid: the range of a narrow beam locates its surface
+/// better and marks from further away.
 [[nodiscard]] ConeModel zone_model();
 
 struct MappingConfig {
     MapConfig map;
     UpdateModel model;
     RangeUpdate range_update = RangeUpdate::ray;
-    ConeModel cone = {};            ///< of sensors that see all of their cone at a time, or more than half
-    ConeModel zone = zone_model();  ///< of a zone of at most half of its array's SPADs
-    StationaryModel standing = {};  ///< of both, while they stand still
+    ConeModel cone = {};            ///< for sensors that see all of their cone at a time, or more than half
+    ConeModel zone = zone_model();  ///< for a zone of at most half of its array's SPADs
+    StationaryModel standing = {};  ///< for both, while they are stationary
     DepthUpdate depth_update = DepthUpdate::robust;
     DepthFilterConfig depth_filter;
-    /// A depth pixel whose range is larger clears space up to here and marks nothing; 0: no maximum.
+    /// A depth pixel with a larger range clears space up to here and marks nothing; 0: no maximum.
     double depth_range_max_m = 0.0;
     bool removes_robot_from_depth = true;
     bool removes_robot_from_ranges = true;
-    /// Each range is compared with the camera's image, and a sensor that contradicts it is named, or the
-    /// camera (host/core/witness).
+    /// Each range is compared with the camera's image. A sensor, or the camera, that contradicts the others
+    /// is reported (host/core/witness).
     bool reports_contradicting_sensors = true;
-    /// And the readings of one that is named stay out of the map. It takes the reports.
+    /// The readings of a reported sensor are not put into the map. Requires `reports_contradicting_sensors`.
     bool refuses_contradicting_sensors = false;
-    /// A beam without return clears space up to here, and never beyond its own limit; 0 leaves the map alone.
+    /// A beam without return clears space up to here, and never beyond its own limit; 0: it changes nothing.
     double no_return_clear_m = 0.0;
-    /// The box around one image's rays may hold this many voxels (1 byte each with `paper`, 8 with
-    /// `robust`); a larger one is refused.
+    /// Maximum number of voxels in the box around one image's rays (1 byte each with `paper`, 8 with
+    /// `robust`); an image with a larger box is refused.
     std::uint32_t depth_box_voxels_max = 1U << 26U;
-    /// How a range of a beam with these optics, which are a cone, is counted.
+    /// The parameters for counting a range of a beam with these optics, which are a cone.
     [[nodiscard]] const ConeModel& cone_of(const BeamOptics& optics) const noexcept {
         return optics.is_zone ? zone : cone;
     }
     friend bool operator==(const MappingConfig&, const MappingConfig&) = default;
 };
 
-/// The paper's equations as they stand: no filter, one term per voxel and frame.
+/// The paper's equations unchanged: no filter, one term per voxel and frame.
 [[nodiscard]] MappingConfig paper_mapping();
-/// Depth filtered, each voxel's term the mean of its beams' terms: the default before `fast`, and its
-/// reference.
+/// Depth filtered, each voxel's term is the mean of its rays' terms. The former default, and the reference
+/// for `fast`.
 [[nodiscard]] MappingConfig robust_mapping();
-/// The default: depth filtered, each voxel asked what the rays about its centre do.
+/// The default: depth filtered, each voxel evaluated by the rays near its centre.
 [[nodiscard]] MappingConfig fast_mapping();
 
 }  // namespace octoskin

@@ -13,7 +13,7 @@ Status<BeamRejection> RangeModel::integrate_ray(const Beam& beam, EvidenceSink& 
 }
 
 Status<BeamRejection> RangeModel::integrate_cone(const Beam& beam, EvidenceSink& sink) {
-    // Before it is taken: what is refused is in no recording, and nothing may follow from it.
+    // Checked before the beam is taken: a refused beam is in no recording, and must have no effect.
     if (const auto refusal = cone_.refusal_of(beam)) return unexpected(*refusal);
     const ConfirmedRanges::Answer answer = stationary_.take(beam);
     const auto voxels = cone_.find(beam, width_of(answer));

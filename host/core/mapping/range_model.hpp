@@ -1,4 +1,4 @@
-// From one placed range to evidence: the way of a range into the maps, whatever its sensor sees.
+// Converts one placed range to evidence for the maps, for every kind of sensor.
 #pragma once
 
 #include <utility>
@@ -14,23 +14,24 @@
 
 namespace octoskin {
 
-/// Ranges in the order in which they are measured. Keeps its memory; not for two threads at once.
+/// Takes ranges in the order of measurement. Reuses its memory; not for concurrent use by two threads.
 class RangeModel {
   public:
-    /// `sees_any_cone`: whether any zone of the rig does. Where all are rays, no stationary sensor clears.
+    /// `sees_any_cone`: true if any zone of the rig sees a cone. If all are rays, no stationary sensor
+    /// clears.
     RangeModel(const MappingConfig& config, bool sees_any_cone)
         : ray_(config), cone_(config), stationary_(config), sees_any_cone_(sees_any_cone) {}
 
-    /// Gives `sink` what the beam says. Refuses it, and gives nothing, if it is not valid or leaves the
-    /// octree. About 0.5 us a ray, 14 us a cone of 1 m at 0.04 m. Throws std::bad_alloc.
+    /// Gives the beam's evidence to `sink`. Refuses the beam, and gives nothing, if it is not valid or leaves
+    /// the octree. About 0.5 us a ray, 14 us a cone of 1 m at 0.04 m. Throws std::bad_alloc.
     [[nodiscard]] Status<BeamRejection> integrate(const Beam& beam, EvidenceSink& sink) {
         return beam.optics.is_cone() ? integrate_cone(beam, sink) : integrate_ray(beam, sink);
     }
 
-    /// As if there had been no beam.
+    /// Clears the state, as if there had been no beam.
     void forget() noexcept { stationary_.forget(); }
 
-    /// As StationarySensors.
+    /// See StationarySensors.
     [[nodiscard]] SensorHistories histories() const { return stationary_.histories(); }
     void go_on_with(SensorHistories histories) noexcept { stationary_.go_on_with(std::move(histories)); }
 

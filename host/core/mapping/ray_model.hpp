@@ -1,4 +1,4 @@
-// From one placed range to what a ray is evidence of.
+// Converts one placed range to the evidence of a ray.
 #pragma once
 
 #include <vector>
@@ -13,16 +13,16 @@
 
 namespace octoskin {
 
-/// The evidence of beams, one after the other. Keeps its memory; not for two threads at once.
+/// Converts beams one after the other. Reuses its memory; not for concurrent use by two threads.
 class RayModel {
   public:
     explicit RayModel(const MappingConfig& config);
 
-    /// A beam with a range: one miss for each voxel it passes through, from the sensor on, then the hit term
-    /// for its range at the endpoint's voxel (left out if 0). A beam without: one miss for each voxel up to
-    /// the smaller of `MappingConfig::no_return_clear_m` and the beam's own `clear_limit_m`, and never a hit;
-    /// nothing if either is 0. Valid until the next call. O(range / resolution), about 0.4 us at 4 m and
-    /// 0.04 m. Throws std::bad_alloc.
+    /// With a range: one miss for each voxel that the ray passes from the sensor on, then the hit term for
+    /// its range in the end point's voxel (omitted if 0). Without a range: one miss for each voxel up to the
+    /// smaller of `MappingConfig::no_return_clear_m` and the beam's own `clear_limit_m`, and no hit; nothing
+    /// if either is 0. Valid until the next call. O(range / resolution), about 0.4 us at 4 m and 0.04 m.
+    /// Throws std::bad_alloc.
     [[nodiscard]] Result<const Evidence*, BeamRejection> find(const Beam& beam) &;
 
   private:

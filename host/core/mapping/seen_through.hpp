@@ -1,4 +1,4 @@
-// How far a sensor that does not move has surely seen: as far as all of its readings of half a second.
+// How far a stationary sensor has reliably seen: as far as all of its readings within half a second.
 #pragma once
 
 #include <algorithm>
@@ -11,23 +11,24 @@
 
 namespace octoskin {
 
-/// Counting frees what is gone within a second at 30 readings a second. A zone that is ranged in turn with
-/// others has not so many: what three of its readings see through is free, if no other reading ends there.
+/// At 30 readings a second, counting frees the space of an object that has left within a second. A zone that
+/// ranges in turn with others has fewer readings: what three of its readings see through is free, if no other
+/// reading ends there.
 class SeenThrough {
   public:
     static constexpr std::size_t kReadingsMin = 3;
 
     explicit SeenThrough(const StationaryModel& model) : model_(model) {}
 
-    /// Takes a beam, of a ray, too, that went into the map, and how far that frees space. The answer: the
-    /// shortest of the zone's newest readings of this place (ConfirmedRanges), as many as last
-    /// `StationaryModel::clears_after_s` and no longer than twice that; null while there are not three, or
-    /// not of so long; valid until the next call. A beam that frees nothing is none. O(readings of so long),
-    /// below 1 us; 0.2 kB each. Throws std::bad_alloc.
+    /// Takes a beam that went into the map (a cone's or a ray's) and the length over which it frees space.
+    /// Returns the shortest of the zone's newest readings from this place (ConfirmedRanges) that span at
+    /// least `StationaryModel::clears_after_s` and at most twice that. Null if there are fewer than three, or
+    /// they span less; valid until the next call. A beam that frees nothing is ignored. O(readings in that
+    /// time), below 1 us; 0.2 kB each. Throws std::bad_alloc.
     [[nodiscard]] const Beam* take(const Beam& beam, double frees_m, SensorHistories& histories) const;
 
-    /// Whether `ends_there` says so of one of the two newest readings of any zone, for the newest may be
-    /// wrong, if that has a range and is no older than `now` by as long as readings count. O(zones).
+    /// True if `ends_there` holds for one of the two newest readings of any zone; two, because the newest may
+    /// be wrong. Only readings with a range count, and only if they are recent enough at `now`. O(zones).
     template <class EndsThere>
     [[nodiscard]] bool any_newest(HostTime now, const SensorHistories& histories,
                                   const EndsThere& ends_there) const {
@@ -49,7 +50,7 @@ class SeenThrough {
     using Passage = ZoneHistory::Passage;
     using Passages = std::deque<Passage>;
 
-    /// What was not measured for longer may have come and gone.
+    /// A space that was not measured for longer may have been occupied meanwhile.
     [[nodiscard]] bool counts(const Beam& before, HostTime now) const {
         return seconds_since(before, now) <= 2.0 * model_.clears_after_s;
     }

@@ -1,4 +1,4 @@
-// What each range sensor read most recently, as far as later maps follow from it.
+// The newest readings of each range sensor, as far as later maps depend on them.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,12 @@
 
 namespace octoskin {
 
-/// Of one zone. ConfirmedRanges keeps the first two for zones that see a cone, SeenThrough the last for all.
+/// History of one zone. ConfirmedRanges uses the first two members for zones with a cone, SeenThrough the
+/// last for all.
 struct ZoneHistory {
     struct Reading {
         Beam beam;
-        std::uint64_t number = 0;  ///< of the sensor's, from 1
+        std::uint64_t number = 0;  ///< number among the sensor's readings, from 1
         bool is_confirmed = false;
     };
     struct Passage {
@@ -25,15 +26,15 @@ struct ZoneHistory {
     };
     std::vector<Reading> newest;    ///< the newest last
     std::optional<Beam> confirmed;  ///< has a range
-    std::deque<Passage> passages;   ///< the newest last; none if there was no memory
+    std::deque<Passage> passages;   ///< the newest last; empty if there was no memory
 };
 
 struct SensorHistory {
-    std::uint64_t readings = 0;  ///< that ConfirmedRanges took
+    std::uint64_t readings = 0;  ///< number of readings that ConfirmedRanges took
     std::map<std::uint8_t, ZoneHistory> zones;
 };
 
-/// 2 kB a zone.
+/// About 2 kB for each zone.
 using SensorHistories = SensorTable<SensorHistory>;
 
 }  // namespace octoskin

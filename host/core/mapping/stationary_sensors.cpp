@@ -20,7 +20,7 @@ void StationarySensors::conclude(const Beam& beam, const ConfirmedRanges::Answer
 
 void StationarySensors::clear_seen_through(const Beam& beam, EvidenceSink& sink) {
     const Beam* const through = seen_.take(beam, cones_.length_m(beam), histories_);
-    // Of a zone of which the history of a ray is kept, as of another rig, no cone is known.
+    // A zone with the history of a ray, for instance from another rig, has no cone.
     if (through == nullptr || !through->optics.is_cone()) return;
     const auto voxels = cones_.find(*through);
     if (!voxels) return;
@@ -32,13 +32,13 @@ void StationarySensors::clear_seen_through(const Beam& beam, EvidenceSink& sink)
     sink.apply(evidence_, &is_ranged);
 }
 
-/// The voxel at the range's end explains the range, too, wherever it lies in the cap.
+/// An occupied voxel at the range's end also explains the range, wherever it lies in the cap.
 void StationarySensors::confirm(const Beam& confirmed, CapWidth width, EvidenceSink& sink) {
     const Eigen::Vector3d p_map = confirmed.p_map_sensor + *confirmed.range_m * confirmed.direction_map;
     const auto end = cones_.lattice().key_of(p_map);
-    // As a rule what was marked once is still there, and nothing else need be found.
+    // Usually the voxel that was marked once is still occupied, and no search is necessary.
     if (end && sink.is_occupied(*end)) return;
-    // So near to the edge of the octree a mean of ranges may lie beyond it.
+    // Near the edge of the octree, a mean of ranges may lie beyond it.
     const auto voxels = cones_.find(confirmed, width);
     if (!voxels) return;
     make_confirmation(**voxels, confirmed_.model().hits, evidence_);

@@ -1,4 +1,4 @@
-// Sensors that do not move: what came before one is on the map at once, and what left is free at once.
+// Stationary sensors: a new object is on the map at once, and the space of one that has left is free at once.
 #pragma once
 
 #include <utility>
@@ -14,28 +14,29 @@
 
 namespace octoskin {
 
-/// From one pose no reading says where in its cone the surface is, so that shares of hits take long to mark
-/// and long to free. Readings that agree do both at once. Not for two threads at once.
+/// Readings from one pose do not show where in its cone the surface is, so that shared hits mark and free
+/// slowly. Agreeing readings do both at once. Not for concurrent use by two threads.
 class StationarySensors {
   public:
     explicit StationarySensors(const MappingConfig& config)
         : confirmed_(config.standing), seen_(config.standing), cones_(config) {}
 
-    /// Takes a cone's beam, in the order in which they are measured. O(zones of the sensor), below 1 us.
-    /// Throws std::bad_alloc.
+    /// Takes a cone's beam, in the order of measurement. O(zones of the sensor), below 1 us. Throws
+    /// std::bad_alloc.
     [[nodiscard]] ConfirmedRanges::Answer take(const Beam& beam) { return confirmed_.take(beam, histories_); }
-    /// What the beams up to this one say together, after it was counted: what the sensor sees through is
-    /// cleared, what is confirmed no longer withdrawn, what is confirmed occupied. Throws std::bad_alloc.
+    /// Applies what the beams up to this one state together; call after the beam was counted. Clears what the
+    /// sensor sees through, withdraws ranges that are no longer confirmed, and marks confirmed ranges
+    /// occupied. Throws std::bad_alloc.
     void conclude(const Beam& beam, const ConfirmedRanges::Answer& answer, EvidenceSink& sink);
-    /// Takes a ray's beam that went into the map: what it ends on is not to be cleared.
+    /// Takes a ray's beam that went into the map: the voxel where it ends must not be cleared.
     void take_ray(const Beam& beam) { (void)seen_.take(beam, cones_.length_m(beam), histories_); }
 
-    /// As if there had been no beam.
+    /// Clears the state, as if there had been no beam.
     void forget() noexcept { histories_.clear(); }
 
-    /// A copy of what was read. Throws std::bad_alloc.
+    /// A copy of the histories. Throws std::bad_alloc.
     [[nodiscard]] SensorHistories histories() const { return histories_; }
-    /// Goes on as if these had been read.
+    /// Continues as if these readings had been taken.
     void go_on_with(SensorHistories histories) noexcept { histories_ = std::move(histories); }
 
   private:
@@ -49,7 +50,7 @@ class StationarySensors {
     Evidence evidence_;
 };
 
-/// How far off its axis a range marks: a sensor that does not move marks only where it would free space, too.
+/// How far off its axis a range marks voxels: a stationary sensor marks only where it would also free space.
 [[nodiscard]] inline CapWidth width_of(const ConfirmedRanges::Answer& answer) noexcept {
     return answer.is_stationary ? CapWidth::core : CapWidth::whole;
 }

@@ -1,5 +1,5 @@
-// Counts, for each voxel of a box, how many rays passed through it and which hit terms ended in it: what
-// every strategy of turning one depth image into voxel terms starts from.
+// Counts, for each voxel of a box, the rays that passed it and the hit terms that ended in it: input of
+// `robust`.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,22 +15,22 @@
 
 namespace octoskin {
 
-/// All that the beams of one image say about one voxel.
+/// Everything that the rays of one image state about one voxel.
 struct VoxelTally {
     std::uint32_t passed = 0;
     std::uint32_t hits = 0;
     double hit_sum = 0.0;
 };
 
-/// A dense grid over a box of voxels, one voxel wider on every side (where rounding may lead a ray, see
-/// `Ray::steps_max`). Its memory stays for the next image.
+/// A dense grid over a box of voxels, one voxel wider on every side, because rounding may lead a ray there
+/// (see `Ray::steps_max`). Reuses its memory for the next image.
 class TallyGrid {
   public:
-    /// Spans `box`, all counts 0; false, and nothing done, if the grid would need over `voxels_max` voxels.
-    /// Every use ends with drain().
+    /// Covers `box` with all counts 0. False, with nothing done, if the grid would need over `voxels_max`
+    /// voxels. Every use must end with drain().
     [[nodiscard]] bool span(const KeyBox& box, std::size_t voxels_max);
 
-    /// How walk_ray() numbers the voxels of this grid; the ray lies in the box.
+    /// How walk_ray() numbers the voxels of this grid; the ray must lie in the box.
     [[nodiscard]] VoxelIndexing indexing_of(const Ray& ray) const noexcept {
         return {.first = index_of(ray.first), .last = index_of(ray.last), .stride = stride_};
     }
@@ -42,14 +42,14 @@ class TallyGrid {
     void add_pass(std::ptrdiff_t index) noexcept { ++marks_[static_cast<std::size_t>(index)]; }
     void add_hit(std::ptrdiff_t index, float term);
 
-    /// Calls take(key, tally) for each voxel passed or hit, in ascending (z, y, x), and leaves the grid
-    /// empty. Voxels beyond the octree's bounds are left out.
+    /// Calls take(key, tally) for each voxel passed or hit, in ascending (z, y, x), and empties the grid.
+    /// Voxels outside the octree are omitted.
     template <class Take>
     void drain(Take&& take);
 
   private:
-    /// Top bit of a mark: the voxel was hit, `hit_slots_` says where its hits are. The rest: rays passed; an
-    /// image has far fewer than 2^31 pixels.
+    /// Top bit of a mark: the voxel was hit, and `hit_slots_` has the index of its hits. Other bits: number
+    /// of rays that passed; an image has far fewer than 2^31 pixels.
     static constexpr std::uint32_t kIsHit = 1U << 31U;
 
     template <class Take>
@@ -59,7 +59,7 @@ class TallyGrid {
     std::array<int, 3> size_{};
     std::array<std::ptrdiff_t, 3> stride_{};
     std::vector<std::uint32_t> marks_;      ///< all 0 between two images
-    std::vector<std::uint32_t> hit_slots_;  ///< index into hits_; valid only where the mark says so
+    std::vector<std::uint32_t> hit_slots_;  ///< index into hits_; valid only if the mark has kIsHit
     std::vector<VoxelTally> hits_;
 };
 

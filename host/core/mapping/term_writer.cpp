@@ -9,7 +9,7 @@
 namespace octoskin {
 namespace {
 
-/// Calls write(cell, term) for each voxel of a brick, in order, whatever the term.
+/// Calls write(cell, term) for each voxel of a brick, in order, for every term.
 template <class Write>
 void for_each_voxel(const Evidence& evidence, const BrickEvidence& brick, const Write& write) {
     for_each_cell(brick.voxels, [&](std::size_t cell) { write(cell, evidence.miss); });
@@ -28,17 +28,17 @@ void TermWriter::write(const Evidence& evidence) noexcept {
         const BrickEvidence& brick = evidence.bricks[next++];
         editor_.has_counts(brick.first) ? write_priors(evidence, brick) : write_brick(evidence, brick);
     }
-    // What had no room is in an unknown brick, which is not dated.
+    // Terms without room are in an unknown brick, which gets no time stamp.
     if (editor_.layers().ages.has_begun() && editor_.counters().no_memory == no_memory) date(evidence);
 }
 
-/// Takes bricks as long as their voxels have a place each and nothing has to be refused; returns how many:
-/// all of a ray's in known space. Most of a map is in no cache: all bricks are asked for, then all voxels,
-/// before the first is written.
+/// Writes consecutive bricks whose voxels have their own values, as long as nothing must be refused; returns
+/// how many. In known space, these are all bricks of a ray. Most of a map is not cached: all bricks, then all
+/// voxels, are prefetched before the first is written.
 std::size_t TermWriter::write_owned(const Evidence& evidence, std::size_t from) noexcept {
     constexpr std::size_t kVoxelsMax = 512;
     constexpr std::size_t kBricksMax = 256;
-    std::array<BrickValues*, kBricksMax> bricks;  // NOLINT: as many as are found are set
+    std::array<BrickValues*, kBricksMax> bricks;  // NOLINT: the first `found` are set
     BrickTree::OwnBricks own(editor_.layers().log_odds);
     const auto wanted = std::span(evidence.bricks).subspan(from);
     std::size_t found = 0;
@@ -49,7 +49,7 @@ std::size_t TermWriter::write_owned(const Evidence& evidence, std::size_t from) 
         bricks[found] = own.find(brick.first);
         if (bricks[found] == nullptr) break;
     }
-    std::array<float*, kVoxelsMax> voxels;  // NOLINT: as many as are counted are set
+    std::array<float*, kVoxelsMax> voxels;  // NOLINT: the first `count` are set
     std::size_t count = 0;
     std::size_t written = 0;
     for (; written < found; ++written) {
@@ -81,7 +81,7 @@ bool TermWriter::leaves_out(float term) noexcept {
     return true;
 }
 
-/// The brick is made for the first voxel that it is needed for.
+/// Creates the brick at the first voxel that needs it.
 void TermWriter::write_brick(const Evidence& evidence, const BrickEvidence& brick) noexcept {
     BrickTree& log_odds = editor_.layers().log_odds;
     BrickValues* values = log_odds.own(brick.first);
@@ -92,7 +92,8 @@ void TermWriter::write_brick(const Evidence& evidence, const BrickEvidence& bric
         if (values == nullptr && has_values) {
             const BrickView before = log_odds.find(brick.first);
             if (before.values == nullptr && added.added_to(before.value) == before.value)
-                return editor_.note(&MapCounters::applied);  // a clamped value that stays: most of free space
+                // the value stays at its clamp, as in most of free space
+                return editor_.note(&MapCounters::applied);
             has_values = editor_.change(brick.first, [&] { values = &log_odds.open(brick.first); });
         }
         if (values != nullptr) editor_.set((*values)[cell], added.added_to((*values)[cell]));
@@ -100,7 +101,7 @@ void TermWriter::write_brick(const Evidence& evidence, const BrickEvidence& bric
     });
 }
 
-/// Where there are counts the terms go to the priors.
+/// In bricks with counts, the terms go to the priors.
 void TermWriter::write_priors(const Evidence& evidence, const BrickEvidence& brick) noexcept {
     MapLayers& layers = editor_.layers();
     const BrickView hits = layers.counts.hits.find(brick.first);

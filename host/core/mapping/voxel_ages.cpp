@@ -10,16 +10,16 @@ namespace octoskin {
 namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-/// More than any clock of nanoseconds has. One that runs for longer says no more than that.
+/// Larger than any nanosecond clock reaches; longer times are clamped to it.
 constexpr std::int64_t kSecondsMax = std::int64_t{1} << 40U;
 
-/// Towards earlier times.
+/// Rounds towards earlier times.
 std::int64_t whole_seconds(HostTime time) {
     const std::int64_t seconds = time.ns / kNanosecondsPerSecond;
     return time.ns % kNanosecondsPerSecond < 0 ? seconds - 1 : seconds;
 }
 
-/// A beam's voxels in a brick are few: one by one they are quicker.
+/// A beam has few voxels in a brick: writing them one by one is faster.
 void put(BrickStamps& stamps, const BrickMask& voxels, std::uint16_t stamp) {
     constexpr std::size_t kFew = 16;
     if (count_of(voxels) > kFew) return put_stamp(stamps, voxels, stamp);
@@ -28,10 +28,10 @@ void put(BrickStamps& stamps, const BrickMask& voxels, std::uint16_t stamp) {
             stamps[64 * word + static_cast<std::size_t>(std::countr_zero(bits))] = stamp;
 }
 
-/// Of those that are; 0 if none is.
+/// The oldest of the time stamps that are set; 0 if none is.
 std::uint16_t oldest_of(const StampView& view) {
     if (view.values == nullptr) return view.value;
-    // One less, 0 is the latest of all.
+    // Minus one, a missing time stamp (0) becomes the latest of all.
     std::uint16_t least = 0xFFFF;
     for (const std::uint16_t stamp : *view.values)
         least = std::min(least, static_cast<std::uint16_t>(stamp - 1U));
@@ -106,7 +106,7 @@ void VoxelAges::change_stamps(const Change& change) {
     agenda_.change_stamps(change);
 }
 
-/// What is too old for that stays the oldest there is.
+/// Time stamps too old for the shift become the oldest possible one.
 void VoxelAges::bring_up(std::uint32_t by) {
     change_stamps([by](std::uint16_t stamp) -> std::uint16_t {
         if (stamp == 0) return 0;
@@ -139,7 +139,7 @@ void VoxelAges::take_from_before(MortonCode brick, const BrickMask& voxels) {
         undated[word] = voxels[word] & stamps_below(*before.values, word, 1);
     if (undated == BrickMask{}) return;
     put_stamp(stamps_.open(brick), undated, kOfBefore);
-    agenda_ = ExpiryAgenda();  // it has the brick with a later stamp: the next look begins anew
+    agenda_ = ExpiryAgenda();  // it has a later time stamp for the brick: the next visit rebuilds it
 }
 
 std::optional<Confirmation> VoxelAges::confirmation_of(std::uint16_t stamp) const noexcept {
@@ -161,7 +161,7 @@ void VoxelAges::confirm(MortonCode brick, const BrickMask& voxels, SensorKind ki
         return put(*own, voxels, now);
     }
     const StampView before = stamps_.find(brick);
-    // Most frames find what the one before has left in the same second: then nothing is copied.
+    // Most frames find the time stamps of a frame in the same second: then nothing is copied.
     if (before.values == nullptr ? before.value == now : !has_other_stamp(*before.values, voxels, now))
         return;
     const auto stamp_voxels = [&] {

@@ -17,7 +17,7 @@ namespace octoskin {
 
 /// A voxel's last confirmation.
 struct Confirmation {
-    std::uint32_t age_s = 0;  ///< whole seconds, to 1 s; `kAgeMax_s` if it is that long ago or longer
+    std::uint32_t age_s = 0;  ///< in whole seconds, exact to 1 s; `kAgeMax_s` for that age and above
     SensorKind kind = SensorKind::none;
     friend bool operator==(const Confirmation&, const Confirmation&) = default;
 };
@@ -25,82 +25,85 @@ struct Confirmation {
 using StampTree = BrickTreeOf<std::uint16_t>;
 using StampView = BrickViewOf<std::uint16_t>;
 
-/// A clock of whole seconds, and its reading for each voxel: 14 bits, and two of the kind. Copies share what
-/// they have in common, as a BrickTree's do.
+/// A clock in whole seconds, and its value at each voxel's last confirmation: 14 bits of time and two of
+/// sensor kind. Copies share unchanged bricks, like copies of a BrickTree.
 class VoxelAges {
   public:
-    /// As far back as ages are told apart. A clock that runs further brings all stamps up with it, once in as
-    /// many seconds.
+    /// Largest age that is distinguished. When the clock exceeds its range, all time stamps are shifted, once
+    /// in this many seconds.
     static constexpr std::uint32_t kAgeMax_s = 8191;
 
-    /// What the clock is made of, for a snapshot of it.
+    /// The clock's state, for a snapshot.
     struct Clock {
         bool has_begun = false;
-        bool waits = false;           ///< the time that comes next begins a scale of its own
+        bool waits = false;           ///< the next time is on a new scale
         std::int64_t runs_for_s = 0;  ///< whole seconds since it began
-        std::int64_t waited_s = 0;    ///< of those, since it waits
-        std::int64_t zero_s = 0;      ///< of the host's time, at which it would show 0
-        std::uint32_t now = 0;        ///< what it shows, from 1 on: a stamp of 0 is none
+        std::int64_t waited_s = 0;    ///< of those, since it began to wait
+        std::int64_t zero_s = 0;      ///< host time at which the clock's value would be 0, s
+        std::uint32_t now = 0;        ///< the clock's value, at least 1: a time stamp of 0 means none
         friend bool operator==(const Clock&, const Clock&) = default;
     };
 
     VoxelAges() = default;
-    /// Goes on with the clock and the stamps of others; the caller has checked them (`is_possible`).
+    /// Continues with another clock and its time stamps; the caller has checked them (`is_possible`).
     VoxelAges(const Clock& clock, StampTree stamps) noexcept : clock_(clock), stamps_(std::move(stamps)) {}
     [[nodiscard]] const Clock& clock() const noexcept { return clock_; }
-    /// Whether a clock can have come to be so. O(1).
+    /// True if a clock can be in this state. O(1).
     [[nodiscard]] static bool is_possible(const Clock& clock) noexcept;
-    /// Whether a voxel can have this stamp by that clock, which is possible; 0 is none, and is possible.
+    /// True if a voxel can have this time stamp by that clock, which is possible. 0 means none and is
+    /// possible.
     [[nodiscard]] static bool is_possible(std::uint16_t stamp, const Clock& clock) noexcept;
 
     [[nodiscard]] bool has_begun() const noexcept { return clock_.has_begun; }
-    /// Time goes on to `now`, or, the first time, begins. Measurements come late by fractions of a second:
-    /// the clock waits for what is earlier by up to `kBackMax_s`; beyond, the time is another one from then
-    /// on, and ages go on from what they were. True if it is another second than before. Throws
-    /// std::bad_alloc once in kAgeMax_s seconds at most; then the clock stands.
+    /// Advances to `now`; the first call begins the clock. Measurements arrive late by fractions of a second:
+    /// if `now` is earlier by up to `kBackMax_s`, the clock keeps its value. If it is earlier by more, the
+    /// scale has changed, and ages continue from their values. True if the second changed. Throws
+    /// std::bad_alloc at most once in kAgeMax_s seconds; the clock then keeps its value.
     bool go_on(HostTime now);
     static constexpr std::int64_t kBackMax_s = 10;
-    /// The time that comes next is ahead by this of the one so far, and none of it has passed. To whole
-    /// seconds.
+    /// Time jump: the next time is ahead of the earlier scale by `by`, and no time has passed. Rounded to
+    /// whole seconds.
     void leap(Nanoseconds by) noexcept;
-    /// Of a map that was saved: the time that comes next begins a scale of its own, and ages go on from what
-    /// they were and from what `wait` adds to them. A clock that has not begun begins with that.
+    /// For a map that was saved: the next time is on a new scale, and ages continue from their values plus
+    /// what `wait` adds. A clock that has not begun begins here.
     void begin_to_wait() noexcept {
         if (!clock_.has_begun) clock_ = {.has_begun = true, .now = kAgeMax_s};
         clock_.waits = true;
         clock_.waited_s = 0;
     }
-    /// So many seconds have passed since `begin_to_wait`, in all. Nothing unless the clock waits and has
-    /// begun, or if as many or more were added already. True if ages grew. Throws as `go_on`.
+    /// `seconds` in total have passed since `begin_to_wait`. Does nothing unless the clock has begun and
+    /// waits, or if as many seconds were added before. True if ages grew. Throws as `go_on`.
     bool wait(std::int64_t seconds);
-    /// What a voxel that is confirmed now is given. The lower, the weaker: earlier, of another sensor.
+    /// The time stamp of a voxel that is confirmed now. Lower values are earlier or, in the same second, of
+    /// another kind.
     [[nodiscard]] std::uint16_t stamp(SensorKind kind) const noexcept {
         return static_cast<std::uint16_t>((clock_.now << kKindBits) | static_cast<std::uint16_t>(kind));
     }
-    /// Of a voxel that was there when the clock began: nobody knows since when. Lower than all but 0.
+    /// Time stamp of a voxel that was measured before the clock began, at an unknown time. Lower than all but
+    /// 0.
     static constexpr std::uint16_t kOfBefore = 1U << 2U;
-    /// Empty for a stamp of 0, which is none, and for kOfBefore.
+    /// Empty for a time stamp of 0 (none) and for kOfBefore.
     [[nodiscard]] std::optional<Confirmation> confirmation_of(std::uint16_t stamp) const noexcept;
-    /// Stamps below this one are `age_s` old or older, up to kAgeMax_s; 0 and kOfBefore always are.
+    /// Time stamps below this one are `age_s` old or older, up to kAgeMax_s; 0 and kOfBefore always are.
     [[nodiscard]] std::uint16_t stamp_before(std::uint32_t age_s) const noexcept;
     /// Whole seconds since the clock began.
     [[nodiscard]] std::int64_t runs_for_s() const noexcept { return clock_.runs_for_s; }
 
-    /// Confirms voxels of a brick. Throws std::bad_alloc, and then nothing is changed. About 50 ns, and as
-    /// much as a copy of the brick if a copy has it, too, and anything changes.
+    /// Confirms voxels of a brick. Throws std::bad_alloc; nothing is changed then. About 50 ns. If a copy
+    /// shares the brick and anything changes, plus the cost of copying the brick.
     void confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind);
-    /// Bricks whose stamps have a place each, for a caller that gives them `stamp(kind)` itself; until a
-    /// brick is confirmed otherwise.
+    /// Bricks with a time stamp for each voxel, for a caller that writes `stamp(kind)` itself. Valid until a
+    /// brick is confirmed in another way.
     [[nodiscard]] StampTree::OwnBricks own_bricks() noexcept { return StampTree::OwnBricks(stamps_); }
-    /// These voxels of a brick were there when the clock began, if they have no stamp: all of the brick if it
-    /// has none, which takes less. Throws std::bad_alloc, and then nothing is changed.
+    /// Gives kOfBefore to these voxels of a brick that have no time stamp. A brick without any time stamp
+    /// gets it as a whole, which takes less memory. Throws std::bad_alloc; nothing is changed then.
     void take_from_before(MortonCode brick, const BrickMask& voxels);
-    /// Makes some voxels of a brick unconfirmed. Throws std::bad_alloc, and then nothing is changed.
+    /// Removes the time stamps of some voxels of a brick. Throws std::bad_alloc; nothing is changed then.
     void forget(MortonCode brick, const BrickMask& voxels);
 
-    /// Calls look(brick) for each brick that may have a stamp from `first` on and before `limit`, and for a
-    /// few others. Throws what it does, and std::bad_alloc the first time, which is O(stamps): from then on
-    /// it is known which bricks these may be.
+    /// Calls look(brick) for each brick that may have a time stamp of at least `first` and below `limit`, and
+    /// for a few others. Throws what `look` throws. The first call builds the agenda of these bricks, which
+    /// is O(time stamps) and may throw std::bad_alloc.
     template <class Look>
     void look_at_due(std::uint16_t first, std::uint16_t limit, const Look& look) {
         if (!agenda_.is_kept()) begin_agenda();
@@ -112,12 +115,12 @@ class VoxelAges {
 
     [[nodiscard]] StampView find(MortonCode brick) const noexcept { return stamps_.find(brick); }
     [[nodiscard]] const StampTree& stamps() const noexcept { return stamps_; }
-    /// If every brick had a stamp of its own for each voxel.
+    /// Bytes if every brick had its own time stamp for each voxel.
     [[nodiscard]] std::size_t bytes_at_most() const noexcept {
         return stamps_.nodes() * StampTree::kNodeBytes +
                stamps_.bricks() * (StampTree::kBrickBytes + ExpiryAgenda::kEntryBytes);
     }
-    /// What a further brick may take.
+    /// Upper bound of the bytes that a further brick takes.
     [[nodiscard]] std::size_t bytes_of_new(MortonCode brick) const noexcept {
         return stamps_.nodes_missing(brick) * StampTree::kNodeBytes + StampTree::kBrickBytes +
                ExpiryAgenda::kEntryBytes;
@@ -129,17 +132,16 @@ class VoxelAges {
   private:
     static constexpr unsigned kKindBits = 2;
     static constexpr std::uint32_t kNowMax = (1U << (16 - kKindBits)) - 1;
-    /// Changes every stamp that is there; `change` keeps their order. Throws std::bad_alloc, and then nothing
-    /// is changed.
+    /// Changes every time stamp; `change` keeps their order. Throws std::bad_alloc; nothing is changed then.
     template <class Change>
     void change_stamps(const Change& change);
     void bring_up(std::uint32_t by);
-    /// Makes the clock show so much more, `passed_s` above 0. Throws std::bad_alloc; then it shows the same.
+    /// Advances the clock by `passed_s`, above 0. Throws std::bad_alloc; the clock then keeps its value.
     void advance(std::int64_t passed_s);
     void begin_agenda();
-    /// The earliest stamp; 0 if no voxel has one.
+    /// The earliest time stamp; 0 if no voxel has one.
     [[nodiscard]] std::uint16_t oldest_in(MortonCode brick) const noexcept;
-    /// Makes `stamp` give stamps to voxels of a brick that has none.
+    /// Calls `stamp`, which gives time stamps to voxels of a brick that has none.
     template <class Stamp>
     void stamp_first(MortonCode brick, std::uint16_t with, const Stamp& stamp) {
         if (agenda_.is_kept()) agenda_.make_room();
@@ -149,7 +151,7 @@ class VoxelAges {
 
     Clock clock_;
     StampTree stamps_;
-    ExpiryAgenda agenda_;  ///< of each brick that has stamps, once somebody asked
+    ExpiryAgenda agenda_;  ///< one entry for each brick with time stamps, after the first visit
 };
 
 }  // namespace octoskin

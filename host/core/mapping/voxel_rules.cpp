@@ -7,17 +7,17 @@
 namespace octoskin {
 namespace {
 
-/// Rounding must not leave a voxel on the other side of the threshold.
+/// Keeps a voxel on its side of the threshold despite rounding.
 constexpr float kForRounding = 1.001F;
-/// Fewer are none: what an image clears must end at 0.
+/// Smaller counts become 0, so that repeated images clear a count completely.
 constexpr float kLeastCount = 0.01F;
 
-/// A logarithm's argument.
+/// Odds of a probability; their logarithm gives log-odds.
 float odds_of(float probability) {
     return probability / (1.0F - probability);
 }
 
-/// What an image leaves of counts that it contradicts.
+/// What remains of a count that an image contradicts.
 float after_image(float count, float share) {
     const float left = count * (1.0F - share);
     return left < kLeastCount ? 0.0F : left;
@@ -139,7 +139,7 @@ float VoxelRules::hits_that_mark(float prior) const noexcept {
 }
 
 float VoxelRules::misses_that_free(float prior) const noexcept {
-    constexpr float kLeast = 0.01F;  // with none, the voxel would be unknown
+    constexpr float kLeast = 0.01F;  // without misses, the voxel would be unknown
     const float misses = hits_known(prior) / odds_occupied_ - misses_known(prior);
     return std::max(kForRounding * misses, kLeast);
 }

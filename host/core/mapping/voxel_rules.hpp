@@ -1,5 +1,5 @@
-// What a measurement makes of one voxel: the definition of the map. BrickEditor does the same to many voxels
-// at once, and a property test holds it to these rules bit by bit.
+// Effect of a measurement on one voxel: the definition of the map. BrickEditor and the writers do the same
+// for many voxels at once, and a property test compares them with these rules bit by bit.
 #pragma once
 
 #include <cmath>
@@ -13,52 +13,53 @@ namespace octoskin {
 
 enum class Occupancy : std::uint8_t { unknown, free, occupied };
 
-/// All that a map holds of a voxel, but for when it was last seen (VoxelAges).
+/// Everything that a map stores about a voxel, except when it was last seen (VoxelAges).
 struct VoxelState {
-    float log_odds = kUnknownLogOdds;  ///< what the map answers; a NaN: unknown
-    float prior = kUnknownLogOdds;     ///< of all measurements that are not counted; a NaN: none
-    float hits = 0.0F;                 ///< what range sensors that see a cone have counted
+    float log_odds = kUnknownLogOdds;  ///< the voxel's value for queries; NaN: unknown
+    float prior = kUnknownLogOdds;     ///< from all measurements that are not counted; NaN: none
+    float hits = 0.0F;                 ///< counts of range sensors that see a cone
     float misses = 0.0F;
 };
 
-/// The rules, one voxel at a time. Each leaves `log_odds` what the rest comes to: without counts the prior;
-/// with counts ln((a + hits) / (b + misses)), a and b from CountModel and the prior, moved so that
-/// `occupied_probability` comes to `log_odds_occupied`, and clamped; below `log_odds_occupied` if hits are
-/// fewer than `hits_min` and the prior is. A voxel that is unknown stays so until that is enough to say it.
+/// The rules for one voxel. Each rule updates `log_odds` from the other members. Without counts, it is the
+/// prior. With counts, it is ln((a + hits) / (b + misses)), with a and b from CountModel and the prior,
+/// shifted so that `occupied_probability` becomes `log_odds_occupied`, and clamped. It is below
+/// `log_odds_occupied` if there are fewer hits than `hits_min` and the prior is below. An unknown voxel stays
+/// unknown until the counts are sufficient.
 class VoxelRules {
   public:
-    /// Clamps finite, log_odds_min <= 0 <= log_odds_max; the counts' priors positive, their probability
-    /// between 0 and 1 (asserted).
+    /// Requires: clamps finite, log_odds_min <= 0 <= log_odds_max; the counts' priors positive, their
+    /// probability between 0 and 1 (asserted).
     explicit VoxelRules(const MapConfig& config);
 
-    /// A term in log-odds, finite and not 0, of any sensor but a camera.
+    /// Adds a term in log-odds, finite and not 0, of any sensor except a camera.
     void add(VoxelState& voxel, float term) const noexcept;
-    /// An image all of whose rays pass the voxel.
+    /// Takes an image whose rays all pass the voxel.
     void miss(VoxelState& voxel, float term) const noexcept;
-    /// An image of which rays end in the voxel, whatever they come to.
+    /// Takes an image with rays that end in the voxel, whatever the sum of their terms.
     void hit(VoxelState& voxel, float term) const noexcept;
-    /// A range's share of hits, or its misses.
+    /// Adds a range's share of hits, or its misses.
     void count(VoxelState& voxel, float hits, float misses) const noexcept;
-    /// Occupied from now on, with at least so many hits and no misses.
+    /// Makes the voxel occupied, with at least `hits` hits and no misses.
     void confirm(VoxelState& voxel, float hits) const noexcept;
-    /// The hits are gone. From one place they tell nothing of where in its cap a range ended, and with each
-    /// thing that comes and goes there they would grow.
+    /// Removes the hits. From one place, hits do not show where in its cap a range ended, and they would
+    /// accumulate with each object that appears and leaves there.
     void withdraw(VoxelState& voxel) const noexcept;
-    /// Free from now on, without hits and without what a camera once knew of it.
+    /// Makes the voxel free, without hits and without the camera's earlier evidence that it is occupied.
     void clear(VoxelState& voxel) const noexcept;
-    /// As if nothing had ever been measured there.
+    /// Makes the voxel unknown, as if nothing had ever been measured there.
     static void expire(VoxelState& voxel) noexcept { voxel = {}; }
-    /// Makes `log_odds` what the rest comes to, under other limits.
+    /// Recomputes `log_odds` from the other members, for instance under other limits.
     void fuse(VoxelState& voxel) const noexcept;
 
-    /// Whether a range that passes a voxel dates it: not what is occupied and a camera saw just now. While
-    /// the camera looks, its evidence is the newest, and what passes there contradicts it.
+    /// True if a range that passes a voxel gives it a time stamp. False for an occupied voxel that a camera
+    /// has just seen: the camera's evidence is newer, and the passing range contradicts it.
     template <class IsSeen>
     [[nodiscard]] bool dates_passed(float log_odds, const IsSeen& is_seen_by_camera) const {
         return !is_occupied(log_odds) || !is_seen_by_camera();
     }
-    /// Whether a range that may end in a voxel dates it: not what is free, which a hit that is shared does
-    /// not confirm. What is unknown and was given hits has its time, so that counts that lead to nothing
+    /// True if a range that may end in a voxel gives it a time stamp. False for a free voxel, which a shared
+    /// hit does not confirm. An unknown voxel that gets hits has a time stamp, so that counts without effect
     /// expire.
     template <class IsSeen>
     [[nodiscard]] bool dates_in_cap(float log_odds, float weight, const IsSeen& is_seen_by_camera) const {
@@ -70,7 +71,7 @@ class VoxelRules {
         const float for_it = hits_known(voxel.prior) + voxel.hits;
         return for_it / (for_it + misses_known(voxel.prior) + voxel.misses);
     }
-    /// False for a NaN.
+    /// False for NaN.
     [[nodiscard]] bool is_occupied(float log_odds) const noexcept { return log_odds >= occupied_; }
     [[nodiscard]] Occupancy occupancy(float log_odds) const noexcept {
         if (std::isnan(log_odds)) return Occupancy::unknown;
@@ -93,9 +94,9 @@ class VoxelRules {
     [[nodiscard]] float misses_known(float prior) const noexcept {
         return model_.prior_misses + (prior < 0.0F ? misses_per_log_odds_ * prior : 0.0F);
     }
-    /// Hits that mark a voxel without misses, and hardly more.
+    /// Slightly more than the fewest hits that mark a voxel without misses.
     [[nodiscard]] float hits_that_mark(float prior) const noexcept;
-    /// Misses that free a known voxel without hits, and hardly more.
+    /// Slightly more than the fewest misses that free a known voxel without hits.
     [[nodiscard]] float misses_that_free(float prior) const noexcept;
 
     CountModel model_;
@@ -107,8 +108,8 @@ class VoxelRules {
     float below_occupied_;
     float hits_per_log_odds_;
     float misses_per_log_odds_;
-    float shift_;  ///< of log-odds
-    /// Odds beyond which the clamps hold. A logarithm costs as much as all else.
+    float shift_;  ///< shift of log-odds
+    /// Odds beyond which the clamps apply. Comparing them avoids the logarithm, half of the total cost.
     float odds_min_;
     float odds_max_;
     float odds_occupied_;

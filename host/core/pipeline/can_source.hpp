@@ -1,4 +1,4 @@
-// Where frames come from, seen from the core: a log now, a socket later.
+// Interface to a source of CAN frames: a log or a socket.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@
 namespace octoskin {
 
 struct StampedFrame {
-    WallTime stamp;  ///< when it was received
+    WallTime stamp;  ///< time of reception
     wire::CanFrame frame;
 };
 
-/// Why no further frame will come: what, where and what to do, for a person.
+/// Why no further frame will come: fault, place and remedy, for people.
 struct CanSourceError {
     std::string what;
 };
@@ -23,7 +23,7 @@ struct CanSourceError {
 class CanSource {
   public:
     virtual ~CanSource() = default;
-    /// The next frame in the order of arrival; empty at the regular end, and then for ever.
+    /// The next frame in the order of arrival; empty at the regular end and in every later call.
     [[nodiscard]] virtual Result<std::optional<StampedFrame>, CanSourceError> next() = 0;
 };
 

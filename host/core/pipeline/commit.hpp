@@ -1,4 +1,4 @@
-// What the maps are made of, in the order in which it goes in.
+// The inputs of the maps, in the order in which they are applied.
 #pragma once
 
 #include <cstdint>
@@ -16,42 +16,42 @@
 
 namespace octoskin {
 
-/// A depth frame, told apart from the pixels, which are in a recording of depth frames.
+/// A depth frame without its pixels, which are in a recording of depth frames.
 struct DepthCommit {
-    std::optional<std::uint64_t> index;  ///< its place in that recording, from 0; empty: it is not there
+    std::optional<std::uint64_t> index;  ///< its index in that recording, from 0; empty: not recorded
     HostTime captured;
     friend bool operator==(const DepthCommit&, const DepthCommit&) = default;
 };
 
-/// So many seconds passed, in all, while a map that was saved waits for its first measurement.
+/// Total time, in whole seconds, that has passed while a saved map waits for its first measurement.
 struct WaitCommit {
     std::int64_t seconds = 0;
     friend bool operator==(const WaitCommit&, const WaitCommit&) = default;
 };
 
-/// A joint sample that was taken into the history, a reading or frame that was integrated, or time by which
-/// the map grew older without one.
+/// A joint sample added to the history, a reading or frame that was integrated, or time that aged the map
+/// without an input.
 using Commit = std::variant<JointMeasurement, RangeMeasurement, DepthCommit, WaitCommit>;
 
-/// Learns of each after it went in, but for `on_time`. What it is given is valid during the call only.
+/// Called for each input after it was applied, except `on_time`. References are valid during the call only.
 class CommitListener {
   public:
     virtual ~CommitListener() = default;
-    /// Of a replay: the fused map goes on from this one, before anything went in. Not told if it is empty.
+    /// In a replay: the fused map continues from this one, before any input. Not called if it is empty.
     virtual void on_begin(const FusedMap&) {}
-    /// The maps' time has gone on, to that of the reading or frame of which nothing has gone in yet: what was
-    /// too old has expired. Empty: by a wait, after `on_wait`.
+    /// The maps' time has advanced to that of the next reading or frame, which is not applied yet: old voxels
+    /// have expired. Empty: after a wait, following `on_wait`.
     virtual void on_time(std::optional<HostTime>, std::span<const FedMap>) {}
     virtual void on_joints(const JointMeasurement& joints) = 0;
     virtual void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                             std::span<const VoxelUpdate> updates) = 0;
     virtual void on_depth(const DepthFrame& frame, const Evidence& terms) = 0;
-    /// The map of all sensors grew older: MapBuilder::wait.
+    /// The map of all sensors has aged: MapBuilder::wait.
     virtual void on_wait(const WaitCommit&) {}
-    /// After each reading and frame, and after what was told of it.
+    /// Called after each reading and frame, and after the calls about it.
     virtual void on_maps(std::span<const FedMap>) {}
-    /// What comes next has another time, from before what came so far or far ahead of it, or the
-    /// machine slept: a replay in this order ends here.
+    /// Time jump: later inputs are from before the earlier ones or far ahead of them, or the machine slept. A
+    /// replay in this order ends here.
     virtual void on_time_leap() {}
 };
 

@@ -1,4 +1,4 @@
-// From a depth frame to the terms of its voxels: convert, filter, take the robot out, integrate.
+// Converts a depth frame to the terms of its voxels: convert, filter, remove the robot, integrate.
 #pragma once
 
 #include <optional>
@@ -20,27 +20,27 @@ namespace octoskin {
 
 class DepthStage {
   public:
-    /// The rig must have a camera.
-    /// `finds_certain`: also which pixels leave no doubt, for the comparison with range sensors.
+    /// The rig must have a camera. `finds_certain`: also finds the reliable pixels, for the comparison with
+    /// range sensors.
     DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads = 1,
                bool finds_certain = false);
 
-    /// Whether a frame needs to know where the robot was.
+    /// True if a frame requires the robot's pose.
     [[nodiscard]] bool needs_robot() const noexcept { return config_.removes_robot_from_depth; }
 
     /// `robot`: at the frame's capture time; may be null unless `needs_robot()`.
     [[nodiscard]] Result<DepthUpdates, DepthReason> updates(const DepthFrame& frame, const RobotPose* robot);
 
     [[nodiscard]] const HostCamera& camera() const noexcept { return camera_; }
-    /// What range sensors are compared with, of the newest frame that gave updates; only if `finds_certain`.
-    /// Given for others, of which only the memory is used.
+    /// Images of the newest frame that gave updates, for the comparison with range sensors; only if
+    /// `finds_certain`. Swapped for `images`, whose memory is reused.
     void swap_images(SeenImages& images) noexcept { std::swap(seen_, images); }
-    /// Where a frame was seen from.
+    /// Camera pose of a frame.
     [[nodiscard]] Eigen::Isometry3d T_map_camera_of(const DepthFrame& frame) const {
         return frame.T_map_camera.value_or(T_map_camera_);
     }
 
-    /// How many frames were refused as `wrong_size`, by their newest width and height (pixels).
+    /// Number of frames refused as `wrong_size`, with the newest width and height (pixels).
     struct WrongSize {
         std::uint64_t frames = 0;
         std::uint32_t width = 0;
@@ -48,13 +48,13 @@ class DepthStage {
     };
     [[nodiscard]] const WrongSize& wrong_size() const noexcept { return wrong_size_; }
 
-    /// Pixels set to nothing because they show the robot, over all frames that came into the map.
+    /// Pixels removed because they show the robot, over all frames that went into the map.
     [[nodiscard]] std::uint64_t robot_pixels() const noexcept { return robot_pixels_; }
-    /// What became of the others, over all frames used.
+    /// Results of the other pixels, over all used frames.
     [[nodiscard]] const DepthPixelCounts& pixels() const noexcept { return pixels_; }
 
   private:
-    /// How many pixels showed it.
+    /// Returns the number of removed pixels.
     [[nodiscard]] std::uint64_t take_robot_out(DepthImage& image, const RobotPose& robot,
                                                const Eigen::Isometry3d& T_base_camera);
 
@@ -62,7 +62,7 @@ class DepthStage {
     MappingConfig config_;
     double self_margin_m_;
     Eigen::Isometry3d T_map_base_;
-    Eigen::Isometry3d T_map_camera_;  ///< of a frame that does not say where the camera was
+    Eigen::Isometry3d T_map_camera_;  ///< for a frame without its own camera pose
     DepthFilter filter_;
     DepthIntegrator integrator_;
     std::vector<PosedCapsule> body_camera_;

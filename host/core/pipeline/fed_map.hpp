@@ -1,4 +1,4 @@
-// The maps that are built at the same time, and which sensors each is fed with.
+// The maps that are built at the same time, and the sensors that feed each of them.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace octoskin {
 
 enum class MapFeed : std::uint8_t { camera, ranges, both };
 
-/// What the map is called in files and tables.
+/// Name of the map in files and tables.
 [[nodiscard]] constexpr std::string_view name_of(MapFeed feed) noexcept {
     switch (feed) {
         case MapFeed::camera:
@@ -36,7 +36,7 @@ struct FedMap {
     }
 };
 
-/// What an experiment compares; a daemon has the one of both.
+/// The maps that an experiment compares; a daemon builds only `both`.
 [[nodiscard]] inline std::vector<MapFeed> every_feed() {
     return {MapFeed::camera, MapFeed::ranges, MapFeed::both};
 }

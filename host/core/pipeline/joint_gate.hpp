@@ -1,5 +1,5 @@
-// Which joint samples the arm can have taken: within the limits of the robot description, and reachable from
-// the sample before.
+// Refuses joint samples that the arm cannot have: beyond the limits of the robot description, or unreachable
+// from the sample before.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@
 
 namespace octoskin {
 
-/// A joint sample that is beyond the limits of the robot description.
+/// A joint sample beyond the limits of the robot description.
 struct JointBeyond {
-    std::size_t joint = 0;  ///< of HostJoints::joints
+    std::size_t joint = 0;  ///< index in HostJoints::joints
     double position = 0.0;  ///< radians or metres
     JointLimits limits;
     HostTime sampled;
@@ -26,18 +26,18 @@ struct JointBeyond {
 
 class JointGate {
   public:
-    /// `tolerance`: so far beyond a limit a sample may be, radians or metres.
+    /// `tolerance`: how far a sample may be beyond a limit, radians or metres.
     JointGate(std::span<const JointLimits> limits, double tolerance);
 
-    /// Samples in the order of their times. Errors: out_of_limits, joint_jump, second_sender. What is beyond
-    /// the limits is nowhere that the arm could have moved to or from. O(joints).
+    /// Takes samples in the order of their times. Errors: out_of_limits, joint_jump, second_sender. A sample
+    /// beyond the limits is not used as a start or an end of a motion. O(joints).
     [[nodiscard]] Status<JointReason> check(const JointMeasurement& joints);
-    /// What comes next may be anywhere.
+    /// Resets the check: the next sample may be anywhere.
     void forget() { jump_.forget(); }
 
-    /// The newest sample beyond its limits; empty if none was.
+    /// The newest sample beyond its limits; empty if there was none.
     [[nodiscard]] const std::optional<JointBeyond>& beyond() const noexcept { return beyond_; }
-    /// Which samples the arm cannot have moved to.
+    /// The check for samples that the arm cannot have reached.
     [[nodiscard]] const JointJump& jump() const noexcept { return jump_; }
 
   private:

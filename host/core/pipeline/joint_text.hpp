@@ -1,4 +1,4 @@
-// What is wrong with joint samples, in words, the same in a replay and in the daemon.
+// Texts about joint samples, the same in a replay and in the daemon.
 #pragma once
 
 #include <span>
@@ -9,7 +9,8 @@
 
 namespace octoskin {
 
-/// "panda_joint1 is 4.1; its limits are -2.8973 to 2.8973": `names` as the rig has them (asserted: there).
+/// "panda_joint1 is 4.1; its limits are -2.8973 to 2.8973". `names`: the rig's joints (must contain the
+/// joint, asserted).
 [[nodiscard]] std::string beyond_text(const JointBeyond& beyond, std::span<const std::string> names);
 
 /// "Joint samples are 150 ms apart; at most 100 ms are bridged, and 50 ms to the nearer one."

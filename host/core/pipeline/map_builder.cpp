@@ -27,8 +27,8 @@ bool sees_any_cone(const HostRig& rig) {
         rig.nodes, [&](const HostNode& node) { return std::ranges::any_of(node.sensors, has_cone); });
 }
 
-/// The zones that the rig does not have so: no beam of theirs will come, and clearing by one that was as wide
-/// as it liked takes as long. How many there were.
+/// Removes the zones that the rig does not have, or has with other optics: no beam of them will come, and a
+/// beam of arbitrary width would take long to clear. Returns how many were removed.
 std::size_t leave_out_others(SensorHistories& histories, const BeamBuilder& beams) {
     const auto is_other = [&](const Beam& beam) {
         const BeamOptics* const optics = beams.optics_of(beam.source);
@@ -49,7 +49,7 @@ std::size_t leave_out_others(SensorHistories& histories, const BeamBuilder& beam
     return left_out;
 }
 
-/// An image's box may be large: what there is no memory for is refused like what is wrong.
+/// An image's box may be large: a lack of memory is handled as a refusal.
 Result<DepthUpdates, DepthReason> updates_or_reason(DepthStage& stage, const DepthFrame& frame,
                                                     const RobotPose* robot) {
     try {
@@ -214,7 +214,7 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     if (!depth.updates) {
         return unexpected(depth.updates.error());
     }
-    // Who replays the order that the listener is told asks for the pose now.
+    // A replay of the order that the listener gets needs the pose now.
     if (depth.robot && robot_.at(depth.frame.captured) == nullptr) {
         return unexpected(DepthReason::late);
     }

@@ -1,5 +1,5 @@
-// From measurements in host time to maps: where the robot was, the beam or image, its voxels' terms, the
-// maps. What it builds depends on nothing but the calls and their order: no clock, no queue, no gate.
+// Builds maps from measurements in host time: pose of the robot, beam or image, terms of the voxels, maps.
+// The result depends only on the calls and their order: no clock, no queue, no gate.
 #pragma once
 
 #include <cstddef>
@@ -31,99 +31,99 @@ namespace octoskin {
 
 class MapBuilder {
   public:
-    /// Refuses, by name, a link of the rig that the robot does not have. `robot` moves the joints of
-    /// `rig.joints.joints`, in that order (asserted: as many). `depth_threads`: see DepthIntegrator.
+    /// Refuses, by name, a link of the rig that the robot does not have. `robot` must move the joints of
+    /// `rig.joints.joints` in that order (asserted: equal count). `depth_threads`: see DepthIntegrator.
     [[nodiscard]] static Result<MapBuilder, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                    const MappingConfig& mapping,
                                                                    const JointHistoryConfig& joints,
                                                                    const std::vector<MapFeed>& maps,
                                                                    unsigned depth_threads = 1);
 
-    /// The map of all sensors (asserted that there is one) goes on from this one, which has the mapping's
+    /// The map of all sensors (asserted: it exists) continues from `map`, which must have the mapping's
     /// resolution (asserted).
     void begin_with(FusedMap map);
-    /// The same, with what the range sensors read before: what is given in next becomes what it would have
-    /// become where the state is from, for a rig and mapping that are equal. The answer: of so many zones
-    /// what was read is left out, as this rig does not have them, or their optics are others. O(readings).
+    /// The same, with the sensors' histories: for an equal rig and mapping, later inputs have the same effect
+    /// as in the builder that the state comes from. Returns the number of zones whose history was dropped,
+    /// because this rig does not have them or their optics differ. O(readings).
     [[nodiscard]] std::size_t begin_with(MapState state);
-    /// All that the map of all sensors follows from, but for the joint samples (`for_each_joint_sample`). A
+    /// The complete state of the map of all sensors, except the joint samples (`for_each_joint_sample`). A
     /// copy: O(sensors). Throws std::bad_alloc.
     [[nodiscard]] MapState state() const { return {map().copy(), ranges_.histories()}; }
-    /// What of it the range sensors read. Throws std::bad_alloc.
+    /// The sensors' histories of that state. Throws std::bad_alloc.
     [[nodiscard]] SensorHistories histories() const { return ranges_.histories(); }
-    /// The map of all sensors waits for its next measurement: FusedMap::begin_to_wait. No replay does that:
-    /// to be called behind `forget_motion`.
+    /// The map of all sensors waits for its next measurement: FusedMap::begin_to_wait. A replay does not
+    /// reproduce this: call it after `forget_motion`.
     void begin_to_wait() noexcept { own_map().begin_to_wait(); }
-    /// FusedMap::forget_times, of the map of all sensors.
+    /// FusedMap::forget_times of the map of all sensors.
     void forget_times() noexcept { own_map().forget_times(); }
-    /// Of a map that waits for the time to go on: FusedMap::wait.
+    /// FusedMap::wait of a map that waits for the time to advance.
     void wait(std::int64_t seconds);
-    /// Other limits for it, at the same resolution (asserted).
+    /// Applies other limits to it, at the same resolution (asserted).
     void limit_map(const MapConfig& config) { own_map().limit(config); }
-    /// That map, for another builder to begin with; nothing may be given in after.
+    /// Moves that map out, for another builder to continue. Later calls with inputs are not allowed.
     [[nodiscard]] FusedMap take_map() { return std::move(own_map()); }
-    /// `listener` is told of what goes in from now on; null: nobody is.
+    /// `listener` is notified of each later input; null: none.
     void tell(CommitListener* listener) noexcept { listener_ = listener; }
 
-    /// From now on readings of a sensor that contradicts the camera go into the map, too: who replays what
-    /// went into a map has none of those that did not.
+    /// From now on, readings of a sensor that contradicts the camera also go into the map: a replay of a
+    /// map's inputs does not contain the readings that were refused.
     void refuse_nobody() noexcept { refuses_contradicting_ = false; }
 
-    /// Joint samples in the order of their times.
+    /// Takes joint samples in the order of their times.
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
     [[nodiscard]] Status<DepthReason> integrate(DepthFrame frame);
 
-    /// The same in three steps, for whoever has another thread for the second, which takes the time. One
-    /// frame at a time; from the first step to the last readings and joint samples may be given in, and
-    /// nobody may ask `depth_stage()` for anything but its camera.
+    /// The same in three steps, so that another thread can run the second, which takes most of the time. One
+    /// frame at a time. Between the first and the last step, readings and joint samples may be added, and
+    /// `depth_stage()` may be used for its camera only.
     struct DepthWork {
         DepthFrame frame;
-        std::optional<RobotPose> robot;  ///< at the frame's time, if it needs to be known
+        std::optional<RobotPose> robot;  ///< at the frame's time, if the frame requires it
         Result<DepthUpdates, DepthReason> updates = unexpected(DepthReason::no_camera);
     };
     [[nodiscard]] Result<DepthWork, DepthReason> begin(DepthFrame frame);
-    /// Uses nothing of the builder's but the depth stage.
+    /// Uses only the builder's depth stage.
     void work(DepthWork& depth);
-    /// `late`: where the robot was then has been forgotten meanwhile.
+    /// `late`: the robot's pose at that time is no longer stored.
     [[nodiscard]] Status<DepthReason> finish(const DepthWork& depth);
 
-    /// Time leaps: where the robot was is forgotten, the maps stay. What comes next is told by a time that is
-    /// ahead by this of the one so far, or behind, below 0.
+    /// Time jump: clears the robot's motion; the maps stay. Later times are ahead of the earlier scale by
+    /// `leapt`, or behind, if negative.
     void forget_motion(Nanoseconds leapt);
 
-    /// Whether the rig has this sensor and zone: no other reading may be given in (asserted).
+    /// True if the rig has this sensor and zone. Other readings must not be added (asserted).
     [[nodiscard]] bool has(const BeamSource& source) const { return beams_.has(source); }
     [[nodiscard]] bool has_camera() const noexcept { return depth_stage_.has_value(); }
-    /// Whether a depth frame needs to know where the robot was. There must be a camera.
+    /// True if a depth frame requires the robot's pose. There must be a camera.
     [[nodiscard]] bool depth_needs_robot() const noexcept { return depth_stage_->needs_robot(); }
-    /// Whether the joint samples about `instant` are here, or will never come.
+    /// True if the joint samples around `instant` have arrived or will never come.
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return robot_.is_settled(instant); }
-    /// Of the joints that a sample has, in its order.
+    /// Limits of the joints of a sample, in its order.
     [[nodiscard]] std::span<const JointLimits> joint_limits() const noexcept {
         return robot_.robot().limits();
     }
-    /// The newest gap between joint samples that no pose could be found in; empty if there was none.
+    /// The newest gap between joint samples without a pose; empty if there was none.
     [[nodiscard]] const std::optional<JointGap>& newest_joint_gap() const noexcept {
         return robot_.newest_gap();
     }
     [[nodiscard]] std::uint64_t joint_gaps_in_a_row() const noexcept { return robot_.gaps_in_a_row(); }
-    /// Every joint sample that poses are still interpolated from, the oldest first.
+    /// Visits all joint samples from which poses are still interpolated, the oldest first.
     void for_each_joint_sample(const std::function<void(const JointMeasurement&)>& visit) const {
         robot_.for_each_sample(visit);
     }
 
     [[nodiscard]] std::span<const FedMap> maps() const noexcept { return maps_; }
-    /// The map that is fed so, which is there (asserted).
+    /// The map with this feed, which must exist (asserted).
     [[nodiscard]] const FusedMap& map(MapFeed feed = MapFeed::both) const noexcept;
     /// Null if the rig has no camera.
     [[nodiscard]] const DepthStage* depth_stage() const noexcept {
         return depth_stage_ ? &*depth_stage_ : nullptr;
     }
-    /// What the camera says of the range sensors; null without a camera, where the robot stays in its image,
-    /// and where the mapping wants no reports.
+    /// The cross-check of the range sensors against the camera. Null without a camera, if the robot stays in
+    /// its image, and if the mapping disables the reports.
     [[nodiscard]] const SensorWitness* witness() const noexcept { return witness_ ? &*witness_ : nullptr; }
-    /// Whether the readings of a sensor of the rig stay out of the map, because it contradicts the camera.
+    /// True if the readings of a sensor of the rig are refused because it contradicts the camera.
     [[nodiscard]] bool is_refused(std::uint8_t node_id, std::uint8_t sensor) const {
         return refuses_contradicting_ && witness_ && witness_->is_to_be_refused(node_id, sensor);
     }
@@ -141,7 +141,7 @@ class MapBuilder {
     std::optional<DepthStage> depth_stage_;
     std::optional<SensorWitness> witness_;
     bool refuses_contradicting_ = false;
-    SeenImages seen_;  ///< their memory goes to the depth stage and comes back
+    SeenImages seen_;  ///< memory swapped with the depth stage
     std::vector<FedMap> maps_;
     CommitListener* listener_ = nullptr;
 };

@@ -20,7 +20,7 @@ void MapFeeder::apply(const Evidence& evidence, const std::function<bool(VoxelKe
     if (changes_ == nullptr) return;
     if (evidence.rule == EvidenceRule::terms)
         for_each_term(evidence, [&](const VoxelUpdate& term) { changes.push_back(term); });
-    // What comes first has most voxels, and each of them once.
+    // The first evidence has most of the voxels, and each of them once.
     if (is_first) return changes_->swap(changes);
     for (const VoxelUpdate& change : changes) add_change(change);
 }

@@ -1,4 +1,4 @@
-// The maps that are built at the same time, fed with what one measurement says.
+// Applies the evidence of one measurement to the maps that are built at the same time.
 #pragma once
 
 #include <functional>
@@ -12,16 +12,16 @@
 
 namespace octoskin {
 
-/// Evidence of one measurement of `now`, for each map that takes its sensor.
+/// Takes the evidence of one measurement captured at `now`, for each map that uses its sensor.
 class MapFeeder final : public EvidenceSink {
   public:
-    /// `changes`: gets by how much the log-odds of the map of both sensors changed, each voxel once; of
-    /// `terms` what they say. `listener`: of the maps' time. Either may be null.
+    /// `changes`: gets the change of the log-odds in the map of both sensors, each voxel once; for `terms`,
+    /// the terms. `listener`: notified of the maps' time. Either may be null.
     MapFeeder(std::span<FedMap> maps, HostTime now, std::vector<VoxelUpdate>* changes,
               CommitListener* listener) noexcept
         : maps_(maps), now_(now), changes_(changes), listener_(listener) {}
 
-    /// O(maps) more than FusedMap::apply. Throws only where there is a list of changes.
+    /// O(maps) more than FusedMap::apply. Throws only if `changes` is given.
     void apply(const Evidence& evidence, const std::function<bool(VoxelKey)>* spares) override;
     [[nodiscard]] bool is_occupied(VoxelKey key) const override;
 

@@ -6,7 +6,8 @@
 namespace octoskin {
 namespace {
 
-/// "Now" is unknown for two exchanges at most; after five seconds without any, nothing is mapped anyhow.
+/// The host time is unknown for two exchanges at most; after five seconds without one, nothing is mapped
+/// anyway.
 constexpr Nanoseconds kWaitMax{5'000'000'000};
 constexpr std::size_t kWaitingMax = 16;
 

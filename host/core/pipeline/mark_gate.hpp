@@ -1,5 +1,5 @@
-// Which marks count: those that name about the time at which they came. A mark that comes before the time is
-// known waits for it.
+// Decides which marks count: those whose time is close to their arrival. A mark that arrives before the host
+// time is known waits for it.
 #pragma once
 
 #include <cstddef>
@@ -15,27 +15,28 @@ namespace octoskin {
 
 class MarkGate {
   public:
-    /// A mark is sent at about the time that it names; one further from "now" is damaged or another host's.
+    /// A mark is sent at about the time it contains. One further from the host time is damaged or from
+    /// another host.
     static constexpr Nanoseconds kApartMax{1'000'000'000};
 
     explicit MarkGate(MapBegin begin) : window_(begin) {}
 
     enum class Fate : std::uint8_t { taken, ignored, waits };
-    /// A mark as it comes. `now`: empty while unknown.
+    /// Takes a mark on arrival. `now`: empty while unknown.
     [[nodiscard]] Fate take(const wire::Mark& mark, std::optional<HostTime> now);
 
     struct Settled {
         wire::Mark mark;
         bool is_taken = false;
     };
-    /// The fates of those that waited, now that the time is known.
+    /// Results of the marks that waited, now that the host time is known.
     [[nodiscard]] std::vector<Settled> settle(HostTime now);
 
-    /// No further time will come. How many waited, and never will be taken.
+    /// No host time will come. Returns the number of waiting marks, which are not taken.
     [[nodiscard]] std::size_t give_up();
     [[nodiscard]] std::size_t waiting() const noexcept { return waiting_.size(); }
 
-    /// Whether the map takes what was captured at this instant, as far as is known.
+    /// True if the map takes measurements captured at this instant, by the marks so far.
     [[nodiscard]] bool contains(HostTime captured) const { return window_.contains(captured); }
 
   private:

@@ -1,4 +1,4 @@
-// When the map takes measurements: between START and STOP, or always.
+// The times in which the map takes measurements: between START and STOP, or always.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 namespace octoskin {
 
 enum class MapBegin : std::uint8_t {
-    first_usable,  ///< at the first measurement that can be used; marks are ignored
-    start_mark,    ///< at START, until STOP, and again; for a recording that has a START in it
+    first_usable,  ///< from the first usable measurement; marks are ignored
+    start_mark,    ///< from START until STOP, and again; for a recording that contains a START
 };
 
 class MarkWindow {
@@ -22,12 +22,12 @@ class MarkWindow {
         return {static_cast<std::int64_t>(mark.host_time_us) * 1000};
     }
 
-    /// False if the mark changes nothing: marks are ignored, START while it is open, STOP while it is shut,
-    /// or a time that goes back.
+    /// False if the mark changes nothing: marks are ignored, a START while a window is open, a STOP while
+    /// none is, or a time that goes back.
     [[nodiscard]] bool take(const wire::Mark& mark);
 
-    /// Whether the map takes what was captured at this instant, as far as is known. O(marks kept), 16 at
-    /// most: old windows are forgotten.
+    /// True if the map takes measurements captured at this instant, by the marks so far. O(stored windows),
+    /// at most 16; older windows are dropped.
     [[nodiscard]] bool contains(HostTime captured) const;
 
   private:

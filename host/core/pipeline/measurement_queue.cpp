@@ -8,10 +8,10 @@ namespace {
 
 /// A depth frame this far in the future has a wrong epoch.
 constexpr Nanoseconds kDepthAheadMax{1'000'000'000};
-/// Far less than any timing budget: two readings of one source this close are one and the same, placed by two
-/// states of the clock map.
+/// Much less than any timing budget: two readings of one source this close are the same reading, placed by
+/// two states of the clock map.
 constexpr Nanoseconds kSameReading{5'000'000};
-/// The camera's place in the order of sources: node 0 is the host.
+/// The camera's rank in the order of sources: node 0 is the host.
 constexpr BeamSource kCameraSource{};
 
 template <class T>

@@ -1,5 +1,5 @@
-// The pipeline's first part: what was measured, from its arrival until all that was measured before it has
-// had time to arrive. It decides which measurement is next, and refuses what comes too late or twice.
+// First part of the pipeline: holds measurements until everything measured before them has had time to
+// arrive. Decides which measurement is next, and refuses late and repeated ones.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +15,17 @@
 
 namespace octoskin {
 
-/// When a measurement that waits enters the map.
+/// When a waiting measurement enters the map.
 enum class Release : std::uint8_t {
-    /// `lag` after it was captured, in the order (capture time, source): whatever order frames came in, the
-    /// map is the same.
+    /// `lag` after its capture, in the order (capture time, source): the map does not depend on the order of
+    /// arrival.
     by_capture_time,
-    /// As soon as it is known where the robot was: a live map. Its bytes depend on the order of the calls.
+    /// As soon as the robot's pose is known: a live map. Its bytes depend on the order of the calls.
     once_placed,
 };
 
-/// Bounds of what may wait; beyond, it is counted and dropped: the oldest, but the newest of depth frames:
-/// those that wait have their joints.
+/// Maximum number of waiting inputs. Beyond it, an input is counted and dropped: the oldest one, but the
+/// newest depth frame, because waiting frames already have their joint samples.
 struct QueueLimits {
     std::size_t readings = 4096;
     std::size_t depth_frames = 16;
@@ -36,36 +36,36 @@ class MeasurementQueue {
   public:
     MeasurementQueue(Release release, const QueueLimits& limits);
 
-    /// Each returns why the measurement does not wait; empty: it does. O(log waiting). Of `queue_overflow` of
-    /// readings and joint samples it was an older one that gave way.
+    /// Each returns why the measurement does not wait; empty: it waits. O(log waiting). For readings and
+    /// joint samples, `queue_overflow` means that an older one was dropped.
     [[nodiscard]] std::optional<ReadingReason> put(const RangeMeasurement& measurement);
     [[nodiscard]] std::optional<JointReason> put(const JointMeasurement& joints);
     [[nodiscard]] std::optional<DepthReason> put(DepthFrame frame);
-    /// Why a depth frame that arrives cannot wait, even if there is room; `now`: on the host's clock, if it
-    /// is known. To be asked once, in the order of arrival: the next frame has to be newer.
+    /// Why an arriving depth frame cannot wait, even if there is room. `now`: host time, if known. Call once
+    /// for each frame, in order of arrival: the next frame must be newer.
     [[nodiscard]] std::optional<DepthReason> check_arrival(const DepthFrame& frame,
                                                            std::optional<HostTime> now);
 
-    /// The oldest joint sample, if it was taken until then.
+    /// The oldest joint sample, if it was taken at or before `until`.
     [[nodiscard]] std::optional<JointMeasurement> take_joints(HostTime until);
     struct Next {
         ReleaseKey key;
         bool is_depth = false;
     };
-    /// The oldest reading or, if depth frames are `wanted`, depth frame.
+    /// The oldest reading or, if `depth_wanted`, depth frame.
     [[nodiscard]] std::optional<Next> next(bool depth_wanted) const;
-    /// The oldest, which must be there.
+    /// The oldest one, which must exist.
     [[nodiscard]] RangeMeasurement take_reading() { return readings_.pop(); }
     [[nodiscard]] DepthFrame take_depth() { return depth_frames_.pop(); }
     [[nodiscard]] std::optional<ReleaseKey> oldest_depth() const { return depth_frames_.front(); }
 
-    /// It is in the maps: by capture time, what is older is late from now on.
+    /// It is in the maps: with release by capture time, older ones are late from now on.
     void on_used(const ReleaseKey& key) { newest_used_ = key; }
-    /// The same of a reading: one of its source, captured at about the same time, is a duplicate.
+    /// The same for a reading: another one of its source with about the same capture time is a duplicate.
     void on_used_reading(const BeamSource& source, HostTime captured) { used_[source] = captured; }
 
-    /// Time leaps, and nothing waits (asserted): what was used before says nothing of what comes. `begin`:
-    /// what was captured before that is late; empty: nothing is for that.
+    /// Time jump while nothing waits (asserted): clears what was used before. `begin`: earlier captures are
+    /// late; empty: none is.
     void forget_time(std::optional<HostTime> begin);
     void begin_at(std::optional<HostTime> begin) { begin_ = begin; }
     [[nodiscard]] std::optional<HostTime> begin() const noexcept { return begin_; }
@@ -85,8 +85,8 @@ class MeasurementQueue {
     ReorderBuffer<DepthFrame> depth_frames_;
     std::optional<ReleaseKey> newest_used_;
     std::map<BeamSource, HostTime> used_;   ///< the newest reading of each source in the maps
-    std::optional<HostTime> newest_depth_;  ///< that arrived
-    std::optional<HostTime> begin_;         ///< after a leap ahead: what is earlier is of the time before
+    std::optional<HostTime> newest_depth_;  ///< the newest that arrived
+    std::optional<HostTime> begin_;         ///< after a jump ahead: earlier captures are from before it
 };
 
 }  // namespace octoskin

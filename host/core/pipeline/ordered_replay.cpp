@@ -5,7 +5,7 @@
 namespace octoskin {
 namespace {
 
-/// The frames that are asked for by their place, in ascending order.
+/// Depth frames requested by index, in ascending order.
 class DepthByIndex {
   public:
     DepthByIndex(DepthSource* source, OrderedOutcome& outcome) : source_(source), outcome_(outcome) {}
@@ -54,7 +54,7 @@ class Committer {
     std::optional<HostTime> operator()(const DepthCommit& commit) {
         auto frame = commit.index ? depth_.at(*commit.index) : std::nullopt;
         if (frame) {
-            frame->captured = commit.captured;  // a recording of depth frames has whole microseconds
+            frame->captured = commit.captured;  // recorded depth frames have whole microseconds
             outcome_.depth_frames.now_at(commit.captured.ns);
             outcome_.depth_frames.take_in();
             outcome_.depth_frames.settle(builder_.integrate(std::move(*frame)));

@@ -1,4 +1,4 @@
-// Plays what a daemon recorded in the very order in which it put that into its map.
+// Replays a daemon's recording in the order in which the daemon applied its inputs to the map.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace octoskin {
 
-/// Why no further commit will come: what, where and what to do, for a person.
+/// Why no further commit will come: fault, place and remedy, for people.
 struct CommitSourceError {
     std::string what;
 };
@@ -23,7 +23,7 @@ struct CommitSourceError {
 class CommitSource {
   public:
     virtual ~CommitSource() = default;
-    /// The next one in the daemon's order; empty at the end, and then for ever.
+    /// The next commit in the daemon's order; empty at the end and in every later call.
     [[nodiscard]] virtual Result<std::optional<Commit>, CommitSourceError> next() = 0;
 };
 
@@ -32,24 +32,25 @@ struct OrderedOutcome {
     Account<ReadingReason> readings;
     Account<JointReason> joint_samples;
     Account<DepthReason> depth_frames;
-    std::uint64_t depth_missing = 0;  ///< committed by the daemon, and not recorded
+    std::uint64_t depth_missing = 0;  ///< committed by the daemon, but not recorded
     std::optional<HostTime> begin;    ///< of the recording
     std::optional<HostTime> now;      ///< of the newest commit
-    /// A source that failed before its end; what it gave until then was used.
+    /// A source that failed before its end; its inputs until then were used.
     std::optional<CommitSourceError> order_error;
     std::optional<DepthSourceError> depth_error;
 
-    /// Everything went into the maps that went into the daemon's.
+    /// True if everything that went into the daemon's maps went into these.
     [[nodiscard]] bool took_all() const noexcept {
         return !order_error && !depth_error && depth_missing == 0 &&
                readings.rejected() + joint_samples.rejected() + depth_frames.rejected() == 0;
     }
 };
 
-/// Gives every commit to `builder`, in order, until the source ends. `depth`: the frames that depth commits
-/// speak of by their place, from 0; null if there are none. `begin`: of the recording, where something else
-/// tells it; else that is the first reading or depth frame: the joint samples before may be of long before.
-/// With the rig, robot, mapping and first map of the recording the maps are the daemon's own, bit for bit.
+/// Applies every commit to `builder`, in order, until the source ends. `depth`: the frames to which depth
+/// commits refer by index, from 0; null if there are none. `begin`: start of the recording, if known from
+/// elsewhere; otherwise the first reading or depth frame, because the joint samples before it may be much
+/// older. With the rig, robot, mapping and first map of the recording, the maps are equal to the daemon's bit
+/// for bit.
 [[nodiscard]] OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSource* depth,
                                              const ReplayReport& report = {},
                                              std::optional<HostTime> begin = {});

@@ -10,8 +10,8 @@
 namespace octoskin {
 namespace {
 
-/// The longest readings that a zone can give, of which any shorter has fewer voxels: where it marks nothing
-/// beyond a range, the longest that marks is another one.
+/// The longest readings of each kind that a zone can give; any shorter one has fewer voxels. Beyond
+/// `hit_range_max_m` a reading marks nothing, so the longest marking one is listed separately.
 std::array<Beam, 3> largest_beams(const HostRig& rig, const HostZone& zone, const MappingConfig& mapping) {
     Beam longest;
     longest.optics = zone.optics;
@@ -34,13 +34,13 @@ double resolution_min_m(const Beam& beam, MappingConfig mapping) {
     double& resolution_m = mapping.map.resolution_m;
     resolution_m *= std::cbrt(cone_voxels_at_most(beam, mapping) / kConeVoxelsMax);
     resolution_m = round_up_to_two_digits(resolution_m);
-    // Margins are a number of voxels, and so wider with larger ones.
+    // Margins are a number of voxels, and therefore wider with larger voxels.
     constexpr double kMore = 1.02;
     while (is_cone_too_large(beam, mapping)) resolution_m = round_up_to_two_digits(resolution_m * kMore);
     return resolution_m;
 }
 
-/// What is known of the largest so far, and of this reading.
+/// The larger of the largest cone so far and the cone of this reading.
 std::optional<OversizedCone> larger(std::optional<OversizedCone> largest, const Beam& beam,
                                     const MappingConfig& mapping, std::size_t node, std::size_t sensor) {
     const double voxels = cone_voxels_at_most(beam, mapping);

@@ -9,8 +9,8 @@
 namespace octoskin {
 namespace {
 
-/// Images that wait for the worker. With one more the map would be older by the time that one takes; with one
-/// less a worker that is quick enough would miss one now and then.
+/// Number of images that wait for the worker. With one more, the map would lag by the processing time of that
+/// image. With one less, even a sufficiently fast worker would occasionally miss an image.
 constexpr std::size_t kBesideWorkMax = 2;
 constexpr HostTime kEndOfTime{std::numeric_limits<std::int64_t>::max()};
 
@@ -80,13 +80,13 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     }
 }
 
-/// All that is remembered of the time before ends here; the maps stay, and are no older.
+/// Clears everything remembered from before the time jump; the maps stay, and do not age.
 void Pipeline::on_leap(const TimeLeap::Leap& leap) {
     settle_waiting();
     builder_.forget_motion(leap.by);
     joint_gate_.forget();
     waiting_.forget_time(leap.begin);
-    just_used_.clear();  // of the time before: their age is not known
+    just_used_.clear();  // from before the jump: their age is unknown
 }
 
 void Pipeline::go_on_after_sleep() {
@@ -102,7 +102,7 @@ void Pipeline::settle_waiting() {
     queue(intake_.settle_joints());
     release_joints(kEndOfTime);
     if (beside_.is_at_work()) finish_depth();
-    // A live map does not stop for images that it had no time for.
+    // A live map does not stop for waiting images.
     while (beside_.has_worker() && waiting_.depth_frames() > 0) drop_oldest_depth();
     release_measurements(kEndOfTime);
 }
@@ -174,7 +174,7 @@ void Pipeline::on_depth(DepthFrame frame) {
         accounts_.depth_frames.reject(*refused);
         return;
     }
-    // A rig without a bus, or with a silent one, has no other clock than its camera. What is due makes room.
+    // A rig without a bus, or with a silent one, has no clock but its camera. Due measurements make room.
     const std::optional<HostTime> now_known = has_can_time_ ? now() : frame.captured;
     if (now_known) advance(*now_known);
     if (const auto full = waiting_.put(std::move(frame))) accounts_.depth_frames.reject(*full);
@@ -189,7 +189,7 @@ void Pipeline::advance(HostTime now) {
     for (const RangeMeasurement& measurement : intake_.take_due(now)) {
         queue(measurement);
     }
-    // The samples that surround an instant may be as far apart as the history allows.
+    // The samples around an instant may be as far apart as the joint history allows.
     const bool is_live = config_.release == Release::once_placed;
     release_joints(is_live ? kEndOfTime : now - (config_.lag - config_.joints.bracket_max));
     release_measurements(now - config_.lag);
@@ -210,7 +210,7 @@ void Pipeline::release_joints(HostTime until) {
 
 void Pipeline::release_measurements(HostTime until) {
     released_until_ = until;
-    while (true) {  // each round takes one out of a bounded buffer
+    while (true) {  // each iteration removes one from a bounded buffer
         const auto next = waiting_.next(!beside_.is_at_work());
         if (!next || (next->key.captured > until && !is_placed(next->key, next->is_depth))) return;
         const bool is_used = next->is_depth ? take_depth(waiting_.take_depth())

@@ -1,6 +1,5 @@
-// The host's way from frames to maps, one way, left to right. The same object serves a replay and the daemon:
-// it opens nothing, asks for no time, and the maps it builds depend on what was measured, not on when it
-// arrived.
+// The host's path from frames to maps. The same object serves a replay and the daemon: it opens nothing,
+// reads no clock, and its maps depend on what was measured, not on when it arrived.
 #pragma once
 
 #include <optional>
@@ -34,22 +33,23 @@ struct PipelineConfig {
     std::vector<MapFeed> maps = every_feed();
     MapBegin begin = MapBegin::first_usable;
     Release release = Release::by_capture_time;
-    /// A measurement waits so long at most after it was captured. More than the longest gap that joints are
-    /// interpolated over, and than the age limit of a range.
+    /// Maximum time that a measurement waits after its capture. Longer than the longest gap over which joints
+    /// are interpolated, and than the age limit of a range.
     Nanoseconds lag{250'000'000};
     JointHistoryConfig joints;
     IntakeConfig intake;  ///< `uses_no_return` follows from the mapping
     QueueLimits waiting_max;
-    unsigned depth_threads = 1;  ///< how many work on a depth image; the map is the same
+    unsigned depth_threads = 1;  ///< threads that work on a depth image; the map does not depend on it
 };
 
-/// The fate of every input, by the units of `reasons.hpp`.
+/// Input counters: the result of every input, by the kinds of `reasons.hpp`.
 struct PipelineAccounts {
     Account<FrameReason> frames;
     Account<ReadingReason> readings;
     Account<JointReason> joint_samples;
     Account<DepthReason> depth_frames;
-    /// Nanoseconds: of the stamp or, without a bus, the capture that what is rejected from now on came with.
+    /// Nanoseconds: the time stamp or, without a bus, the capture time with which later rejections are
+    /// recorded.
     void now_at(std::int64_t ns) noexcept {
         frames.now_at(ns);
         readings.now_at(ns);
@@ -60,91 +60,91 @@ struct PipelineAccounts {
 
 class Pipeline {
   public:
-    /// Refuses, by name, a link of the rig that the robot does not have. `robot` moves the joints of
-    /// `rig.joints.joints`, in that order (asserted: as many).
+    /// Refuses, by name, a link of the rig that the robot does not have. `robot` must move the joints of
+    /// `rig.joints.joints` in that order (asserted: equal count).
     [[nodiscard]] static Result<Pipeline, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                  const MappingConfig& mapping,
                                                                  const PipelineConfig& config = {});
 
-    /// The fused map goes on from this one, which has the mapping's resolution (asserted).
+    /// The fused map continues from `fused`, which must have the mapping's resolution (asserted).
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
-    /// The same with what the range sensors read before: MapBuilder::begin_with.
+    /// The same with the sensors' histories: MapBuilder::begin_with.
     [[nodiscard]] std::size_t begin_with(MapState state) { return builder_.begin_with(std::move(state)); }
-    /// All of the fused map is stale until it is seen again: FusedMap::forget_times.
+    /// Makes all of the fused map stale until it is seen again: FusedMap::forget_times.
     void forget_times() noexcept { builder_.forget_times(); }
-    /// Of a map that was saved, until its first measurement: FusedMap::wait.
+    /// For a map that was saved, until its first measurement: FusedMap::wait.
     void wait(std::int64_t seconds) { builder_.wait(seconds); }
-    /// The machine slept, and the clocks of what comes stood still, or are those of others: as where the time
-    /// leaps, what waits is settled, what was remembered of the time before is forgotten, a listener learns
-    /// that its order ends, and what was captured before and comes late is not used. The fused map waits as
-    /// one that was saved: `wait` says what has passed.
+    /// The machine slept, and the clocks of later inputs stood still or are other ones. As at a time jump:
+    /// waiting inputs are resolved, the state from before is cleared, a listener is notified that its order
+    /// ends, and late inputs captured before are not used. The fused map waits like a saved one: `wait`
+    /// reports how much time has passed.
     void go_on_after_sleep();
-    /// Other limits for the fused map from now on, at the same resolution (asserted): FusedMap::limit. Throws
-    /// std::bad_alloc, and then nothing is changed.
+    /// Applies other limits to the fused map, at the same resolution (asserted): FusedMap::limit. Throws
+    /// std::bad_alloc; nothing is changed then.
     void limit_map(const MapConfig& config) { builder_.limit_map(config); }
-    /// After `finish`: the fused map.
+    /// After `finish`: moves the fused map out.
     [[nodiscard]] FusedMap take_map() { return builder_.take_map(); }
-    /// The fused map of another one goes on, which has ended (`finish`) and has this one's resolution
-    /// (asserted), and with it what time it was there: what passes meanwhile makes the map older, and where
-    /// the time leaps nothing does.
+    /// Continues the fused map of another pipeline, which has ended (`finish`) and has the same resolution
+    /// (asserted), and its time: time that passes meanwhile ages the map, except across a time jump.
     void go_on_from(Pipeline& ended);
-    /// `listener` is told of what goes into the maps from now on; null: nobody is.
+    /// `listener` is notified of each later input of the maps; null: none.
     void tell(CommitListener* listener) noexcept { builder_.tell(listener); }
 
-    /// Frames in the order of arrival. `stamp`: when it was received; it places nothing.
+    /// Takes frames in order of arrival. `stamp`: time of reception; it does not place measurements.
     void on_can(const wire::CanFrame& frame, WallTime stamp);
-    /// Depth frames in the order of their capture, at about the time when they arrive among the CAN frames.
+    /// Takes depth frames in the order of capture, at about the time of their arrival among the CAN frames.
     void on_depth(DepthFrame frame);
-    /// From now on `worker` turns depth frames into terms, and what is captured after a frame may go into the
-    /// maps before it: a listener learns the order. While it is at one, two more wait, and the oldest gives
-    /// way; where what waits has to be settled at once, they are counted as `queue_overflow`. Null: the call
-    /// that releases a frame does, and everything waits for it. For `Release::once_placed` (asserted). While
-    /// a frame is worked on, the pipeline must not be moved; the worker lives as long as it is named here.
+    /// From now on, `worker` converts depth frames to terms, and later measurements may go into the maps
+    /// before a frame; a listener gets the order. While a frame is in work, two more wait, and the oldest is
+    /// dropped (`queue_overflow`). If waiting inputs must be resolved at once, waiting frames are dropped,
+    /// too. Null: the call that releases a frame converts it, and everything waits for it. Requires
+    /// `Release::once_placed` (asserted). The pipeline must not be moved while a frame is in work; the worker
+    /// must live until it is replaced.
     void work_beside(DepthWorker* worker);
-    /// The worker may be done with a frame: then that goes into the maps, and the next begins.
+    /// The worker may have finished a frame: if so, the frame goes into the maps, and the next one begins.
     void on_worker_done();
-    /// No CAN frame comes for now, and it is `now` on the host's clock, by who knows beside the bus: what
-    /// need not wait any longer is integrated. Until a frame tells the time again the camera does, up to
+    /// No CAN frame arrives at present, and the host time is `now`, known from a source other than the bus.
+    /// Integrates what need not wait longer. Until the next CAN frame, the camera gives the time, up to
     /// `now`.
     void on_silence(HostTime now);
-    /// No further CAN frame will come: from now on the camera tells the time.
+    /// No further CAN frame will come: from now on, the camera gives the time.
     void finish_can();
-    /// Nothing more will come: what still waits is integrated or counted. Nothing may be given in afterwards.
+    /// Nothing more will come: waiting inputs are integrated or counted. No input may be added afterwards.
     void finish();
 
     [[nodiscard]] std::span<const FedMap> maps() const noexcept { return builder_.maps(); }
-    /// The map that is fed so, which is there (asserted).
+    /// The map with this feed, which must exist (asserted).
     [[nodiscard]] const FusedMap& map(MapFeed feed = MapFeed::both) const noexcept {
         return builder_.map(feed);
     }
     [[nodiscard]] const PipelineAccounts& accounts() const noexcept { return accounts_; }
-    /// In = used + rejected + what still waits, for each unit of account.
+    /// True if in = used + rejected + waiting, for each kind of input counter.
     [[nodiscard]] bool is_balanced() const;
-    /// One table per unit of account.
+    /// One table for each kind of input counter.
     [[nodiscard]] std::vector<AccountTable> account_tables() const;
     /// The tables as text.
     [[nodiscard]] std::string account_text() const;
 
-    /// The host's clock; empty while unknown.
+    /// The host time; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return intake_.now(); }
-    /// How often "now" went back by over 0.15 s: the host that sends SYNC began anew, or another one
-    /// does. What waited was settled, and what was remembered of the time before forgotten: the maps stay.
+    /// Number of time jumps back by over 0.15 s: the host that sends SYNC restarted, or another host sends
+    /// it. Waiting inputs were resolved, and the state from before was cleared; the maps stay.
     [[nodiscard]] std::uint64_t times_back() const noexcept { return time_leap_.times_back(); }
-    /// How often it went ahead by over a second more than passed: another host sends SYNC, or its clock was
-    /// set. The same is done, and the maps stay as old as they were.
+    /// Number of time jumps ahead by over a second more than the time that passed: another host sends SYNC,
+    /// or its clock was set. Handled in the same way; the maps do not age.
     [[nodiscard]] std::uint64_t times_ahead() const noexcept { return time_leap_.times_ahead(); }
-    /// When the readings were captured that the last `on_can`, `on_depth` or `on_silence` put into the maps.
+    /// Capture times of the readings that the last `on_can`, `on_depth` or `on_silence` put into the maps.
     [[nodiscard]] std::span<const HostTime> just_used() const noexcept { return just_used_; }
-    /// True if "now" is known and three periods have passed without a depth frame that the rig promises.
+    /// True if the host time is known and three of the rig's frame periods have passed without a depth frame.
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
-    /// Which joint samples the arm cannot have taken.
+    /// The check for joint samples that the arm cannot have.
     [[nodiscard]] const JointGate& joint_gate() const noexcept { return joint_gate_; }
     /// Null if the rig has no camera.
     [[nodiscard]] const DepthStage* depth_stage() const noexcept { return builder_.depth_stage(); }
-    /// What turns measurements into maps: whoever starts to record needs its joint samples.
+    /// Converts measurements to maps. A recording needs its joint samples at the start.
     [[nodiscard]] const MapBuilder& builder() const noexcept { return builder_; }
-    /// For a replay in a daemon's own order, which gives the pipeline itself nothing.
+    /// For a replay in a daemon's order, which bypasses the pipeline's own inputs.
     [[nodiscard]] MapBuilder& builder() noexcept { return builder_; }
 
   private:
@@ -152,8 +152,8 @@ class Pipeline {
              const PipelineConfig& config);
 
     void settle_marks(HostTime now);
-    void on_leap(const TimeLeap::Leap& leap);  ///< also a sleep, as one by 0
-    /// What waits is integrated or counted, by what is known.
+    void on_leap(const TimeLeap::Leap& leap);  ///< also for a sleep, as a jump by 0
+    /// Integrates or counts all waiting inputs, by what is known.
     void settle_waiting();
     void queue(const FrameOutcome& outcome);
     void queue(const RangeMeasurement& measurement);
@@ -163,11 +163,11 @@ class Pipeline {
     /// Integrates what need not wait any longer.
     void advance(HostTime now);
     void release_joints(HostTime until);
-    /// Those captured until then, and those that are placed if that is enough.
+    /// Releases measurements captured at or before `until`, and placed ones if that is sufficient.
     void release_measurements(HostTime until);
     [[nodiscard]] bool is_placed(const ReleaseKey& key, bool is_depth) const;
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
-    /// The frame goes into the maps, or the worker begins with it. Whether it is in the maps.
+    /// Puts the frame into the maps, or gives it to the worker. True if it is in the maps.
     bool take_depth(DepthFrame frame);
     void finish_depth();
     void drop_oldest_depth();
@@ -177,19 +177,19 @@ class Pipeline {
     CanIntake intake_;
     MarkGate marks_;
     TimeLeap time_leap_;
-    bool has_can_time_ = false;            ///< and more of it may come
-    std::optional<HostTime> told_beside_;  ///< of `on_silence`, since the newest frame
-    // Their order.
+    bool has_can_time_ = false;            ///< the bus gives the time, and may continue to
+    std::optional<HostTime> told_beside_;  ///< time of `on_silence`, since the newest CAN frame
+    // Order of the measurements.
     MeasurementQueue waiting_;
     HostTime released_until_;
-    // Where each was taken, and what it says of the maps' voxels.
+    // Placement, and the maps' voxels.
     JointGate joint_gate_;
     MapBuilder builder_;
     DepthBeside beside_;
 
     PipelineAccounts accounts_;
-    std::vector<HostTime> just_used_;             ///< by the call under way, or the last one
-    std::optional<Nanoseconds> camera_patience_;  ///< three periods; empty without a camera
+    std::vector<HostTime> just_used_;             ///< by the current call, or the last one
+    std::optional<Nanoseconds> camera_patience_;  ///< three frame periods; empty without a camera
     bool is_finished_ = false;
 };
 

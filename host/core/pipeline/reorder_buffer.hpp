@@ -1,4 +1,4 @@
-// Holds what was measured until everything measured before it has had time to arrive.
+// Holds measurements until everything measured before them has had time to arrive.
 #pragma once
 
 #include <cassert>
@@ -28,8 +28,8 @@ class ReorderBuffer {
 
     enum class Pushed : std::uint8_t {
         waits,
-        displaced,  ///< waits; the oldest had to go to make room
-        refused,    ///< one with this very key waits already
+        displaced,  ///< waits; the oldest was dropped to make room
+        refused,    ///< one with the same key already waits
     };
     /// O(log size).
     [[nodiscard]] Pushed push(const ReleaseKey& key, T value) {
@@ -42,7 +42,7 @@ class ReorderBuffer {
         waiting_.erase(waiting_.begin());
         return Pushed::displaced;
     }
-    /// Whether one of the same source waits that was captured less than `apart` before or after.
+    /// True if a measurement of the same source waits that was captured less than `apart` before or after.
     [[nodiscard]] bool has_near(const ReleaseKey& key, Nanoseconds apart) const {
         for (auto it = waiting_.lower_bound({key.captured - apart, {}});
              it != waiting_.end() && it->first.captured < key.captured + apart; ++it) {
@@ -53,11 +53,11 @@ class ReorderBuffer {
         return false;
     }
     [[nodiscard]] bool is_full() const noexcept { return waiting_.size() >= capacity_; }
-    /// The key of the oldest.
+    /// The key of the oldest measurement.
     [[nodiscard]] std::optional<ReleaseKey> front() const {
         return waiting_.empty() ? std::nullopt : std::optional(waiting_.begin()->first);
     }
-    /// The oldest; there must be one.
+    /// The oldest measurement; there must be one.
     [[nodiscard]] T pop() {
         assert(!waiting_.empty());
         return std::move(waiting_.extract(waiting_.begin()).mapped());

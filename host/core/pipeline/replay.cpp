@@ -5,7 +5,7 @@
 namespace octoskin {
 namespace {
 
-/// A depth source with its next frame at hand.
+/// A depth source with its next frame prefetched.
 class DepthFeed {
   public:
     DepthFeed(DepthSource* source, ReplayOutcome& outcome) : source_(source), outcome_(outcome) { fetch(); }

@@ -1,5 +1,5 @@
-// Plays a recording through the pipeline: frames in the order of the log, depth frames where they belong
-// among them.
+// Replays a recording through the pipeline: CAN frames in the order of the log, depth frames inserted by
+// time.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@
 
 namespace octoskin {
 
-/// How far a replay has come.
+/// Progress of a replay.
 struct ReplayProgress {
-    std::uint64_t can_frames = 0;  ///< of a replay in a daemon's order: commits
+    std::uint64_t can_frames = 0;  ///< in a replay in a daemon's order: commits
     std::uint64_t depth_frames = 0;
-    std::optional<HostTime> begin;  ///< of the recording: its first frame, once the host's clock is known
+    std::optional<HostTime> begin;  ///< first frame of the recording, once the host's clock is known
     std::optional<HostTime> now;
 };
 
 struct ReplayOutcome {
     ReplayProgress progress;
-    /// A source that failed before its end; what it gave until then was used.
+    /// A source that failed before its end; its inputs until then were used.
     std::optional<CanSourceError> can_error;
     std::optional<DepthSourceError> depth_error;
     [[nodiscard]] bool is_complete() const { return !can_error && !depth_error; }
@@ -35,7 +35,7 @@ using ReplayReport = std::function<void(const ReplayProgress&)>;
 inline constexpr std::uint64_t kReplayReportEvery = 1000;
 
 /// Feeds both sources into `pipeline` until they end, then finishes it. `depth`: null if there is none. A
-/// depth frame is given in once the host's clock, as the log tells it, has reached its capture time.
+/// depth frame is added once the host time of the log has reached its capture time.
 [[nodiscard]] ReplayOutcome replay(Pipeline& pipeline, CanSource& can, DepthSource* depth,
                                    const ReplayReport& report = {});
 

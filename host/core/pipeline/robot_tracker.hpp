@@ -1,4 +1,4 @@
-// Where the whole robot was at any instant: joint samples in, poses out.
+// Computes the pose of the whole robot at any instant from joint samples.
 #pragma once
 
 #include <cstdint>
@@ -23,26 +23,27 @@ class RobotTracker {
     [[nodiscard]] static Result<RobotTracker, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                      const JointHistoryConfig& config);
 
-    /// Joint samples in the order of their times.
+    /// Takes joint samples in the order of their times.
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
 
-    /// Time goes on from before the newest sample: all of them are void.
+    /// The time continues from before the newest sample: clears all samples.
     void forget() noexcept { joints_.forget(); }
 
-    /// Whether the samples about `instant` are here, or will never come: `at` answers the same for ever.
+    /// True if the samples around `instant` have arrived or will never come: `at` then always gives the same
+    /// result.
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return joints_.is_settled(instant); }
 
     /// The robot at `instant`, or null if no samples surround it closely enough. Valid until the next call.
     /// About 2 us.
     [[nodiscard]] const RobotPose* at(HostTime instant);
 
-    /// The newest gap between samples that no pose could be found in; empty if there was none.
+    /// The newest gap between samples without a pose; empty if there was none.
     [[nodiscard]] const std::optional<JointGap>& newest_gap() const noexcept { return newest_gap_; }
-    /// How many such gaps, the newest included, came one within 3 s of the other: one is an interruption,
-    /// many are a source that is too slow.
+    /// Number of such gaps in a row, including the newest, each within 3 s of the one before. A single gap is
+    /// an interruption; many gaps show that the source is too slow.
     [[nodiscard]] std::uint64_t gaps_in_a_row() const noexcept { return gaps_in_a_row_; }
 
-    /// Every sample that is held, the oldest first.
+    /// Visits every stored sample, the oldest first.
     void for_each_sample(const std::function<void(const JointMeasurement&)>& visit) const;
 
     [[nodiscard]] const RobotModel& robot() const noexcept { return robot_; }

@@ -1,4 +1,4 @@
-// Whether a recording has a START that the map will take: told before the replay, by the replay's own rules.
+// Checks, before a replay, whether a recording has a START that the map will take, by the replay's own rules.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,24 @@
 
 namespace octoskin {
 
-/// Given the frames that a Pipeline will be given, `has_start()` is true exactly if that Pipeline, begun with
+/// For the frames of a Pipeline, `has_start()` is true exactly if that Pipeline, begun with
 /// MapBegin::start_mark, takes a START.
 class StartScan {
   public:
     explicit StartScan(const HostRig& rig, const IntakeConfig& config = {}) : intake_(rig, config) {}
 
-    /// Frames in the order of arrival. About 1 us.
+    /// Takes frames in order of arrival. About 1 us.
     void on_frame(const wire::CanFrame& frame, WallTime stamp);
 
     [[nodiscard]] bool has_start() const noexcept { return has_start_; }
 
-    /// STARTs that name a time too far from that at which they came.
+    /// STARTs whose time is too far from their arrival.
     struct Ignored {
         std::uint64_t count = 0;
-        Nanoseconds ahead{0};  ///< the last one's time after "now"; negative if before
+        Nanoseconds ahead{0};  ///< last one's time minus the host time
     };
     [[nodiscard]] const Ignored& ignored() const noexcept { return ignored_; }
-    /// STARTs that came while the host's clock was unknown, and no time after them.
+    /// STARTs that arrived while the host time was unknown, and that no host time followed.
     [[nodiscard]] std::size_t waiting() const noexcept { return marks_.waiting(); }
 
   private:

@@ -6,11 +6,11 @@
 namespace octoskin {
 namespace {
 
-/// More than one stamp that ran ahead takes back (HostClockConfig::ahead_tolerance). Less than the 200 ms
-/// that a node's clock takes to settle anew (ClockMapConfig::settling): so that no reading finds a pose of
-/// the time before, which was another instant.
+/// More than the correction after a single time stamp that ran ahead (HostClockConfig::ahead_tolerance). Less
+/// than the 200 ms that a node's clock takes to settle again (ClockMapConfig::settling), so that no reading
+/// uses a pose from before the jump, which belongs to another instant.
 constexpr Nanoseconds kTimeBackMax{150'000'000};
-/// Less ages nothing by a second.
+/// Smaller jumps age nothing by a second.
 constexpr Nanoseconds kTimeAheadMax{1'000'000'000};
 
 }  // namespace
@@ -26,7 +26,7 @@ std::optional<TimeLeap::Leap> TimeLeap::notice(HostTime now, const HostClockEsti
         if (is_back || by > kTimeAheadMax) {
             ++(is_back ? times_back_ : times_ahead_);
             newest_.reset();
-            // What still has the time before would make the map older by the leap.
+            // Inputs with times from before would age the map by the jump.
             leapt = Leap{by, is_back ? std::nullopt : std::optional(now - kTimeAheadMax)};
         }
     }
@@ -39,9 +39,10 @@ void TimeLeap::go_on_from(const TimeLeap& ended, const HostClockEstimate& clock)
     if (newest_) newest_->running -= clock.running();
 }
 
-/// Frames that were received one after the other tell how much passed at least. Over a silence only stamps
-/// do, or "now": whichever of the two clocks was not set. The lesser is taken: too much forgets a map. Where
-/// "now" went back, as after a controller was off for a while, the stamps alone tell.
+/// Consecutively received frames give a lower bound of the time that passed. Across a silence, only the time
+/// stamps or the host time do, whichever clock was not set. The smaller of the two is used, because too much
+/// would expire a map. If the host time went back, as after a controller was switched off for some time, only
+/// the time stamps count.
 Nanoseconds TimeLeap::passed_between(const TimeSample& before, const TimeSample& now) {
     const Nanoseconds by_stamps{now.stamp.ns - before.stamp.ns};
     const Nanoseconds went = now.now - before.now;

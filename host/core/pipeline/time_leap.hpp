@@ -1,4 +1,4 @@
-// When the host's clock leaps: another host sends SYNC, or its clock was set.
+// Detects time jumps of the host's clock: another host sends SYNC, or its clock was set.
 #pragma once
 
 #include <cstdint>
@@ -9,25 +9,26 @@
 
 namespace octoskin {
 
-/// A smaller step back is over by itself: until then everything is older than what was used. After a larger
-/// one that would last as long as the step, an hour or for ever. After a step ahead the map would forget what
-/// no sensor has confirmed for as long as the step.
+/// A smaller step back resolves itself: until then, all inputs are older than those used. After a larger step
+/// back, this would last as long as the step, an hour or for ever. After a step ahead, the map would expire
+/// everything that no sensor has confirmed for as long as the step.
 class TimeLeap {
   public:
     struct Leap {
         Nanoseconds by{0};              ///< below 0: back
-        std::optional<HostTime> begin;  ///< after one ahead: what was captured before is of the time before
+        std::optional<HostTime> begin;  ///< after a jump ahead: earlier captures are from before it
     };
-    /// It is `now` by `clock`, whose newest stamp is known (asserted). Empty if the time did not leap. O(1).
+    /// Call with the host time of `clock`, whose newest time stamp is known (asserted). Empty if there was no
+    /// jump. O(1).
     [[nodiscard]] std::optional<Leap> notice(HostTime now, const HostClockEstimate& clock);
-    /// Another one goes on, whose clock had come to `clock`; this one's has not begun to run.
+    /// Continues another object, whose clock has reached `clock`. This object's clock has not begun to run.
     void go_on_from(const TimeLeap& ended, const HostClockEstimate& clock);
 
     [[nodiscard]] std::uint64_t times_back() const noexcept { return times_back_; }
     [[nodiscard]] std::uint64_t times_ahead() const noexcept { return times_ahead_; }
 
   private:
-    /// "Now" at its newest since it last leapt, and what the receive stamps said then.
+    /// The latest host time since the last jump, with the receive time stamp and running time at that moment.
     struct TimeSample {
         HostTime now;
         WallTime stamp;

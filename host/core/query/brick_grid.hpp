@@ -1,4 +1,4 @@
-// Things of bricks in a box of space, found by where a brick is.
+// Stores objects for the bricks of a box, found by the coordinates of a brick.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@
 
 namespace octoskin {
 
-/// 8 bytes for each brick of the box, and what is there.
+/// Takes 8 bytes for each brick of the box, plus the objects.
 template <class Thing>
 class BrickGrid {
   public:
     explicit BrickGrid(const BrickBox& box) : box_(box), things_(box.bricks()) {}
 
     [[nodiscard]] const BrickBox& box() const noexcept { return box_; }
-    /// Of a brick of the box.
+    /// Linear index of a brick of the box.
     [[nodiscard]] std::size_t index(const BrickPlace& place) const noexcept { return box_.index(place); }
     [[nodiscard]] BrickPlace place(std::size_t index) const noexcept {
         const auto from = [&](std::size_t axis, std::size_t steps) {
@@ -25,12 +25,12 @@ class BrickGrid {
         return {
             {from(0, index), from(1, index / box_.edge(0)), from(2, index / (box_.edge(0) * box_.edge(1)))}};
     }
-    /// Null: there is none, or the brick is not of the box.
+    /// Null if there is no object, or the brick is outside the box.
     [[nodiscard]] const Thing* find(const BrickPlace& place) const noexcept {
         return box_.holds(place) ? things_[index(place)].get() : nullptr;
     }
     [[nodiscard]] const Thing* operator[](std::size_t index) const noexcept { return things_[index].get(); }
-    /// What is there or, if nothing is, a copy of `otherwise`, which is there from then on.
+    /// The object at the index; if there is none, a copy of `otherwise` is stored and returned.
     [[nodiscard]] Thing& open(std::size_t index, const Thing& otherwise) {
         if (!things_[index]) {
             things_[index] = std::make_unique<Thing>(otherwise);
@@ -43,7 +43,7 @@ class BrickGrid {
         things_[index].reset();
     }
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
-        constexpr std::size_t kOfHeap = 16;  // what an allocation takes beside, about
+        constexpr std::size_t kOfHeap = 16;  // approximate overhead of an allocation
         return things_.size() * sizeof(things_[0]) + count_ * (sizeof(Thing) + kOfHeap);
     }
 

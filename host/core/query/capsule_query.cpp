@@ -33,7 +33,7 @@ bool is_reach(double reach_m) {
     return reach_m >= 0.0 && reach_m <= kLargest_m;
 }
 
-/// From the segment to what lies outside the octree; it ends nearest to it.
+/// Distance from the segment to the space outside the octree. One of the segment's ends is nearest to it.
 double distance_to_bounds(const FusedMap& map, const PosedCapsule& capsule) {
     const double bound_m = kOriginKey * map.resolution_m();
     return std::max(0.0,
@@ -105,11 +105,11 @@ Result<CapsuleClearance, CapsuleFault> clearance(const FusedMap& map, const Pose
     if (const auto fault = fault_of(capsule)) return unexpected(*fault);
     if (!is_reach(reach.occupied_m) || !is_reach(reach.not_free_m))
         return unexpected(CapsuleFault::too_large);
-    // What is near is found in little space: most of the time the first step is the last.
+    // Near voxels are found in a small space: the first step is usually the last.
     constexpr double kVoxelsFirst = 2.0;
     CapsuleClearance found;
     for (double step_m = kVoxelsFirst * map.resolution_m();; step_m *= 2.0) {
-        // The half that is known already needs not be looked for again.
+        // A distance that is already known is not searched for again.
         const auto within = [&](const std::optional<double>& found_m, double reach_m) {
             return found_m.value_or(std::min(step_m, reach_m));
         };

@@ -1,4 +1,4 @@
-// Where cubes of voxels are, for searches that measure them.
+// Positions of cubes of voxels.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace octoskin {
 
-/// Of the octree's voxel that is nearest to a point (metres, map frame), along each axis.
+/// Key of the octree's voxel nearest to a point (metres, map frame).
 [[nodiscard]] inline VoxelKey key_near(const Eigen::Vector3d& point, double resolution_m) {
     const auto along = [&](double coordinate) {
         const double key = std::floor(coordinate / resolution_m) + kOriginKey;
@@ -20,12 +20,12 @@ namespace octoskin {
     return {along(point.x()), along(point.y()), along(point.z())};
 }
 
-/// Metres.
+/// Half of the cube's edge, metres.
 [[nodiscard]] inline double half_edge_of(const VoxelCube& cube, double resolution_m) {
     return 0.5 * (1U << cube.height) * resolution_m;
 }
 
-/// Map frame, metres.
+/// Centre of the cube, map frame, metres.
 [[nodiscard]] inline Eigen::Vector3d centre_of(const VoxelCube& cube, double resolution_m) {
     const double half = 0.5 * (1U << cube.height);
     return resolution_m * Eigen::Vector3d(cube.lowest.x - kOriginKey + half,

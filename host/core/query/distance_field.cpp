@@ -12,12 +12,12 @@
 namespace octoskin {
 namespace {
 
-/// From a point of the axis to the next that is looked at, half a voxel; from there to the centre of its
-/// voxel, half a diagonal at most, as from a voxel's centre to the nearest point of its cube.
+/// Half a voxel between neighbouring sample points of the axis. Half a diagonal each from a point to the
+/// centre of its voxel, and from a voxel's centre to the nearest point of its cube.
 constexpr double kVoxelsLost = 0.5 + 1.7320508075688773;
 
-/// A word is a cube of four voxels along each edge; two voxels of a row lie side by side in Morton order, and
-/// the next two of it eight further on.
+/// A word is a cube of four voxels along each edge. Two voxels of a row are adjacent in Morton order; the
+/// next two follow eight further on.
 void add_word(std::uint64_t voxels, unsigned word, SiteSlices& slices) {
     const auto row_at = [voxels](unsigned first) {
         return (voxels >> first & 3U) | (voxels >> (first + 8U) & 3U) << 2U;
@@ -93,7 +93,7 @@ std::size_t DistanceField::bricks_of(const MapConfig& map, const FieldExtent& ex
 DistanceField::Update DistanceField::update(const FusedMap& now) {
     assert(now.resolution_m() == map_.resolution_m());
     Update update;
-    // With another threshold every brick may be another one.
+    // With a different threshold each brick may change.
     const bool is_judged_alike = now.config().log_odds_occupied == map_.config().log_odds_occupied;
     now.for_each_difference(map_, [&](const MapBrick& brick) { take(now, brick, update); });
     if (!is_judged_alike) {
@@ -142,12 +142,12 @@ bool DistanceField::tells_of(const PosedCapsule& capsule) const noexcept {
     return is_inside(capsule.p_a) && is_inside(capsule.p_b);
 }
 
-/// What the field tells at points of a segment, each for the piece of the segment about it.
+/// The field's distances at points of a segment, each valid for the part of the segment around the point.
 class DistanceField::Samples {
   public:
     static constexpr std::size_t kMax = 256;
 
-    /// False: the segment is too long, or leaves the region.
+    /// False if the segment is too long or leaves the region.
     [[nodiscard]] bool take(const DistanceField& field, const PosedCapsule& capsule) {
         const double resolution_m = field.map_.resolution_m();
         const Eigen::Vector3d axis = capsule.p_b - capsule.p_a;
@@ -166,7 +166,7 @@ class DistanceField::Samples {
                 const double found_m =
                     resolution_m * (squared ? std::sqrt(static_cast<double>(*squared)) : field.reach_voxels_);
                 at_least_m = found_m - to_centre_m - half_step_m - kHalfDiagonal * resolution_m;
-                // A cube is nearer than its centre by half its edge, or reaches the point.
+                // A cube is nearer than its centre by half its edge, or contains the point.
                 const double at_most_m = std::max(0.0, found_m + to_centre_m - 0.5 * resolution_m);
                 if (squared && !(bound.axis_m && *bound.axis_m <= at_most_m)) bound = {at_most_m, *key};
             };
@@ -177,15 +177,16 @@ class DistanceField::Samples {
         return true;
     }
 
-    /// Of the kind something is no further from the axis than this, and what is nearest to this voxel is not.
+    /// Upper bound of the distance from the axis to a voxel of the kind: the voxel nearest to `at` is within
+    /// it.
     struct Bound {
-        std::optional<double> axis_m;  ///< empty: none is within `axis_reach_m()`
+        std::optional<double> axis_m;  ///< empty: there is none within `axis_reach_m()`
         VoxelKey at{};
     };
     [[nodiscard]] const Bound& occupied() const { return occupied_; }
     [[nodiscard]] const Bound& not_free() const { return not_free_; }
 
-    /// Where the points are about whose pieces something may be so near; empty if there is none.
+    /// Box of the points with a voxel possibly within these limits of their parts; empty if there is none.
     [[nodiscard]] Eigen::AlignedBox3d box_within(double occupied_limit_m, double not_free_limit_m) const {
         Eigen::AlignedBox3d box;
         for (std::size_t i = 0; i < count_; ++i) {
@@ -196,7 +197,7 @@ class DistanceField::Samples {
         }
         return box;
     }
-    /// How far the pieces reach.
+    /// Half length of the part around each point.
     [[nodiscard]] double half_step_m() const { return half_step_m_; }
 
   private:
@@ -244,7 +245,7 @@ void DistanceField::look_at_nearest(const std::optional<VoxelKey>& site, Nearest
     state == Occupancy::occupied ? search.look_at_occupied({*site, 0}) : search.look_at_unknown({*site, 0});
 }
 
-/// First at what is surely near, so that little else matters.
+/// Tests the certainly near voxels first, which reduces the rest of the search.
 void DistanceField::look_about(const Samples& samples, NearestSearch& search) const {
     const auto may_be_near = [&] {
         return samples.box_within(search.occupied_limit_m() + kDistanceStep_m,

@@ -1,5 +1,5 @@
-// How far every voxel of a region is from the nearest occupied and the nearest not-free one: a field that
-// follows the map, for planners that ask often.
+// Distances from each voxel of a region to the nearest occupied and the nearest not-free voxel. The field
+// follows the map, for planners with frequent queries.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,55 +15,55 @@
 
 namespace octoskin {
 
-/// Where a field tells distances, and how far it looks.
+/// The region in which a field has distances, and their limit.
 struct FieldExtent {
     Eigen::AlignedBox3d region;  ///< map frame, finite, not empty
     double reach_m = 0.0;        ///< above 0, and 120 voxels at most
 };
 
-/// Distances between voxel centres, exact, up to a reach. Holds a copy of the map that it tells of, which
-/// costs what any copy does: while the map goes on, each brick that it writes is there twice.
+/// Exact distances between voxel centres, up to a reach. The field keeps a copy of its map; as with any copy,
+/// each brick that the original writes later exists twice.
 ///
-/// Not safe for use by two threads at once, unless both only read.
+/// Two threads must not use it at the same time, unless both only read.
 class DistanceField {
   public:
-    /// Of a map with nothing in it: all unknown. The region is rounded up to whole bricks and ends with the
-    /// octree, the reach is rounded up to whole voxels; both as FieldExtent says (asserted). Half a metre
-    /// beyond the largest radius of a capsule suits an arm. Throws std::bad_alloc.
+    /// Starts with an empty map: all unknown. The region is rounded up to whole bricks and limited by the
+    /// octree; the reach is rounded up to whole voxels. Both must be as FieldExtent requires (asserted). A
+    /// reach of half a metre more than the largest capsule radius suits an arm. Throws std::bad_alloc.
     DistanceField(const MapConfig& map, const FieldExtent& extent);
-    /// Bricks of which it keeps something, some 100 bytes each if there is nothing in the map, and up to
-    /// 7 KiB (about what a surface in each makes of it).
+    /// Number of bricks for which the field has data: about 100 bytes each for an empty map, and up to 7 KiB
+    /// (about the amount with a surface in each brick).
     [[nodiscard]] static std::size_t bricks_of(const MapConfig& map, const FieldExtent& extent) noexcept;
 
     struct Update {
         std::size_t written = 0;  ///< bricks that the map wrote since the last update
-        std::size_t changed = 0;  ///< in how many a voxel became, or ceased to be, occupied, or not free
+        std::size_t changed = 0;  ///< bricks in which a voxel became, or ceased to be, occupied or not free
         std::size_t worked = 0;   ///< layers of 64 voxels worked on, counted for each axis and both distances
     };
-    /// The field of this map from now on: any map of the same resolution (asserted). O(bricks written), and
-    /// some 0.1 us for each `worked`. Throws std::bad_alloc, and then the field is of no map: make another.
+    /// Makes this the field of `now`, any map of the same resolution (asserted). O(bricks written), plus
+    /// about 0.1 us for each `worked`. Throws std::bad_alloc; the field is then invalid and must be replaced.
     Update update(const FusedMap& now);
 
-    /// Metres between the centres of this voxel, one of the region (asserted), and the nearest occupied one;
-    /// 0 if it is one. Empty: none is within `reach_m()`. About 10 ns.
+    /// Distance in metres from the centre of this voxel, which must be in the region (asserted), to that of
+    /// the nearest occupied voxel; 0 if it is occupied. Empty: none within `reach_m()`. About 10 ns.
     [[nodiscard]] std::optional<double> occupied_m(VoxelKey key) const noexcept;
-    /// The same of the nearest that is occupied, unknown or outside the octree.
+    /// The same for the nearest voxel that is occupied, unknown or outside the octree.
     [[nodiscard]] std::optional<double> not_free_m(VoxelKey key) const noexcept;
     [[nodiscard]] double reach_m() const noexcept { return reach_voxels_ * map_.resolution_m(); }
 
-    /// Whether the capsule's axis is in the region.
+    /// True if the capsule's axis is in the region.
     [[nodiscard]] bool tells_of(const PosedCapsule& capsule) const noexcept;
-    /// The question of `octoskin::clearance()` and the same answer, to a nanometre. Quicker if the capsule's
-    /// axis is in the region and `reach` ends within `axis_reach_m()` of it: the field says where to look.
+    /// The same query and answer as `octoskin::clearance()`, to a nanometre. Faster if the capsule's axis is
+    /// in the region and `reach` ends within `axis_reach_m()` of it, because the field shows where to search.
     [[nodiscard]] Result<CapsuleClearance, CapsuleFault> clearance(
         const PosedCapsule& capsule, const ClearanceReach& reach) const noexcept;
-    /// As far as the field tells.
+    /// As above, up to the field's limit.
     [[nodiscard]] Result<CapsuleClearance, CapsuleFault> clearance(
         const PosedCapsule& capsule) const noexcept;
-    /// What is so near to a segment is near enough to a voxel that the segment passes.
+    /// A voxel within this distance of a segment is within the field's reach of a voxel on the segment.
     [[nodiscard]] double axis_reach_m() const noexcept;
 
-    /// What it tells of.
+    /// The map of the field.
     [[nodiscard]] const FusedMap& map() const noexcept { return map_; }
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
         return occupied_.memory_bytes() + not_free_.memory_bytes() + sites_.memory_bytes();
@@ -73,7 +73,7 @@ class DistanceField {
     class Samples;
     void take(const FusedMap& now, const MapBrick& brick, Update& update);
     void look_about(const Samples& samples, NearestSearch& search) const;
-    /// Metres between centres.
+    /// Distance between centres, metres.
     [[nodiscard]] std::optional<double> told_by(const DistanceLayer& layer, VoxelKey key) const noexcept;
     void look_at_nearest(const std::optional<VoxelKey>& site, NearestSearch& search) const;
 
@@ -82,8 +82,7 @@ class DistanceField {
     BrickBox region_;
     DistanceLayer occupied_;
     DistanceLayer not_free_;
-    /// Of the map: each brick that has an occupied voxel, and of those whose voxels are not alike each that
-    /// has an unknown one.
+    /// The map's bricks with an occupied voxel, and its dense bricks with an unknown voxel.
     BrickGrid<BrickSites> sites_;
 };
 

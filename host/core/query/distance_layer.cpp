@@ -23,7 +23,7 @@ bool hold_the_same(const DistanceRow& a, const DistanceRow& b) {
     using Words = std::array<std::uint64_t, 2>;
     return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
 }
-/// Compilers make one wide instruction of it.
+/// Compilers reduce it to one wide instruction.
 void lower(DistanceRow& least, const DistanceRow& values) {
     for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], values[i]);
 }
@@ -89,7 +89,7 @@ void DistanceLayer::want(Stage& stage, const BrickPlace& brick, std::uint64_t pa
     stage.due[index] |= parts;
 }
 
-/// A site matters to a row if one of its voxels has none that is nearer.
+/// A site affects a row if one of the row's voxels has no nearer site.
 void DistanceLayer::spread_sites(const BrickPlace& brick, std::uint64_t rows) {
     Stage& first = stage(Axis::x);
     for (int step = -brick_reach_; step <= brick_reach_; ++step) {
@@ -105,8 +105,8 @@ void DistanceLayer::spread_sites(const BrickPlace& brick, std::uint64_t rows) {
     }
 }
 
-/// Old values may have come from what is no more, and new ones may come, only where no voxel's is less than
-/// what comes from there.
+/// Values can change only in layers in which some voxel's value is not less than the distance via this brick:
+/// older values may come from removed sites, and new ones may arrive.
 void DistanceLayer::spread(Axis next, const BrickPlace& brick, const Change& change) {
     Stage& wanted = stage(next);
     for (int step = -brick_reach_; step <= brick_reach_; ++step) {
@@ -123,7 +123,7 @@ void DistanceLayer::spread(Axis next, const BrickPlace& brick, const Change& cha
     }
 }
 
-/// Changes travel along x, then along y, then along z: each sweep begins with what the one before changed.
+/// Changes propagate along x, then y, then z: each sweep begins with the changes of the one before.
 std::size_t DistanceLayer::settle() {
     std::size_t worked = 0;
     for (const Axis axis : {Axis::x, Axis::y, Axis::z}) worked += sweep_due(axis);
@@ -152,8 +152,8 @@ std::size_t DistanceLayer::sweep_due(Axis axis) {
     return worked;
 }
 
-/// From each voxel to the nearest site of its row: in the brick itself, and in the first on each side that
-/// has one.
+/// Distance from each voxel to the nearest site of its row: in the brick itself, and in the first brick on
+/// each side with a site.
 void DistanceLayer::sweep_x(const BrickPlace& brick, std::uint64_t rows, SweptRows& swept) const {
     std::array<const SiteSlices*, 2 * SweepColumn::kSideMax + 1> column{};
     const auto middle = static_cast<std::size_t>(brick_reach_);
@@ -191,7 +191,7 @@ void DistanceLayer::sweep_x(const BrickPlace& brick, std::uint64_t rows, SweptRo
     });
 }
 
-/// Of some layers, along y or z; the answer is which rows they are.
+/// Sweeps some layers along y or z and returns their rows.
 std::uint64_t DistanceLayer::sweep(Axis axis, const BrickPlace& brick, unsigned layers, SweptRows& swept,
                                    OfLayers& largest) const {
     const Axis before = axis == Axis::y ? Axis::x : Axis::y;
@@ -216,8 +216,8 @@ std::uint64_t DistanceLayer::sweep(Axis axis, const BrickPlace& brick, unsigned 
     return rows;
 }
 
-/// What is another value than before, into the brick. Both before and after the last sweep the layer of the
-/// next is the row's place in eight.
+/// Copies changed values into the brick. Before and after this sweep, the layer of the next sweep is the
+/// row's index modulo eight.
 DistanceLayer::Change DistanceLayer::take(Stage& stage, std::size_t index, std::uint64_t rows,
                                           const SweptRows& swept, const OfLayers& largest) {
     const Values* const there = stage.values[index];
@@ -264,7 +264,7 @@ std::optional<VoxelKey> DistanceLayer::step_to(VoxelKey key, Axis axis, const Is
     return std::nullopt;
 }
 
-/// Back along z, y and x: to where each value came from.
+/// Follows the value back along z, y and x to its source.
 std::optional<VoxelKey> DistanceLayer::nearest(VoxelKey key) const noexcept {
     const int all = value_at(Axis::z, key);
     if (all >= beyond_) return std::nullopt;

@@ -1,4 +1,4 @@
-// How far each voxel is from the nearest of a set of voxels, exactly, kept up as the set changes.
+// The exact distance from each voxel to the nearest voxel of a set; it is updated when the set changes.
 #pragma once
 
 #include <array>
@@ -11,68 +11,68 @@
 
 namespace octoskin {
 
-/// The voxels of a brick that are of the set: of slice z bit x + 8 y.
+/// The voxels of a brick that belong to the set: in slice z, bit x + 8 y.
 using SiteSlices = std::array<std::uint64_t, kBrickEdge>;
 
-/// Squared Euclidean distances between voxel centres, in voxels, up to a reach, of the voxels of a region.
-/// Found one axis after the other (Felzenszwalb and Huttenlocher 2012, eq. 5): each step's values are kept,
-/// so that a change costs only the rows of voxels whose values it may change. Takes about 1 KiB for each axis
-/// and each brick that is not as it is without any change.
+/// Squared Euclidean distances between voxel centres, in voxels, up to a reach, for the voxels of a region.
+/// Computed one axis after the other (Felzenszwalb and Huttenlocher 2012, eq. 5). The values of each step are
+/// kept, so that a change costs only the rows of voxels that it can affect. Takes about 1 KiB per axis for
+/// each brick that differs from the initial state.
 class DistanceLayer {
   public:
     static constexpr int kReachMax = 120;  ///< voxels: sums of two squares fit 15 bits
 
-    /// `is_site_elsewhere`: whether voxels that nobody spoke of are of the set. `reach`: 1 to kReachMax
-    /// voxels (asserted). Distances are told in `region`, and to what is up to `reach` outside of it.
+    /// `is_site_elsewhere`: whether voxels that were never set belong to the set. `reach`: 1 to kReachMax
+    /// voxels (asserted). Distances are available in `region`, to sites up to `reach` outside of it.
     DistanceLayer(bool is_site_elsewhere, int reach, const BrickBox& region);
 
-    /// Of which bricks sites matter to a region.
+    /// The bricks whose sites affect a region.
     [[nodiscard]] static BrickBox sites_box(const BrickBox& region, int reach) noexcept;
     [[nodiscard]] const BrickBox& sites_box() const noexcept { return sites_.box(); }
-    /// From now on these voxels of the brick, one of `sites_box()`, are of the set, and no others of it.
-    /// False: they were already. Throws std::bad_alloc; then all is void.
+    /// Sets the voxels of a brick of `sites_box()` that belong to the set. False if there is no change.
+    /// Throws std::bad_alloc; the object is then invalid.
     bool set_sites(const BrickPlace& brick, const SiteSlices& sites);
-    /// Whether the brick is as if nobody had spoken of it.
+    /// True if the brick is in its initial state.
     [[nodiscard]] bool is_plain(const BrickPlace& brick) const noexcept {
         return sites_.find(brick) == nullptr;
     }
-    /// Makes the distances those of the set as it is now; until then they are those before. The answer is how
-    /// many layers of 64 voxels it worked on, counted for each axis: 0.1 us each, about. Throws
-    /// std::bad_alloc; then all is void.
+    /// Updates the distances to the present set; before this call they are those of the set before. Returns
+    /// how many layers of 64 voxels were computed, counted per axis: about 0.1 us each. Throws
+    /// std::bad_alloc; the object is then invalid.
     std::size_t settle();
 
-    /// Of a voxel of the region. Empty: beyond the reach.
+    /// Squared distance of a voxel of the region. Empty: beyond the reach.
     [[nodiscard]] std::optional<int> squared(VoxelKey key) const noexcept {
         const Value value = value_at(Axis::z, key);
         if (value >= beyond_) return std::nullopt;
         return value;
     }
-    /// One of the voxels that are so near to this one; empty if none is, or only what is outside the octree.
-    /// Some 0.2 us.
+    /// One of the nearest voxels of the set; empty if none is within reach, or only space outside the octree.
+    /// About 0.2 us.
     [[nodiscard]] std::optional<VoxelKey> nearest(VoxelKey key) const noexcept;
     [[nodiscard]] std::size_t memory_bytes() const noexcept;
 
   private:
     using Value = std::int16_t;
     static constexpr auto kEdge = static_cast<std::size_t>(kBrickEdge);
-    /// A brick's squared distances after a sweep. The sweeps along y and z go layer by layer: in one the rows
-    /// of each z, in the other those of each y know nothing of others.
+    /// A brick's squared distances after a sweep. The sweeps along y and z work layer by layer: in the sweep
+    /// along y the layers of different z are independent, in the sweep along z those of different y.
     struct Values {
         SweptRows rows{};    ///< after x: by z + 8 y; after y and z: by y + 8 z
-        OfLayers least{};    ///< of each layer of the next sweep
-        OfLayers largest{};  ///< of each layer of this sweep, but for x
+        OfLayers least{};    ///< least value of each layer of the next sweep
+        OfLayers largest{};  ///< largest value of each layer of this sweep; not for x
     };
-    /// After the sweep along an axis.
+    /// The state after the sweep along an axis.
     struct Stage {
         explicit Stage(const BrickBox& box) : values(box), due(box.bricks()) {}
         BrickGrid<Values> values;
-        std::vector<std::uint64_t> due;       ///< of each brick rows (x) or layers that have to be worked out
-        std::vector<std::size_t> bricks_due;  ///< those with any
+        std::vector<std::uint64_t> due;       ///< rows (x) or layers of each brick to be computed
+        std::vector<std::size_t> bricks_due;  ///< bricks with any
     };
-    /// What was swept and has other values now, by layer of the next sweep.
+    /// The swept values that changed, by layer of the next sweep.
     struct Change {
         std::uint64_t layers = 0;
-        OfLayers least{};  ///< of what changed, before and now
+        OfLayers least{};  ///< least of the changed values, old and new
     };
 
     [[nodiscard]] Stage& stage(Axis axis) noexcept { return stages_[static_cast<std::size_t>(axis)]; }
@@ -115,7 +115,7 @@ class DistanceLayer {
     int brick_reach_;
     Value beyond_;
     SiteSlices plain_sites_{};
-    Values plain_;  ///< of a brick that is as if nobody had spoken of it
+    Values plain_;  ///< values of a brick in its initial state
     BrickGrid<SiteSlices> sites_;
     std::array<Stage, kAxisCount> stages_;
 };

@@ -15,7 +15,7 @@
 namespace octoskin {
 namespace {
 
-/// Goes through the map's known space that the capsule touches, in Morton order.
+/// Visits the map's known space that the capsule touches, in Morton order.
 class EvidenceSearch {
   public:
     EvidenceSearch(const FusedMap& map, const PosedCapsule& capsule, std::uint32_t limit) noexcept
@@ -40,7 +40,7 @@ class EvidenceSearch {
                segment_.distance(centre, half_m) <= reach_m_;
     }
 
-    /// Recurses as deep as the tree.
+    /// Recursion depth: the levels of the tree.
     void look(const BrickTree::Space& space) {
         if (!space.has_parts()) return look_into(space.cube(), space.bricks());
         for (auto parts = parts_in(space.cube(), box_); parts != 0 && limit_ > 0; parts &= parts - 1) {
@@ -64,7 +64,7 @@ class EvidenceSearch {
         }
     }
 
-    /// Of 64 voxels; each that is weaker than what was found moves the limit for the next.
+    /// Tests 64 voxels. Each weaker voxel lowers the limit for the next.
     void take_weakest(const VoxelCube& cube, std::uint64_t voxels, const StampView& stamps,
                       std::size_t cell) {
         if (voxels == 0 || !is_touched(cube)) return;
@@ -87,7 +87,7 @@ class EvidenceSearch {
     double reach_m_;
     SegmentToCubes segment_;
     KeyBox box_;
-    std::uint32_t limit_;  ///< stamps below it are weaker than all that was found
+    std::uint32_t limit_;  ///< time stamps below it are weaker than all found so far
     std::optional<VoxelKey> voxel_;
 };
 
@@ -107,7 +107,8 @@ std::string_view name(SensorKind kind) noexcept {
 
 std::optional<WeakestEvidence> weakest_in(const FusedMap& map, const PosedCapsule& capsule,
                                           const std::optional<WeakestEvidence>& than) noexcept {
-    // No stamp reaches it: the clock's largest reading comes with a kind of 3, which there is not.
+    // No time stamp reaches this value: the clock's largest value would need a kind of 3, which does not
+    // exist.
     constexpr std::uint32_t kAnything = std::numeric_limits<std::uint16_t>::max();
     if (!map.layers().ages.has_begun()) return std::nullopt;
     EvidenceSearch search(map, capsule, than ? than->stamp : kAnything);

@@ -1,4 +1,4 @@
-// What an answer rests on: how long ago, and by what, the space was measured that the robot would take.
+// The evidence behind an answer: when, and by which kind of sensor, the space of the robot was measured.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace octoskin {
 
 [[nodiscard]] std::string_view name(SensorKind kind) noexcept;
 
-/// The voxel of several that was confirmed the longest ago; of equals the one that a weaker kind confirmed.
+/// The voxel with the oldest confirmation; of equals the one confirmed by a weaker kind of sensor.
 struct WeakestEvidence {
     VoxelKey voxel;
-    std::optional<Confirmation> confirmation;  ///< empty: nobody knows, which is weaker than all
+    std::optional<Confirmation> confirmation;  ///< empty: not known, which is the weakest
     bool is_stale = false;                     ///< FusedMap::is_stale
-    std::uint16_t stamp = 0;                   ///< the less, the weaker
+    std::uint16_t stamp = 0;                   ///< the lower, the weaker
 };
 
-/// Of the known voxels that a capsule touches, in the sense of `worst_in`; empty if it touches none, and of a
-/// map that was never told the time. `capsule`: finite, in the map frame. Only what is weaker than `than`, if
-/// there is something, is looked for: asked of several capsules, most of the space is passed over. No
-/// allocation. About 5 us a capsule at 0.04 m.
+/// The weakest evidence of the known voxels that a capsule touches (in the sense of `worst_in`). Empty if it
+/// touches none, and for a map that never received a time. `capsule`: finite, in the map frame. Only evidence
+/// weaker than `than`, if given, is searched for; in queries about several capsules this skips most of the
+/// space. No allocation. About 5 us per capsule at 0.04 m.
 [[nodiscard]] std::optional<WeakestEvidence> weakest_in(
     const FusedMap& map, const PosedCapsule& capsule,
     const std::optional<WeakestEvidence>& than = {}) noexcept;

@@ -20,7 +20,7 @@ constexpr std::size_t kLanesMax = 16;
 constexpr std::size_t kRowsAPlace = kBrickEdge;  // one of each layer
 constexpr std::size_t kSteps = std::size_t{kBrickEdge} * (SweepColumn::kSideMax + 1);
 
-/// Of so many voxels the square, in every lane.
+/// The square of a number of voxels, in all lanes.
 struct alignas(32) SquareTable {
     std::array<std::array<std::int16_t, kLanesMax>, kSteps> of{};
     constexpr SquareTable() {
@@ -38,8 +38,9 @@ namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using ValueTag = hn::CappedTag<std::int16_t, kLanesMax>;
-/// Layers from `first` on, as many as a vector holds: outwards, until what comes is too far away to be less
-/// for any voxel. Vectors are variables of their own: of some instruction sets there are no arrays of them.
+/// Sweeps the layers from `first` on, as many as a vector holds. It works outwards until a brick is too far
+/// away to lower any voxel's value. Vectors are separate variables, because some instruction sets have no
+/// arrays of vectors.
 void sweep_some(const SweepColumn& column, std::size_t first, std::int16_t beyond, SweptRows& rows,
                 OfLayers& largest) {
     const ValueTag d;

@@ -44,8 +44,8 @@ double NearestSearch::distance_to(const VoxelCube& cube) const {
     return segment_.distance(centre_of(cube, resolution_m_), half_edge_of(cube, resolution_m_));
 }
 
-/// Where only the worst is wanted the limit of the unknown is never the larger one: what is unknown ends no
-/// search for the occupied.
+/// If only the worst voxel is wanted, the limit of unknown voxels never exceeds that of occupied ones:
+/// unknown voxels do not end the search for occupied ones.
 double NearestSearch::limit_m() const noexcept {
     return std::max(occupied_.limit_m, unknown_.limit_m);
 }
@@ -83,7 +83,7 @@ void NearestSearch::look_into_brick(const VoxelCube& brick, const BrickValues& v
 void NearestSearch::look_at(const VoxelCube& brick, const BrickSites& sites) noexcept {
     if (is_surely_beyond(brick, limit_m())) return;
     for (std::size_t word = 0; word < kBrickVoxels / 64; ++word) {
-        if ((sites.occupied[word] | sites.unknown[word]) == 0) continue;  // most are
+        if ((sites.occupied[word] | sites.unknown[word]) == 0) continue;  // usual case
         const auto along = [word](std::uint16_t lowest, unsigned axis) {
             return static_cast<std::uint16_t>(lowest + 4 * (word >> axis & 1U));
         };
@@ -97,8 +97,8 @@ void NearestSearch::look_at(const VoxelCube& brick, const BrickSites& sites) noe
     }
 }
 
-/// Of a word's voxels those that have no other of them before them: where the whole segment is on one side, a
-/// neighbour on that side is no further from any point of it.
+/// The voxels of a word without another one in front of them: where the whole segment is on one side of the
+/// word, a neighbour on that side is no further from any point of the segment.
 std::uint64_t NearestSearch::facing(const VoxelCube& word, std::uint64_t voxels) const {
     if ((voxels & (voxels - 1)) == 0) return voxels;
     const Eigen::Vector3d corner =
@@ -124,8 +124,8 @@ void NearestSearch::take_each(Nearest& nearest, const VoxelCube& word, std::uint
         take(nearest, part_of(word, static_cast<std::size_t>(std::countr_zero(voxels))));
 }
 
-/// All voxels of the cube have the state. The distance of the nearest is the cube's own, so that the way
-/// down to it needs no search.
+/// Takes a cube whose voxels all have the state. The distance of the nearest voxel is that of the cube, so
+/// descending to it needs no search.
 void NearestSearch::take(Nearest& nearest, VoxelCube cube) {
     if (nearest.limit_m == kNever || is_surely_beyond(cube, nearest.limit_m)) return;
     const double distance_m = distance_to(cube);
@@ -139,7 +139,7 @@ void NearestSearch::take(Nearest& nearest, VoxelCube cube) {
     unknown_.limit_m = wanted_ == SearchFor::both ? std::min(unknown_.limit_m, nearest.limit_m) : kNever;
 }
 
-/// Of the eighths that are nearest, the first. `steps`: then its own.
+/// The first of the nearest eighths. `steps` becomes its distance.
 VoxelCube NearestSearch::nearest_eighth(const VoxelCube& cube, double& steps) const {
     const unsigned height = cube.height - 1;
     const MortonCode first = morton_of(cube.lowest);

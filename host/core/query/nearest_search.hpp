@@ -1,5 +1,5 @@
-// The search behind the questions of capsule_query.hpp: the occupied and the unknown voxel of a map that are
-// nearest to a segment.
+// The search behind the queries of capsule_query.hpp: the occupied and the unknown voxel of a map nearest to
+// a segment.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,10 +15,10 @@
 
 namespace octoskin {
 
-/// What distances are told apart by. Rounding is well below it for all that is within 1000 km.
+/// Resolution of distances. Rounding is well below it for all points within 1000 km.
 inline constexpr double kDistanceStep_m = 1e-9;
 
-/// What a map's brick holds, worked out beforehand.
+/// Occupied and unknown voxels of a map's brick, computed in advance.
 struct BrickSites {
     BrickMask occupied{};
     BrickMask unknown{};
@@ -27,21 +27,21 @@ struct BrickSites {
 enum class SearchFor : std::uint8_t {
     worst,  ///< the nearest occupied voxel or, if there is none, the nearest unknown one
     any,    ///< ends with the first voxel that is not free
-    both,   ///< the nearest occupied one, and the nearest unknown one unless that is further away
+    both,   ///< the nearest occupied one, and the nearest unknown one unless it is further away
 };
 
 struct SearchRequest {
     Eigen::Vector3d p_a = Eigen::Vector3d::Zero();  ///< the segment's ends in the map frame, finite
     Eigen::Vector3d p_b = Eigen::Vector3d::Zero();
-    double occupied_reach_m =
-        0.0;                       ///< from the segment to a voxel's closed cube; a voxel beyond is not found
-    double unknown_reach_m = 0.0;  ///< no more than the other unless it is for `both`
+    /// From the segment to a voxel's closed cube; voxels beyond are not found.
+    double occupied_reach_m = 0.0;
+    double unknown_reach_m = 0.0;  ///< at most occupied_reach_m, except for `both`
     SearchFor wanted = SearchFor::worst;
 };
 
-/// Goes through the space within reach, in Morton order: of two voxels that are equally near the first wins
-/// without being compared. For one `run`, or for whoever knows where to look: `look_at` what may be near, in
-/// any order.
+/// Searches the space within reach in Morton order: of two equally near voxels the first is taken without a
+/// comparison. Used for one `run`, or with `look_at` for each candidate, in any order, by callers that know
+/// the candidates.
 class NearestSearch {
   public:
     struct Found {
@@ -52,25 +52,25 @@ class NearestSearch {
     NearestSearch(const FusedMap& map, const SearchRequest& request) noexcept;
 
     void run() noexcept;
-    /// A brick of the map, some of whose voxels are occupied or unknown.
+    /// Tests a brick of the map with occupied or unknown voxels.
     void look_at(const VoxelCube& brick, const BrickSites& sites) noexcept;
-    /// Voxels that are all occupied, or all unknown.
+    /// Test cubes whose voxels are all occupied, or all unknown.
     void look_at_occupied(const VoxelCube& cube) noexcept { take(occupied_, cube); }
     void look_at_unknown(const VoxelCube& cube) noexcept { take(unknown_, cube); }
-    /// What is further away matters to neither. Never more than the request's reach.
+    /// Voxels further away cannot change either result. Never more than the request's reach.
     [[nodiscard]] double limit_m() const noexcept;
     [[nodiscard]] double occupied_limit_m() const noexcept { return occupied_.limit_m; }
     [[nodiscard]] double unknown_limit_m() const noexcept { return unknown_.limit_m; }
 
     [[nodiscard]] Found occupied() const noexcept { return occupied_.found; }
     [[nodiscard]] Found unknown() const noexcept { return unknown_.found; }
-    /// Some of the space within reach lies outside the octree.
+    /// True if some of the space within reach lies outside the octree.
     [[nodiscard]] bool is_outside() const noexcept { return is_outside_; }
 
   private:
     static constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-    /// The nearest voxel of a state so far, and how near another one must be to matter.
+    /// The nearest voxel of a state so far, and the distance within which another voxel can replace it.
     struct Nearest {
         Found found;
         double reach_m = 0.0;
@@ -87,7 +87,7 @@ class NearestSearch {
     void look(const BrickTree::Space& space);
     void look_into(const VoxelCube& cube, const BrickView& bricks);
     void look_into_brick(const VoxelCube& brick, const BrickValues& values);
-    /// Whether some of these voxels of the word may matter.
+    /// True if some of these voxels of the word can change the result.
     [[nodiscard]] bool is_near(const Nearest& nearest, const VoxelCube& word, std::uint64_t voxels) const {
         return voxels != 0 && nearest.limit_m != kNever && !is_surely_beyond(word, nearest.limit_m);
     }

@@ -8,13 +8,13 @@
 namespace octoskin {
 namespace {
 
-/// Corners of what may be near a capsule, both included.
+/// Corners of the box around a capsule, both included.
 struct VoxelBox {
     VoxelKey lowest;
     VoxelKey highest;
 };
 
-/// Empty where it reaches out of the octree, or a number is not finite.
+/// Empty if the box reaches out of the octree, or a number is not finite.
 std::optional<VoxelBox> box_about(const FusedMap& map, const PosedCapsule& capsule, double margin_m) {
     const double reach_m = capsule.radius_m + margin_m;
     const auto lowest = map.key_of(capsule.p_a.cwiseMin(capsule.p_b).array() - reach_m);
@@ -24,16 +24,16 @@ std::optional<VoxelBox> box_about(const FusedMap& map, const PosedCapsule& capsu
 }
 
 std::uint64_t voxels_of(const VoxelBox& box) {
-    // Three numbers of at most 2^16.
+    // A product of three numbers of at most 2^16.
     return (box.highest.x - box.lowest.x + 1ULL) * (box.highest.y - box.lowest.y + 1ULL) *
            (box.highest.z - box.lowest.z + 1ULL);
 }
 
-/// Capsules, how far beyond them, and which voxels near them.
+/// Capsules, the margin around them, and the test for the voxels to be freed.
 struct Region {
     std::span<const PosedCapsule> capsules;
     double margin_m = 0.0;
-    /// Of a voxel whose centre is within `margin_m` of the capsule.
+    /// Called for a voxel whose centre is within `margin_m` of the capsule.
     bool (*is_freed)(const FusedMap& map, const VoxelKey& key, const PosedCapsule& capsule);
 };
 
@@ -42,7 +42,7 @@ bool is_unknown_or_stale(const FusedMap& map, const VoxelKey& key, const PosedCa
     return state == Occupancy::unknown || (state == Occupancy::free && map.is_stale(key));
 }
 
-/// A capsule is convex: it holds what is between its points, too.
+/// A capsule is convex, so it contains a cube if it contains the corners.
 bool holds_cube(const PosedCapsule& capsule, const Eigen::Vector3d& centre, double edge_m) {
     for (const double x : {-0.5, 0.5}) {
         for (const double y : {-0.5, 0.5}) {
@@ -55,14 +55,14 @@ bool holds_cube(const PosedCapsule& capsule, const Eigen::Vector3d& centre, doub
     return true;
 }
 
-/// What marked a voxel may be in any part of it.
+/// The object that marked a voxel occupied may be in any part of it.
 bool is_occupied_within(const FusedMap& map, const VoxelKey& key, const PosedCapsule& capsule) {
     return map.occupancy(key) == Occupancy::occupied &&
            holds_cube(capsule, map.centre_of(key), map.resolution_m());
 }
 
-/// Of the layers from `z_begin` to `z_last`: terms that clamp whatever they are added to at the least there
-/// is.
+/// Lists the voxels of the layers from `z_begin` to `z_last`, with terms that clamp each value at the
+/// minimum.
 void list_own(const FusedMap& map, const Region& region, const PosedCapsule& capsule, const VoxelBox& box,
               unsigned z_begin, unsigned z_last, std::vector<VoxelUpdate>& updates) {
     const float all_the_way = map.config().log_odds_min - map.config().log_odds_max;
@@ -78,7 +78,7 @@ void list_own(const FusedMap& map, const Region& region, const PosedCapsule& cap
     }
 }
 
-/// How many voxels; empty: `is_ending` has said so.
+/// Number of freed voxels; empty if `is_ending` returned true.
 std::optional<std::size_t> free_region(FusedMap& map, const Region& region,
                                        const std::function<bool()>& is_ending) {
     std::size_t freed = 0;
@@ -86,7 +86,7 @@ std::optional<std::size_t> free_region(FusedMap& map, const Region& region,
     for (const PosedCapsule& capsule : region.capsules) {
         const auto box = box_about(map, capsule, region.margin_m);
         if (!box) continue;
-        // A layer of bricks at a time: so long it takes to end, and so much memory the list takes.
+        // One layer of bricks at a time: this bounds the delay of ending and the memory of the list.
         unsigned z_last = 0;
         for (unsigned z = box->lowest.z; z <= box->highest.z; z = z_last + 1) {
             if (is_ending()) return std::nullopt;
@@ -94,7 +94,7 @@ std::optional<std::size_t> free_region(FusedMap& map, const Region& region,
             updates.clear();
             list_own(map, region, capsule, *box, z, z_last, updates);
             const Evidence is_free = evidence_of(updates, SensorKind::none);
-            map.forget_counts_of(is_free);  // or what ranges counted there would mark it all the same
+            map.forget_counts_of(is_free);  // otherwise counts from ranges could mark it occupied again
             map.apply(is_free);
             freed += updates.size();
         }

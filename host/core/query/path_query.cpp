@@ -8,7 +8,7 @@
 namespace octoskin {
 namespace {
 
-/// Of a map's voxel: what a part of a leg moves a point by at the most.
+/// Upper limit of a point's movement in one part of a leg, in voxel edges.
 constexpr double kMotionEdges = 0.5;
 
 double longest_of(std::span<const double> from, std::span<const double> to) {
@@ -23,7 +23,7 @@ double sum_of(std::span<const double> from, std::span<const double> to) {
     return sum;
 }
 
-/// From `from`, at share 0, to `to`.
+/// Interpolates from `from`, at share 0, to `to`.
 void go_to(double share, std::span<const double> from, std::span<const double> to,
            std::span<double> position) {
     for (std::size_t i = 0; i < to.size(); ++i) position[i] = from[i] + share * (to[i] - from[i]);
@@ -33,10 +33,11 @@ double farther_of(const PosedCapsule& a, const PosedCapsule& b) {
     return std::max((a.p_a - b.p_a).norm(), (a.p_b - b.p_b).norm());
 }
 
-/// No point of a capsule's axis is accelerated by more on the way, in m per way squared, the way being
-/// travelled evenly. Joint i turns the velocity that a joint j further out gives a point, which is at most
-/// |dq_j| times the lever, and the lever is at most lever_m(); a prismatic joint's is |dq_j| itself, lever 1.
-/// Summed over all pairs of joints, that is the square of what all of them move by, times the longer lever.
+/// Upper bound of the acceleration of any point of a capsule's axis, in m per way squared, for a way
+/// travelled at constant joint speed. Joint i turns the velocity that a joint j further out gives a point.
+/// That velocity is at most |dq_j| times the lever, and the lever is at most lever_m(); for a prismatic joint
+/// it is |dq_j|, lever 1. The sum over all pairs of joints is the square of the total joint movement, times
+/// the longer lever.
 double acceleration_of(const RobotQuery& robot, std::span<const double> from, std::span<const double> to) {
     std::vector<double> farthest(from.size());
     for (std::size_t i = 0; i < from.size(); ++i) farthest[i] = std::max(std::abs(from[i]), std::abs(to[i]));
@@ -44,12 +45,12 @@ double acceleration_of(const RobotQuery& robot, std::span<const double> from, st
     return moved * moved * std::max(robot.lever_m(farthest), 1.0);
 }
 
-/// What no point of each capsule's axis is faster than anywhere on the way, in m per way. Between two looks
-/// it is as fast, on the mean, as they are apart, and its speed differs from that by what it is accelerated
-/// in half the time. A point between the ends of an axis is no faster than the faster of them.
+/// Upper bound of the speed of any point of each capsule's axis, in m per way. Between two samples the mean
+/// speed is their distance; the speed differs from the mean by at most the acceleration over half the time. A
+/// point between the ends of an axis is no faster than the faster end.
 std::vector<double> speeds_of(const RobotQuery& robot, std::span<const double> from,
                               std::span<const double> to) {
-    constexpr double kLook = 0.05;  // of all joints together: costs less than a tenth of a speed, of an arm
+    constexpr double kLook = 0.05;  // of all joints together: costs less than a tenth of the speed of an arm
     constexpr double kLooksMax = 500.0;
     const double looks = std::clamp(std::ceil(sum_of(from, to) / kLook), 1.0, kLooksMax);
     std::vector<double> speeds(robot.capsule_count(), 0.0);
@@ -68,9 +69,9 @@ std::vector<double> speeds_of(const RobotQuery& robot, std::span<const double> f
 }
 
 std::size_t parts_of(double longest, double step, double fastest, double motion_max_m) {
-    // Rounding must not make one more of a way that is a whole number of steps.
+    // Rounding must not add a part to a way of a whole number of steps.
     constexpr double kRounding = 1e-9;
-    constexpr double kMost = 1e15;  // more would not fit a number; nobody asks about so many
+    constexpr double kMost = 1e15;  // the limit of a number; far more than any query needs
     const double parts = std::max(std::ceil(longest / step - kRounding), std::ceil(fastest / motion_max_m));
     return static_cast<std::size_t>(std::clamp(parts, 1.0, kMost));
 }
@@ -80,7 +81,7 @@ bool is_blocked(const LegAnswer& answer, double reach_m) {
            (!(reach_m > 0.0) || (answer.clearance.occupied_m && answer.clearance.not_free_m));
 }
 
-/// False if a capsule is refused.
+/// Returns false if a capsule is refused.
 bool take_posture(const RobotQuery& robot, const FusedMap& map, std::span<const PosedCapsule> capsules,
                   double share, const LegConfig& config, LegAnswer& answer) {
     const auto worst = worst_of(robot, map, capsules);
@@ -109,7 +110,7 @@ Leg::Leg(const RobotQuery& robot, const FusedMap& map, std::span<const double> f
     const double longest = longest_of(from, to);
     if (!(longest > 0.0)) return;
     margins_m_ = speeds_of(robot, from, to);
-    // A robot of which all that moves is unknown has no capsule.
+    // A robot whose moving links are all unknown has no capsule.
     const double fastest = margins_m_.empty() ? 0.0 : std::ranges::max(margins_m_);
     parts_ = parts_of(longest, step, fastest, kMotionEdges * map.resolution_m());
     for (double& margin_m : margins_m_) margin_m *= 0.5 / static_cast<double>(parts_);

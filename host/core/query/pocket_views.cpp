@@ -11,7 +11,7 @@
 namespace octoskin {
 namespace {
 
-/// Where a sensor's zone looks from its link.
+/// Origin and direction of a sensor's zone in its link's frame.
 struct Eye {
     const HostSensor* sensor = nullptr;
     LinkId link = 0;
@@ -38,7 +38,7 @@ struct Sight {
     double range_m = 0.0;
 };
 
-/// The first voxel that is not free, if it is the border of a pocket.
+/// Finds the first voxel that is not free, if it is in the border of a pocket.
 std::optional<Sight> look(const FusedMap& map, const UnknownPockets& pockets, const Eigen::Vector3d& origin,
                           const Eigen::Vector3d& direction, double range_max_m) {
     const Eigen::Vector3d end = origin + range_max_m * direction;
@@ -54,7 +54,7 @@ std::optional<Sight> look(const FusedMap& map, const UnknownPockets& pockets, co
     return Sight{*pocket, (map.centre_of(*first) - origin).norm()};
 }
 
-/// Postures to be tried.
+/// Generates the postures to be tried.
 class Postures {
   public:
     Postures(std::span<const JointLimits> limits, std::span<const double> from,
@@ -115,10 +115,10 @@ std::vector<std::optional<PocketView>> find_views(const HostRig& rig, const Robo
     std::vector<double> position(from.begin(), from.end());
     std::vector<Eigen::Isometry3d> T_base_link(robot.robot().link_count());
     for (std::size_t tried = 0; tried < config.postures && !views.empty() && !is_ending(); ++tried) {
-        if (tried > 0) postures.next(position);  // as it stands it may see something already
+        if (tried > 0) postures.next(position);  // the first try is the present posture
         const double change = largest_change(from, position);
         robot.robot().forward(position, T_base_link);
-        std::optional<PostureState> state;  // worked out once something is seen
+        std::optional<PostureState> state;  // computed when a pocket is in view
         for (const Eye& eye : eyes) {
             const Eigen::Isometry3d T_map_link = rig.T_map_base * T_base_link[eye.link];
             const auto sight = look(map, pockets, T_map_link * eye.p_link,

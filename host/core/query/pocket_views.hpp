@@ -1,4 +1,4 @@
-// How the arm would have to stand so that one of its sensors looks into an unknown pocket.
+// Searches for arm postures in which a sensor looks into an unknown pocket.
 #pragma once
 
 #include <cstddef>
@@ -25,19 +25,21 @@ struct PocketView {
 };
 
 struct PocketViewConfig {
-    std::size_t postures = 3000;  ///< that are tried
-    std::size_t pockets = 10;     ///< the largest so many are looked for
-    std::uint32_t seed = 1;       ///< the same seed, the same postures, on this machine
+    std::size_t postures = 3000;  ///< number of postures tried
+    std::size_t pockets = 10;     ///< number of the largest pockets that are searched for
+    std::uint32_t seed = 1;       ///< the same seed gives the same postures, on this machine
     double near_spread = 0.4;     ///< standard deviation of half of the postures about `from`, rad or m
 };
 
-/// For each of the largest pockets, of the postures tried in which the axis of a sensor, or of one of its
-/// zones, meets the pocket's border within the rig's range with nothing but free voxels before it: a free one
-/// or, if there is none, one in which the arm touches unknown voxels but no occupied one; of several the one
-/// nearest to `from`. Half of them are tried about `from`, the others all over the limits; empty if none will
-/// do. A view does not say that the way there is free: ask for the leg. `from`: as RobotQuery's (asserted to
-/// be as many as joints). About 30 us a posture; `is_ending` is asked before each, and true ends the search
-/// with what was found.
+/// Searches a view for each of the largest pockets. A view is a posture in which the axis of a sensor, or of
+/// one of its zones, meets the pocket's border within the rig's range, with only free voxels before it. A
+/// free posture is preferred; otherwise one in which the arm touches unknown voxels but no occupied one. Of
+/// several the one nearest to `from` is taken; empty if none is suitable. Half of the postures are near
+/// `from`, the others are spread over the limits.
+///
+/// A view does not imply that the way to it is free: query the leg. `from`: as for RobotQuery, one value per
+/// joint (asserted). About 30 us per posture. `is_ending` is called before each one; true ends the search
+/// with the views found so far.
 [[nodiscard]] std::vector<std::optional<PocketView>> find_views(
     const HostRig& rig, const RobotQuery& robot, const FusedMap& map, const UnknownPockets& pockets,
     std::span<const double> from, const PocketViewConfig& config = {},

@@ -11,8 +11,8 @@ namespace {
 constexpr double kPaddingMax_m = 1.0;
 constexpr double kLimitTolerance = 0.005;
 
-/// Whether some joint position moves the capsule: one about the axis of the only joint that turns it stays
-/// where it is.
+/// True for each capsule that some joint position moves. A capsule about the axis of the only joint that
+/// turns it does not move.
 std::vector<bool> moved_by_joints(const RobotModel& robot, const RobotBody& body) {
     constexpr double kAlike_m = 1e-9;
     std::vector<double> position(robot.joint_count(), 0.0);
@@ -21,7 +21,7 @@ std::vector<bool> moved_by_joints(const RobotModel& robot, const RobotBody& body
     std::vector<PosedCapsule> elsewhere;
     robot.forward(position, T_base_link);
     body.pose(T_base_link, at_zero);
-    // No two joints by the same, so that none takes back what another did.
+    // Each joint moves by a different amount, so that no joint cancels another.
     for (std::size_t i = 0; i < position.size(); ++i) position[i] = 0.1 + 0.07 * static_cast<double>(i);
     robot.forward(position, T_base_link);
     body.pose(T_base_link, elsewhere);
@@ -33,7 +33,7 @@ std::vector<bool> moved_by_joints(const RobotModel& robot, const RobotBody& body
     return moved;
 }
 
-/// Those that the rig does not list; a fault if the robot has no such link.
+/// The links without a body that the rig does not list; a fault if the robot has no such link.
 Result<std::vector<LinkId>, RobotQueryFault> unknown_links_of(const HostRig& rig, const RobotModel& robot) {
     std::vector<LinkId> links;
     for (const LinkWithoutBody& without : rig.links_without_body) {
@@ -57,7 +57,7 @@ void take_nearest(const std::optional<double>& found_m, LinkId link, std::option
     nearest_link = link;
 }
 
-/// What is further away than what was found is not looked for.
+/// Distances beyond those found so far are not searched.
 template <class ClearanceOf>
 Result<PostureClearance, RefusedCapsule> least_clearance(std::span<const PosedCapsule> capsules,
                                                          PostureClearance least, const ClearanceOf& of) {
@@ -158,7 +158,7 @@ std::vector<LinkId> RobotQuery::links() const {
 }
 
 double RobotQuery::lever_m(std::span<const double> farthest) const {
-    // How far from its link's origin an end is, is the same in every posture.
+    // The distance of an end from its link's origin is the same in all postures.
     const std::vector<double> zero(robot_.joint_count(), 0.0);
     std::vector<Eigen::Isometry3d> T_base_link(robot_.link_count());
     robot_.forward(zero, T_base_link);

@@ -1,4 +1,4 @@
-// A planner's question about the whole robot: may it stand so, and what is the nearest thing in its way?
+// A planner's query about the whole robot: whether a posture is free, and the nearest obstacle.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,49 +19,50 @@
 
 namespace octoskin {
 
-/// The later one is the worse.
+/// Ordered from best to worst.
 enum class PostureState : std::uint8_t {
     free,
-    stale,  ///< nothing worse, but free space that no sensor has confirmed for `age.stale_after_s`
+    stale,  ///< free, but not confirmed by a sensor for `age.stale_after_s`
     unknown,
     occupied,
 };
 [[nodiscard]] std::string_view name(PostureState state) noexcept;
 
-/// What is in the way of a robot that stands so.
+/// The result for one posture.
 struct PostureAnswer {
     PostureState state = PostureState::free;
-    /// Of the links in that state the one that reaches furthest into it; empty for free.
+    /// The link in that state that reaches furthest into it; empty for free.
     std::optional<LinkId> link;
-    /// The voxel that is nearest to the axis of that link's body, if it is stale the one with the weakest
-    /// evidence; empty for free, outside the octree, and if that link has no body.
+    /// The voxel nearest to the axis of that link's body; for stale the voxel with the weakest evidence.
+    /// Empty for free, outside the octree, and if that link has no body.
     std::optional<VoxelKey> voxel;
 };
 
-/// How far the robot's surface, padding included, is from the nearest voxel; 0 if it touches one. Of the
-/// bodies that are asked about: links without a body may be nearer, and then it is an upper bound.
+/// Distance from the robot's surface, padding included, to the nearest voxel; 0 if it touches one. It covers
+/// the bodies of the query. Links without a body may be nearer; the value is then an upper bound.
 struct PostureClearance {
     std::optional<double> occupied_m;  ///< empty: beyond the reach
     std::optional<double> not_free_m;
-    std::optional<LinkId> occupied_link;  ///< which is that near
+    std::optional<LinkId> occupied_link;  ///< the link with this distance
     std::optional<LinkId> not_free_link;
 };
 
 struct RobotQueryConfig {
     double padding_m = 0.0;  ///< added to the radius of each capsule; 0 to 1 (else `bad_padding`)
-    /// Links that are not asked about, by name.
+    /// Links that the query leaves out, by name.
     std::vector<std::string> links_ignored = {};
-    /// Capsules that no joint moves, such as the base's, are where they are in every posture, and what they
-    /// stand on they touch.
+    /// True: leaves out capsules that no joint moves, such as the base's. They touch the surface they stand
+    /// on in all postures.
     bool ignores_unmoved = true;
-    /// HostRig::certain_body in place of the body: to know what is the robot for sure, not to ask about it.
+    /// True: uses HostRig::certain_body in place of the body. It finds the space that is certainly the robot;
+    /// it is not for queries.
     bool is_of_certain_body = false;
 };
 
 enum class RobotQueryError : std::uint8_t {
-    unknown_link,  ///< `links_ignored` names, or the rig has a body on, a link that the robot does not have
+    unknown_link,  ///< `links_ignored` or the rig names a link that the robot does not have
     bad_padding,
-    no_body,  ///< nothing is left to ask about, and no link is unknown: every answer would be "free"
+    no_body,  ///< no body is left and no link is unknown: all answers would be "free"
 };
 struct RobotQueryFault {
     RobotQueryError error = RobotQueryError::unknown_link;
@@ -69,9 +70,10 @@ struct RobotQueryFault {
 };
 
 enum class PostureError : std::uint8_t {
-    wrong_count,  ///< of joint positions
+    wrong_count,  ///< number of joint positions
     not_finite,
-    outside_limits,  ///< of the joint, by more than 0.005 (rad or m), as joint samples may be
+    outside_limits,  ///< beyond a joint's limits by more than 0.005 (rad or m), the tolerance of joint
+                     ///< samples
     too_far,         ///< a capsule is further than 1000 km from the map's origin
 };
 struct PostureFault {
@@ -79,31 +81,31 @@ struct PostureFault {
     std::size_t joint = 0;
 };
 
-/// The robot's body as the rig has it, and the questions that it puts to a map. Never changes: any thread.
+/// The robot's body from the rig, for queries to a map. Immutable: any thread may use it.
 class RobotQuery {
   public:
     [[nodiscard]] static Result<RobotQuery, RobotQueryFault> build(const HostRig& rig,
                                                                    const RobotModel& robot,
                                                                    const RobotQueryConfig& config = {});
 
-    /// The capsules that are asked about, in the map frame. `position` as RobotModel's. About 2 us.
+    /// The capsules of the query in the map frame. `position` as for RobotModel. About 2 us.
     [[nodiscard]] Result<std::vector<PosedCapsule>, PostureFault> pose(
         std::span<const double> position) const;
     [[nodiscard]] std::optional<PostureFault> fault_of(std::span<const double> position) const noexcept;
-    /// The same of a position that is no fault, or only by its limits.
+    /// The same for a position that is valid, or that is only beyond its limits.
     [[nodiscard]] std::vector<PosedCapsule> posed(std::span<const double> position) const;
-    /// No end of a capsule's axis is ever further from the axis of a joint that turns it: see
+    /// Upper bound of the distance from an end of a capsule's axis to the axis of a joint that turns it: see
     /// RobotModel::levers_m.
     [[nodiscard]] double lever_m(std::span<const double> farthest) const;
 
     [[nodiscard]] const RobotModel& robot() const noexcept { return robot_; }
-    /// May be 0, if the robot has links that are unknown.
+    /// May be 0 if the robot has unknown links.
     [[nodiscard]] std::size_t capsule_count() const noexcept { return capsules_; }
-    /// The links whose bodies are asked about, each once, by LinkId.
+    /// The links whose bodies the query covers, each once, by LinkId.
     [[nodiscard]] std::vector<LinkId> links() const;
-    /// Links that a joint moves, that have a <visual> and no body, and that the rig does not list as such on
-    /// purpose: where they are is not known, so that no posture of this robot is free. Which bodies a
-    /// question leaves out changes nothing about it.
+    /// Links that a joint moves, that have a <visual> but no body, and that the rig does not list as
+    /// intended. Their space is not known, so no posture of this robot is free. Leaving out bodies from a
+    /// query does not change this.
     [[nodiscard]] std::span<const LinkId> unknown_links() const noexcept { return unknown_links_; }
     [[nodiscard]] const Eigen::Isometry3d& T_map_base() const noexcept { return T_map_base_; }
 
@@ -119,33 +121,33 @@ class RobotQuery {
     double padding_m_;
 };
 
-/// What a posture's answer rests on.
+/// The weakest evidence of a posture.
 struct PostureEvidence {
     WeakestEvidence weakest;
-    LinkId link = {};  ///< that touches it; of several the first
+    LinkId link = {};  ///< the link that touches it; of several the first
 };
 
-/// Of capsules that RobotQuery posed, in a map that tells ages; empty of one that does not, and where nothing
-/// known is touched. `than`: of other postures. About 5 us a capsule at 0.04 m.
+/// The weakest evidence of capsules from RobotQuery, in a map with ages. Empty without ages, and if no known
+/// voxel is touched. `than`: the result of other postures. About 5 us per capsule at 0.04 m.
 [[nodiscard]] std::optional<PostureEvidence> weakest_of(const FusedMap& map,
                                                         std::span<const PosedCapsule> capsules,
                                                         std::optional<PostureEvidence> than = {}) noexcept;
 
-/// Of capsules that `robot` posed; too large a robot is refused. An occupied voxel is occupied however old
-/// its evidence is. Unknown at best if the robot has a link that is unknown: that is then the answer's, if
-/// none of the capsules touches anything unknown or occupied. About 4 us a capsule at 0.04 m.
+/// The result for capsules from `robot`; a capsule that is too large is refused. The age of evidence does not
+/// change an occupied voxel. If the robot has an unknown link, the answer is unknown at best, with that link
+/// if no capsule touches an unknown or occupied voxel. About 4 us per capsule at 0.04 m.
 [[nodiscard]] Result<PostureAnswer, RefusedCapsule> worst_of(const RobotQuery& robot, const FusedMap& map,
                                                              std::span<const PosedCapsule> capsules) noexcept;
-/// Up to `reach_m` from the surface of each capsule. `than`: of other postures; the answer is the least of
-/// all, and what is further away is not looked for.
+/// The least clearance up to `reach_m` from the surface of each capsule. `than`: the result of other
+/// postures; the answer is the least of all, and greater distances are not searched.
 [[nodiscard]] Result<PostureClearance, RefusedCapsule> clearance_of(
     const FusedMap& map, std::span<const PosedCapsule> capsules, double reach_m,
     const PostureClearance& than = {}) noexcept;
-/// The same of a field's map.
+/// The same for a field's map.
 [[nodiscard]] Result<PostureClearance, RefusedCapsule> clearance_of(
     const DistanceField& field, std::span<const PosedCapsule> capsules, double reach_m,
     const PostureClearance& than = {}) noexcept;
-/// As far as it tells.
+/// The same up to the field's limit.
 [[nodiscard]] Result<PostureClearance, RefusedCapsule> clearance_of(
     const DistanceField& field, std::span<const PosedCapsule> capsules) noexcept;
 

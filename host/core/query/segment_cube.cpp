@@ -11,7 +11,7 @@ double inverse_of(double value) {
     return value != 0.0 ? 1.0 / value : 0.0;
 }
 
-/// How far each coordinate lies beyond the cube about 0.
+/// Distance of each coordinate beyond a cube about 0.
 Eigen::Vector3d beyond(const Eigen::Vector3d& point, double half_edge) {
     return point - point.cwiseMax(-half_edge).cwiseMin(half_edge);
 }
@@ -29,7 +29,7 @@ SegmentToCubes::SegmentToCubes(const Eigen::Vector3d& p_a, const Eigen::Vector3d
 double SegmentToCubes::distance(const Eigen::Vector3d& centre, double half_edge) const noexcept {
     const Eigen::Vector3d from = p_a_ - centre;
     const auto distance_at = [&](double t) { return beyond(from + t * axis_, half_edge).norm(); };
-    // Half the derivative of the squared distance: continuous, linear in pieces, never falling.
+    // Half the derivative of the squared distance: continuous, piecewise linear, never decreasing.
     const auto slope_at = [&](double t) { return beyond(from + t * axis_, half_edge).dot(axis_); };
     double lower = 0.0;
     double upper = 1.0;

@@ -12,11 +12,12 @@
 namespace octoskin {
 namespace {
 
-/// Whether the search is to end, which is asked for each voxel, and seldom passed on.
+/// Checks whether the search is to end. Called for each voxel, it calls `is_ending` only every few thousand
+/// times.
 class End {
   public:
     explicit End(const std::function<bool()>& is_ending) : is_ending_(is_ending) {}
-    /// Once it is so it stays so.
+    /// Once true, it stays true.
     bool is_here() {
         constexpr std::size_t kAtOnce = 4096;
         if (!is_here_ && ++asked_ % kAtOnce == 0) is_here_ = is_ending_();
@@ -31,7 +32,7 @@ class End {
 
 enum class Cell : std::uint8_t { outside, known, free, unknown, taken };
 
-/// The region's box, with a layer of `outside` about it, so that each voxel of it has six neighbours.
+/// The region's box with a layer of `outside` around it, so that each of its voxels has six neighbours.
 class Grid {
   public:
     Grid(const FusedMap& map, const PocketRegion& region, VoxelKey lowest, VoxelKey highest, End& end)
@@ -80,11 +81,11 @@ struct Component {
     std::vector<std::size_t> border;
 };
 
-/// Takes all that is connected with `first` out of the grid.
+/// Removes the voxels connected with `first` from the grid.
 Component take_component(Grid& grid, std::size_t first, End& end) {
     Component component{{first}, {}};
     grid[first] = Cell::taken;
-    // Bounded by the grid: each is taken once.
+    // Bounded by the grid: each voxel is taken once.
     for (std::size_t i = 0; i < component.cells.size() && !end.is_here(); ++i) {
         bool is_border = false;
         for (const std::size_t other : grid.beside(component.cells[i])) {
@@ -126,7 +127,7 @@ std::optional<Corners> corners_of(const FusedMap& map, const PocketRegion& regio
     const auto first = map.key_of({lowest.x(), lowest.y(), std::max(lowest.z(), region.z_min_m)});
     const auto last = map.key_of(region.centre.array() + region.radius_m);
     if (!first || !last || first->z > last->z) return std::nullopt;
-    // Products of three numbers below 2^17.
+    // A product of three numbers below 2^17.
     const std::uint64_t voxels =
         (last->x - first->x + 3ULL) * (last->y - first->y + 3ULL) * (last->z - first->z + 3ULL);
     if (voxels > UnknownPockets::kVoxelsMax) return std::nullopt;

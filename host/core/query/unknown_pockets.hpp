@@ -1,4 +1,4 @@
-// Where, about the robot, nobody has looked: connected unknown voxels with free space beside them.
+// Finds pockets of unmeasured space near the robot: connected unknown voxels next to free space.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,36 +19,36 @@ struct PocketRegion {
     double z_min_m = 0.0;
 };
 
-/// Of a point, map frame.
+/// True if the point is in the region. `p_map`: map frame, metres.
 [[nodiscard]] inline bool is_within(const PocketRegion& region, const Eigen::Vector3d& p_map) noexcept {
     return (p_map - region.centre).norm() <= region.radius_m && p_map.z() >= region.z_min_m;
 }
 
 struct UnknownPocket {
     std::size_t voxels = 0;
-    std::size_t border_voxels = 0;  ///< that have a free one beside a face
+    std::size_t border_voxels = 0;  ///< with a free voxel beside a face
     double volume_m3 = 0.0;
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its voxels, map frame
     VoxelKey nearest_border;                           ///< to the centre
 };
 
-/// The pockets of a region, by size, and which voxel is the border of which.
+/// The pockets of a region, by size, and the pocket of each border voxel.
 class UnknownPockets {
   public:
     static constexpr std::size_t kVoxelsMax = std::size_t{1} << 24U;
 
-    /// Voxels are connected by their faces, and belong to the region if their centres do. Pockets of fewer
-    /// than `voxels_min` voxels, and those that no free voxel borders, are left out. Empty: the region is not
-    /// finite, reaches out of the octree, or its box has more than kVoxelsMax voxels. About 30 ns a voxel of
-    /// the box, and for as long as it works a byte and up to 16 more if it is unknown; throws std::bad_alloc.
-    /// `is_ending` is asked each few thousand voxels, and true ends it: empty, too.
+    /// Voxels are connected through faces, and belong to the region if their centres do. Pockets of fewer
+    /// than `voxels_min` voxels, and those without a free neighbour, are left out. Empty: the region is not
+    /// finite, reaches out of the octree, or its box has more than kVoxelsMax voxels; or `is_ending`, which
+    /// is called every few thousand voxels, returned true. About 30 ns per voxel of the box. Working memory:
+    /// one byte per voxel, and up to 16 more per unknown voxel. Throws std::bad_alloc.
     [[nodiscard]] static std::optional<UnknownPockets> find(
         const FusedMap& map, const PocketRegion& region, std::size_t voxels_min,
         const std::function<bool()>& is_ending = [] { return false; });
 
-    /// The largest first; of equals the one that comes first along z, y and x.
+    /// The largest first; of equals the first one along z, y and x.
     [[nodiscard]] const std::vector<UnknownPocket>& pockets() const noexcept { return pockets_; }
-    /// The pocket whose border this voxel is.
+    /// Index of the pocket whose border contains this voxel.
     [[nodiscard]] std::optional<std::size_t> border_of(VoxelKey key) const noexcept;
     [[nodiscard]] std::size_t unknown_voxels() const noexcept { return unknown_voxels_; }
     [[nodiscard]] std::size_t region_voxels() const noexcept { return region_voxels_; }

@@ -1,5 +1,5 @@
-// The rig as the host core needs it: plain values, no file, no YAML. host/io/rig makes one from a rig file;
-// tests write one by hand.
+// The rig as plain values, without files and YAML. host/io/rig creates it from a rig file; tests fill it in
+// directly.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,9 +20,9 @@ namespace octoskin {
 /// One region of interest of a sensor, in the order of the zone index on the wire.
 struct HostZone {
     double offset_m = 0.0;  ///< added to every valid range of this zone
-    /// Where the zone looks: unit vector in the sensor's frame. One zone over the whole array looks along +z.
+    /// Axis of the zone: unit vector in the sensor's frame. A zone over the whole array has +z.
     Eigen::Vector3d direction_sensor = Eigen::Vector3d::UnitZ();
-    BeamOptics optics = {};  ///< about that direction
+    BeamOptics optics = {};  ///< about `direction_sensor`
 };
 
 struct HostSensor {
@@ -32,19 +32,19 @@ struct HostSensor {
     Microseconds timing_budget{20'000};
     Microseconds period{33'000};  ///< inter-measurement period as configured
     std::vector<HostZone> zones = {HostZone{}};
-    double reflex_below_m = 0.0;  ///< a hit closer than this makes its node send REFLEX; 0: never
+    double reflex_below_m = 0.0;  ///< a hit closer than this makes the node send REFLEX; 0: never
 };
 
 struct HostNode {
     wire::NodeId node_id = 0;
     std::string name;
-    std::uint32_t node_hash = 0;  ///< the node must report exactly this one before its ranges count
-    std::optional<std::uint32_t> pinned_build_id;  ///< refused with any other, if given
-    std::vector<HostSensor> sensors;               ///< in the order of the local index on the wire
+    std::uint32_t node_hash = 0;  ///< the node must report exactly this hash before its ranges are used
+    std::optional<std::uint32_t> pinned_build_id;  ///< if set, any other build is refused
+    std::vector<HostSensor> sensors;               ///< in the order of the sensor index on the wire
     std::uint8_t aux_every = 0;                    ///< RANGE_AUX with every n-th reading; 0: never
 };
 
-/// Who sends joint states. It answers SYNC as every node does; it need not be one of `HostRig::nodes`.
+/// The sender of joint states. It answers SYNC as every node does. It need not be one of `HostRig::nodes`.
 struct HostJointSource {
     wire::NodeId node_id = 0;
     std::vector<std::string> joints;  ///< URDF joint names in the order on the wire, 1..7
@@ -69,27 +69,27 @@ struct LinkCapsule {
     double radius_m = 0.0;
 };
 
-/// A link that a joint moves and that has a <visual>, but no body that covers a useful part of it, nor has a
-/// link that is rigidly attached to it (`rig::bodyless_links`). Nothing of it is taken out of images and
-/// ranges, and no answer about the robot's body tells of it.
+/// A link that a joint moves and that has a <visual>, but no body that covers a useful part of it; nor has a
+/// link that is rigidly attached to it (`rig::bodyless_links`). It is not removed from images and ranges, and
+/// no query about the robot's body covers it.
 struct LinkWithoutBody {
     std::string link;
-    bool is_listed = false;  ///< the rig says that it is so on purpose (`links_without_body`)
+    bool is_listed = false;  ///< listed in the rig as intended (`links_without_body`)
 };
 
-/// A link that a joint moves and that has a <visual>, but no capsule of its own: the body of a link that is
-/// rigidly attached to it is taken for its body.
+/// A link that a joint moves and that has a <visual>, but no capsule of its own: it uses the body of a link
+/// that is rigidly attached to it.
 struct LinkWithBorrowedBody {
     std::string link;
     std::string body_of;
 };
 
-/// The limits that acceptance applies to every range.
+/// The limits that each range must meet to be accepted.
 struct HostRangeLimits {
     double min_m = 0.04;
     double max_m = 4.0;
     double sigma_max_m = 0.2;
-    /// Of a capture time: the clock map's error bound and the node's own together.
+    /// Limit of a capture time's error: the clock map's error bound plus the node's own.
     Nanoseconds time_uncertainty_max{5'000'000};
 };
 
@@ -101,11 +101,12 @@ struct HostRig {
     HostJointSource joints;
     std::optional<HostCamera> camera;
     std::vector<LinkCapsule> body;
-    /// Where nothing can be but the robot: without padding, and within each element of its description.
+    /// Space that only the robot can occupy: without padding, and inside each element of the robot
+    /// description.
     std::vector<LinkCapsule> certain_body;
     std::vector<LinkWithoutBody> links_without_body;             ///< by name
     std::vector<LinkWithBorrowedBody> links_with_borrowed_body;  ///< by name
-    /// Links left out when a sensor predicts where its own beam meets the robot: its mount.
+    /// Links that are ignored when a sensor's self-hit is predicted: its mount.
     std::vector<std::string> links_ignored_by_sensors;
     double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot
     double range_self_margin_m = 0.12;  ///< ranges beyond (predicted self-hit - this) are the robot

@@ -1,4 +1,4 @@
-// The key and the form of all that is kept for each sensor.
+// The key and the container for data that exist for each sensor.
 #pragma once
 
 #include <compare>
@@ -14,7 +14,7 @@ struct SensorId {
     friend constexpr auto operator<=>(const SensorId&, const SensorId&) = default;
 };
 
-/// In the order of the nodes' IDs, and of the indices on each node.
+/// Ordered by node id, then by sensor index.
 template <class T>
 using SensorTable = std::map<SensorId, T>;
 

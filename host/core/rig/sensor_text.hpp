@@ -1,4 +1,4 @@
-// How a sensor is called wherever a person reads of it.
+// The name of a sensor in texts for the user.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace octoskin {
     return "node " + std::to_string(node) + " '" + std::string(node_name) + "' sensor " +
            std::to_string(sensor) + " '" + std::string(sensor_name) + "'";
 }
-/// The same of a sensor that `node` has.
+/// The same for a sensor of `node`.
 [[nodiscard]] inline std::string sensor_text(const HostNode& node, std::size_t sensor) {
     return sensor_text(node.node_id, node.name, sensor, node.sensors.at(sensor).name);
 }

@@ -61,9 +61,9 @@ constexpr double kPoint_m = 1e-6;
 RoughCapsule::RoughCapsule(const PosedCapsule& capsule, double radius_m)
     : a(capsule.p_a.cast<float>()), axis((capsule.p_b - capsule.p_a).cast<float>()) {
     const Eigen::Vector3d along = capsule.p_b - capsule.p_a;
-    // Which way something shorter lies does not matter.
+    // The direction of a shorter axis does not matter.
     if (along.norm() > kPoint_m) per_length = (along / along.squaredNorm()).cast<float>();
-    // A dozen roundings of 6e-8 of numbers that near the surface are no larger than this.
+    // About a dozen roundings of 6e-8 each, of numbers that near the surface are at most this large.
     const double extent_m = capsule.p_a.norm() + capsule.p_b.norm() + radius_m;
     const double unsure_m = kPoint_m + 1e-5 * extent_m;
     const double inner_m = radius_m - unsure_m;

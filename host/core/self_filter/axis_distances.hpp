@@ -1,4 +1,4 @@
-// How far the pixels of a row are from a capsule's axis, in single precision: several at once.
+// Distances of a row's pixels from a capsule's axis, in single precision, several pixels at a time.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,8 @@
 
 namespace octoskin {
 
-/// A capsule with its margin, in the camera's optical frame. Of nearly every pixel single precision tells for
-/// certain whether its point is in it.
+/// A capsule with its margin, in the camera's optical frame. For nearly every pixel, single precision is
+/// sufficient to decide whether its point is inside.
 struct RoughCapsule {
     /// `radius_m`: with the margin. All finite.
     RoughCapsule(const PosedCapsule& capsule, double radius_m);
@@ -18,11 +18,11 @@ struct RoughCapsule {
     Eigen::Vector3f a;
     Eigen::Vector3f axis;                                  ///< from a to the other end
     Eigen::Vector3f per_length = Eigen::Vector3f::Zero();  ///< axis / |axis|^2: 1 at the other end
-    float inside_m2 = 0.0F;   ///< a point whose squared distance to the axis is no more is in it for certain
-    float outside_m2 = 0.0F;  ///< one whose is more is not
+    float inside_m2 = 0.0F;   ///< a point with at most this squared distance to the axis is certainly inside
+    float outside_m2 = 0.0F;  ///< a point with more than this is certainly outside
 };
 
-/// Pixels of a row side by side, with room for as many more as are worked on at once.
+/// Arrays for the pixels of a row, with padding for one vector.
 struct RowOfPixels {
     explicit RowOfPixels(std::size_t width);
     std::vector<float> x;  ///< slopes of the rays
@@ -32,12 +32,12 @@ struct RowOfPixels {
 };
 
 struct RowOutcome {
-    std::size_t removed = 0;  ///< pixels certainly in the capsule, now NaN in `depth_m`
-    bool is_unsure = false;   ///< whether there are others whose `squared_m2` lies between the two bounds
+    std::size_t removed = 0;  ///< pixels certainly in the capsule, set to NaN in `depth_m`
+    bool is_unsure = false;   ///< other pixels have a `squared_m2` between the two bounds
 };
 
-/// Of the first `count` pixels takes out those that are in the capsule for certain, and fills `squared_m2`:
-/// the squared distance of each one's point to the axis, NaN without a value. About 0.5 ns a pixel with AVX2.
+/// Removes those of the first `count` pixels that are certainly in the capsule. Fills `squared_m2` with the
+/// squared distance of each pixel's point to the axis, NaN without a value. About 0.5 ns per pixel with AVX2.
 RowOutcome remove_certain(const RoughCapsule& capsule, std::size_t count, RowOfPixels& row);
 
 }  // namespace octoskin

@@ -22,8 +22,8 @@ struct Interval {
     double high = 0.0;
 };
 
-/// The slopes x / z under which a disc of `radius` about (x, z) is seen from the origin: its two tangents.
-/// Empty if the disc reaches to the plane z = 0 or behind it, where there is no bound.
+/// The slopes x / z of the two tangents from the origin to a disc of `radius` about (x, z). Empty if the disc
+/// reaches the plane z = 0 or lies behind it: there is no bound then.
 std::optional<Interval> tangent_slopes(double x, double z, double radius) {
     const double denominator = z * z - radius * radius;
     if (!(z > radius) || !(denominator > 0.0)) return std::nullopt;
@@ -31,7 +31,7 @@ std::optional<Interval> tangent_slopes(double x, double z, double radius) {
     return Interval{(x * z - root) / denominator, (x * z + root) / denominator};
 }
 
-/// The bounds of both ends' discs: what lies between the ends projects between their projections.
+/// The bounds of the discs at both ends. All points between the ends project between their projections.
 std::optional<Interval> slopes_of(const PosedCapsule& capsule, double radius_m, Eigen::Index axis) {
     const auto a = tangent_slopes(capsule.p_a[axis], capsule.p_a.z(), radius_m);
     const auto b = tangent_slopes(capsule.p_b[axis], capsule.p_b.z(), radius_m);
@@ -40,7 +40,7 @@ std::optional<Interval> slopes_of(const PosedCapsule& capsule, double radius_m, 
 }
 
 PixelRectangle rectangle_of(const PosedCapsule& capsule, double radius_m, const PixelRays& pixel_rays) {
-    // The tangents are exact: a pixel on one must not be lost to rounding.
+    // The tangents are exact; a pixel on a tangent must not be lost by rounding.
     constexpr double kSlack = 1e-9;
     const auto x = slopes_of(capsule, radius_m, 0);
     const auto y = slopes_of(capsule, radius_m, 1);
@@ -49,19 +49,19 @@ PixelRectangle rectangle_of(const PosedCapsule& capsule, double radius_m, const 
             pixel_rays.rows(y->low - kSlack, y->high + kSlack)};
 }
 
-/// Depths that points of the capsule can have.
+/// The range of depths of the capsule's points.
 Interval depths_of(const PosedCapsule& capsule, double radius_m) {
     const auto [low, high] = std::minmax(capsule.p_a.z(), capsule.p_b.z());
     return {low - radius_m, high + radius_m};
 }
 
-/// A row's pixels within the capsule's columns.
+/// Copies a row's pixels within the capsule's columns.
 void take_row(const PixelRays& pixel_rays, PixelSpan columns, std::uint32_t v, const float* depth_m,
               RowOfPixels& row) {
     std::copy(depth_m + columns.begin, depth_m + columns.end, row.depth_m.begin());
     const auto count = static_cast<std::ptrdiff_t>(columns.end - columns.begin);
     if (pixel_rays.camera().lens.is_none()) {
-        // Of the x there is one for all rows; who removes a capsule has taken it.
+        // x is the same in all rows; the caller has copied it.
         std::fill(row.y.begin(), row.y.begin() + count, static_cast<float>(pixel_rays.at(0, v).y));
         return;
     }
@@ -81,7 +81,7 @@ std::size_t remove_capsule(DepthImage& image, const PixelRays& pixel_rays, const
     if (begin == end) return 0;
     const Interval depths = depths_of(capsule, radius_m);
     const RoughCapsule rough(capsule, radius_m);
-    /// Where single precision does not tell.
+    /// Exact test, for pixels that single precision cannot decide.
     const auto is_robot = [&](std::uint32_t u, std::uint32_t v, double z) {
         if (!(z >= depths.low && z <= depths.high)) return false;
         const RaySlope ray = pixel_rays.at(u, v);

@@ -1,4 +1,4 @@
-// Takes the robot out of a depth image.
+// Removes the robot from a depth image.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace octoskin {
 
-/// Sets to NaN every pixel whose point lies within `margin_m` of a capsule's surface or inside it, and
-/// returns how many. `body_camera`: capsules in the camera's optical frame (z forward), posed at the frame's
-/// capture time. If any of them, or the margin, is not finite, every pixel goes: nobody knows where the robot
-/// is. The image must be of the camera's size (asserted). Only pixels inside a capsule's bounds are
-/// looked at: below 1 ms for 512 x 424.
+/// Sets to NaN each pixel whose point lies inside a capsule or within `margin_m` of its surface. Returns the
+/// number of pixels removed. `body_camera`: capsules in the camera's optical frame (z forward), posed at the
+/// frame's capture time. If one of them or the margin is not finite, the robot's position is unknown and all
+/// pixels are removed. The image must have the camera's size (asserted). Only pixels inside a capsule's
+/// bounds are tested: below 1 ms for 512 x 424.
 std::size_t remove_robot(DepthImage& image, const PixelRays& pixel_rays,
                          std::span<const PosedCapsule> body_camera, double margin_m);
 

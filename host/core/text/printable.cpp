@@ -29,13 +29,13 @@ void append_number(std::string& shown, char kind, unsigned number, int digits) {
         shown += kDigits.at(number >> static_cast<unsigned>(4 * digit) & 0xFU);
 }
 
-/// The first character of a text, or a byte that is none.
+/// The first character of a text, or a single byte that is not part of valid UTF-8.
 struct Sequence {
     std::string_view bytes;
     std::optional<char32_t> character;
 };
 
-/// Takes it from the text, which has one.
+/// Removes the first character from the text, which must not be empty.
 Sequence take_sequence(std::string_view& text) {
     const std::size_t length = utf8_length(text);
     const std::string_view bytes = text.substr(0, length == 0 ? 1 : length);
@@ -77,7 +77,7 @@ std::string printable_json(std::string_view json) {
     shown.reserve(json.size());
     while (!json.empty()) {
         const auto [bytes, character] = take_sequence(json);
-        // Those below 0x20 are escaped already where they are part of a string.
+        // JSON strings already escape the characters below 0x20.
         const bool is_shown_by_number =
             character && *character >= 0x7F && (is_control(*character) || is_turning_or_ending(*character));
         if (is_shown_by_number) {

@@ -1,5 +1,5 @@
-// Text for a terminal or a log. Part of it may be somebody else's: a key of a file, a file's name, what a
-// robot's link is called. A terminal obeys what some characters order.
+// Makes text safe for a terminal or a log. Parts of a text can come from foreign files: keys, file names,
+// link names. A terminal executes control characters in them.
 #pragma once
 
 #include <string>
@@ -7,16 +7,16 @@
 
 namespace octoskin {
 
-/// One line. As it was but for what is no mark on the screen, which is shown by its number: the control
-/// characters below 0x20, 0x7f and 0x80 to 0x9f as "\x1b" and the like, those that turn the direction of
-/// writing and the two that end a line or paragraph as "\u202e", a byte that is no UTF-8 as "\xff". O(bytes).
+/// One line. Characters without a visible form are replaced by their number: control characters below 0x20,
+/// 0x7f and 0x80 to 0x9f as "\x1b"; characters that change the writing direction and the two that end a line
+/// or paragraph as "\u202e"; bytes that are not valid UTF-8 as "\xff". All else is unchanged. O(bytes).
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// The same for text of our own making in several lines: line ends and tabs stay.
+/// The same for the program's own text of several lines: line ends and tabs remain.
 [[nodiscard]] std::string printable_lines(std::string_view text);
 
-/// JSON that reads as the same: what printable() shows by its number is written as JSON's escape ("\\u202e").
-/// Of JSON in UTF-8, as nlohmann writes it; line ends between values stay. O(bytes).
+/// Equivalent JSON: characters that printable() replaces by their number become JSON escapes ("\\u202e").
+/// Input: JSON in UTF-8 as nlohmann writes it. Line ends between values remain. O(bytes).
 [[nodiscard]] std::string printable_json(std::string_view json);
 
 }  // namespace octoskin

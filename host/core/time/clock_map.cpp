@@ -8,15 +8,15 @@
 namespace octoskin {
 namespace {
 
-/// Longer than any exchange takes to settle, and far below the 35 minutes of `elapsed()`: after such a gap
-/// nothing of the old line is worth comparing with.
+/// Longer than any exchange takes to settle, and far below the 35 minutes of `elapsed()`. After such a gap
+/// the old line is of no use for a comparison.
 constexpr Nanoseconds kForgetAfter{60'000'000'000};
 /// Points kept beyond the window, for instants before the newest exchanges have settled.
 constexpr std::size_t kPointsSettling = 8;
 
 }  // namespace
 
-/// Least squares, with everything relative to the newest point: nanoseconds stay exact in a double.
+/// Least squares relative to the newest point: nanoseconds stay exact in a double.
 struct ClockMap::Line {
     std::span<const Point> points;
     double node_mean_us = 0.0;  ///< of node_us - origin
@@ -60,9 +60,9 @@ struct ClockMap::Line {
                std::llround((since_ns - lag_mean_ns + slope * node_mean_us) / (1000.0 + slope));
     }
 
-    /// The estimate is a weighted sum of the points, and exact on straight lines. So its error is at most the
-    /// same sum, with absolute weights, of each point's own error and of how far a wandering clock can have
-    /// left its tangent between the point and the instant.
+    /// The estimate is a weighted sum of the points and exact on straight lines. So its error is at most the
+    /// sum, with absolute weights, of two terms per point: the point's own error, and the distance by which a
+    /// wandering clock can leave its tangent between the point and the instant.
     [[nodiscard]] Nanoseconds error_bound(std::int64_t node_us, const ClockMapConfig& config) const {
         const double x_us = static_cast<double>(node_us - origin().node_us);
         double bound_ns = 0.0;
@@ -152,7 +152,7 @@ std::optional<ClockFault> ClockMap::fault(HostTime now) const {
 }
 
 std::int64_t ClockMap::unwrap(const wire::TimeResidue& residue, HostTime now) const {
-    // The span divides 2^32, and points_ is congruent to the counter modulo 2^32.
+    // The span divides 2^32, and node times in points_ are congruent to the counter modulo 2^32.
     assert(residue.span_us > 0 && (residue.span_us & (residue.span_us - 1)) == 0);
     const std::int64_t latest_us = line(points_.size()).node_us_at(now) + config_.now_slack.count();
     const std::int64_t span_us = residue.span_us;

@@ -1,5 +1,5 @@
-// The clock of another host that sends SYNC, for one that only listens: how far it is ahead of this
-// machine's.
+// Estimates the clock of another host that sends SYNC, for a host that only listens: its lead over this
+// machine's clock.
 #pragma once
 
 #include <cstdint>
@@ -11,30 +11,30 @@
 
 namespace octoskin {
 
-/// Each exchange tells once how far the other clock is ahead. No single one is believed: a SYNC may be
-/// stamped late here, a FOLLOW_UP may be wrong. The median of the last kKept is taken once kAgreeing of them
-/// are within kAgreement of it; while the newest is not, the other clock may just have been set, and nothing
-/// is told until the next ones decide.
+/// Each exchange gives one measurement of the other clock's lead. A single measurement is not used: a SYNC
+/// may get a late time stamp here, and a FOLLOW_UP may be wrong. The median of the last kKept measurements is
+/// used once kAgreeing of them are within kAgreement of it. If the newest one is not, the other clock may
+/// have been set; there is no result until the next ones decide.
 class ForeignClock {
   public:
     static constexpr std::size_t kKept = 5;
     static constexpr std::size_t kAgreeing = 3;
-    /// Two crystals of +-100 ppm drift 0.8 ms apart over five exchanges; the rest is jitter of stamps.
+    /// Two crystals of +-100 ppm drift apart by 0.8 ms over five exchanges; the rest is jitter of time
+    /// stamps.
     static constexpr Nanoseconds kAgreement{2'000'000};
-    /// After so long without an exchange the crystals may be 1 ms apart: nothing is told.
+    /// After this long without an exchange the crystals may be 1 ms apart: there is no result.
     static constexpr Nanoseconds kSilenceMax{5'000'000'000};
 
-    /// A SYNC of another host was on the bus, its end at `heard` on this machine's clock.
+    /// A SYNC of another host was on the bus. Its end was at `heard` on this machine's clock.
     void on_sync(std::uint8_t sequence, HostTime heard) noexcept { open_ = {sequence, heard}; }
-    /// One that does not belong to the newest SYNC, or is the second that does, tells nothing.
+    /// Ignores a FOLLOW_UP that does not belong to the newest SYNC, and a second one for the same SYNC.
     void on_follow_up(const wire::FollowUp& follow_up);
 
-    /// Its time less this machine's, from the median exchange: the crystals' drift since then is at most
-    /// 0.4 ms. Empty while unknown
-    /// or in doubt.
+    /// The other clock's time less this machine's, from the median exchange. The crystals' drift since then
+    /// is at most 0.4 ms. Empty while unknown or in doubt.
     [[nodiscard]] std::optional<Nanoseconds> ahead(HostTime now) const;
-    /// Exchanges that disagreed with what was settled. Those of a clock that was set are among them: the
-    /// first ones, until enough agree.
+    /// Number of exchanges that disagreed with the settled value. After the other clock was set this includes
+    /// the first exchanges, until enough of them agree.
     [[nodiscard]] std::uint64_t outliers() const noexcept { return outliers_; }
 
   private:
@@ -48,9 +48,9 @@ class ForeignClock {
     void settle();
 
     std::optional<Open> open_;
-    std::deque<Nanoseconds> told_;  ///< the last kKept
+    std::deque<Nanoseconds> told_;  ///< the last kKept measurements
     std::optional<Nanoseconds> settled_;
-    HostTime newest_;  ///< when the newest exchange was heard here
+    HostTime newest_;  ///< time of the newest exchange on this machine's clock
     std::uint64_t outliers_ = 0;
 };
 

@@ -6,10 +6,11 @@
 namespace octoskin {
 namespace {
 
-/// A FOLLOW_UP completes its SYNC before the next one, a second later, replaces it.
+/// A FOLLOW_UP completes its SYNC before the next SYNC replaces it, a second later.
 constexpr Nanoseconds kExchangeMax{2'000'000'000};
 
-/// Differences of such stamps, and host times of 48 bits of microseconds on top, stay within 63 bits.
+/// Bounds a time stamp, so that differences of time stamps, with host times of 48 bits of microseconds added,
+/// stay within 63 bits.
 WallTime bounded(WallTime stamp) {
     return {std::clamp(stamp.ns, std::int64_t{0}, std::int64_t{1} << 62)};
 }
@@ -51,8 +52,9 @@ void HostClockEstimate::accept(WallTime stamp) {
 
 void HostClockEstimate::settle_jump() {
     const bool is_back = jump_->newest < *stamp_max_;
-    // A step back of less than the last gap between two stamps looks the same. It is below ahead_tolerance,
-    // so that no range is taken for one of another turn, and the next exchange sees it.
+    // A step back by less than the last gap between two time stamps looks the same. It is below
+    // ahead_tolerance, so no range gets a wrong turn of its time field, and the next exchange detects the
+    // step.
     const bool had_run_ahead = is_back && stamp_before_ && follows(*stamp_before_, jump_->first);
     if (had_run_ahead) {
         ++stamps_ignored_;
@@ -71,7 +73,8 @@ bool HostClockEstimate::is_discredited(WallTime sync_stamp) const {
         return false;
     }
     if (jump_) {
-        // The SYNC may be the first to tell the new time, or the one whose stamp ran ahead of all others.
+        // The SYNC may be the first frame with the new time, or the frame whose time stamp ran ahead of all
+        // others.
         return jump_->newest < *stamp_max_ && sync_stamp == *stamp_max_;
     }
     return sync_stamp > *stamp_max_ || stamp_max_->ns - sync_stamp.ns > kExchangeMax.count();

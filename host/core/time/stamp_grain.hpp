@@ -1,4 +1,5 @@
-// How coarse the receive stamps of a log are: adapters on a serial line hand frames over in batches.
+// Measures how coarse the receive time stamps of a log are: adapters on a serial line deliver frames in
+// batches.
 #pragma once
 
 #include <array>
@@ -10,27 +11,27 @@
 
 namespace octoskin {
 
-/// Two frames of a bus are at least 47 us apart, so stamps with microseconds differ. Where one frame in ten
-/// and more has the stamp of the one before, stamps are those of batches, or were rounded: each is off by up
-/// to the distance between two batches. A stamp is never taken for a time that places a measurement
-/// (ClockMap); it only says which of several readings of a wrapping field is meant.
+/// Two frames of a bus are at least 47 us apart, so time stamps with microseconds differ. If at least one
+/// frame in ten has the same time stamp as the one before, time stamps belong to batches or are rounded: each
+/// is wrong by up to the distance between two batches. A time stamp never places a measurement (ClockMap); it
+/// only selects between several readings of a wrapping field.
 class StampGrain {
   public:
     static constexpr std::uint64_t kFramesEnough = 1000;
-    /// Within what is always allowed for (HostClockConfig::back_tolerance).
+    /// Within the tolerance that always applies (HostClockConfig::back_tolerance).
     static constexpr Nanoseconds kHarmless{5'000'000};
-    /// "Now" may be off by so much and still tell which turn of a range's time field is meant, if the stamps
-    /// do not jump by over kAheadMax besides: 262 ms of the field, less 100 ms between a range's window and
-    /// the end of its age limit, less twice (5 ms + this).
+    /// "Now" may be wrong by this much and still select the right turn of a range's time field, if the time
+    /// stamps do not also jump by over kAheadMax: 262 ms of the field, less 100 ms between a range's window
+    /// and the end of its age limit, less twice (5 ms + this).
     static constexpr Nanoseconds kBridgedMax{16'000'000};
     static constexpr Nanoseconds kAheadMax{120'000'000};
 
-    /// Stamps of one interface, in the order of arrival.
+    /// Takes the time stamps of one interface, in the order of arrival.
     void take(WallTime stamp) noexcept;
     [[nodiscard]] bool has_enough() const noexcept { return frames_ >= kFramesEnough; }
 
-    /// The distance that nine in ten pairs of neighbouring batches keep at most, rounded up to milliseconds;
-    /// 0 where stamps are each frame's own, or within kHarmless. At most 2 s.
+    /// The distance within which nine in ten pairs of neighbouring batches lie, rounded up to milliseconds. 0
+    /// if each frame has its own time stamp, or if the distance is within kHarmless. At most 2 s.
     [[nodiscard]] Nanoseconds grain() const noexcept;
 
   private:
@@ -38,11 +39,11 @@ class StampGrain {
 
     std::optional<WallTime> newest_;
     std::uint64_t frames_ = 0;
-    std::uint64_t equal_ = 0;                       ///< frames with the stamp of the one before
-    std::array<std::uint32_t, kMsMax + 1> gaps_{};  ///< between batches, by milliseconds, the last: and more
+    std::uint64_t equal_ = 0;                       ///< frames with the same time stamp as the one before
+    std::array<std::uint32_t, kMsMax + 1> gaps_{};  ///< between batches, by milliseconds; the last: and more
 };
 
-/// For a person: what stamps of this grain mean for a replay, and what mends them; empty for 0.
+/// Text for the user: the effect of time stamps of this grain on a replay, and the remedy; empty for 0.
 [[nodiscard]] std::optional<std::string> describe_stamps(Nanoseconds grain);
 
 }  // namespace octoskin

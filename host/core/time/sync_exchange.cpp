@@ -35,7 +35,7 @@ Result<SyncStamp, SyncFault> SyncExchange::on_follow_up(const wire::FollowUp& fo
     if (host_) {
         return unexpected(SyncFault::repeated);
     }
-    // 48 bits of microseconds are 8.9 years: times 1000 they stay far below 2^63.
+    // 48 bits of microseconds are 8.9 years; times 1000 they stay far below 2^63.
     host_ = HostTime{static_cast<std::int64_t>(follow_up.host_time_us) * 1000};
     return SyncStamp{*host_, stamp_};
 }

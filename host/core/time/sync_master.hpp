@@ -1,5 +1,5 @@
-// The host's half of the two-step synchronisation: when SYNC goes out, and the FOLLOW_UP that tells when it
-// was on the bus. The nodes' answers come back through SyncExchange, as everybody's do.
+// The host's part of the two-step synchronisation: when SYNC is due, and the FOLLOW_UP with the time at which
+// SYNC was on the bus. The nodes' answers arrive through SyncExchange, as for all hosts.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,22 @@ class SyncMaster {
   public:
     explicit SyncMaster(Nanoseconds period = Nanoseconds{1'000'000'000}) : period_(period) {}
 
-    /// The SYNC to send now, if one is due. One that could not be sent is not made up for.
+    /// The SYNC to send now, if one is due. A SYNC that could not be sent is not repeated.
     [[nodiscard]] std::optional<wire::Sync> poll(HostTime now);
     /// The time is in doubt until the next exchange: the next SYNC is due a quarter of a period after the
-    /// newest. Once only, then one comes as always: nobody has to bear more than twice the rate, whatever the
-    /// doubt is about.
+    /// newest one. Works once, then one SYNC follows at the usual time: the rate never exceeds twice the
+    /// usual rate.
     void hasten() noexcept;
-    /// Our SYNC of this number was on the bus, its end at `ended`: the FOLLOW_UP to send. Empty for any but
-    /// the newest, and for the second time: which of two was meant cannot be told.
+    /// The SYNC with this number was on the bus, its end at `ended`: returns the FOLLOW_UP to send. Empty for
+    /// any SYNC but the newest, and for a second call: it is then ambiguous which SYNC is meant.
     [[nodiscard]] std::optional<wire::FollowUp> on_sent(std::uint8_t sequence, HostTime ended);
 
-    /// The SYNC of an exchange that the host has with itself alone, once for each `poll`: that one's did not
-    /// come onto the bus within half a period, for nobody is there to acknowledge it, or no bus. It has a
-    /// number of its own, so that no answer to the other is taken for one to it.
+    /// The SYNC of an exchange of the host with itself, once for each `poll`. It is used if the SYNC of
+    /// `poll` does not appear on the bus within half a period, because no node acknowledges it or there is no
+    /// bus. It has its own number, so that no answer to the other SYNC is assigned to it.
     [[nodiscard]] std::optional<wire::Sync> poll_alone(HostTime now);
 
-    /// When `poll` is next worth a call.
+    /// When `poll` next returns a SYNC.
     [[nodiscard]] HostTime due() const noexcept { return due_; }
 
   private:
@@ -37,8 +37,8 @@ class SyncMaster {
     [[nodiscard]] HostTime early() const noexcept { return newest_ + period_ / 4; }
     Nanoseconds period_;
     HostTime due_{};
-    HostTime newest_{};         ///< when `poll` last asked for one
-    bool is_hastened_ = false;  ///< the newest one, or the one that is due
+    HostTime newest_{};         ///< when `poll` last returned a SYNC
+    bool is_hastened_ = false;  ///< the newest SYNC, or the one that is due, was brought forward
     std::uint8_t sequence_ = wire::kSyncSequenceCount - 1;
     bool is_awaited_ = false;
 };

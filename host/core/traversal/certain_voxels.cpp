@@ -22,7 +22,8 @@
 #define OCTOSKIN_CERTAIN_VOXELS_TYPES
 namespace octoskin {
 
-/// The camera in single precision. Pixel (u, v) is seen along ((u - u_centre) / fx, (v - v_centre) / fy, 1).
+/// The camera in single precision. The direction of pixel (u, v) is ((u - u_centre) / fx, (v - v_centre) /
+/// fy, 1).
 struct CertainTest {
     const float* passed_m = nullptr;
     float width = 0.0F;
@@ -32,19 +33,20 @@ struct CertainTest {
     float fy = 0.0F;
     float u_centre = 0.0F;
     float v_centre = 0.0F;
-    std::array<Eigen::Vector3f, 3> along;  ///< of the map's axes, one voxel, in the camera's frame
-    float inside_squared = 0.0F;           ///< how near a ray passes the centre, squared, metres
-    float beyond_m = 0.0F;                 ///< how much further than the centre it goes on
-    float near_m = 0.0F;  ///< nearer than this no pixel is the nearest: half a voxel's depth, and the margin
+    std::array<Eigen::Vector3f, 3> along;  ///< one voxel along each map axis, in the camera's frame
+    float inside_squared = 0.0F;  ///< limit of a ray's squared distance to the centre, metres squared
+    float beyond_m = 0.0F;        ///< how far a ray must continue behind the centre
+    /// Voxels nearer than this have no nearest pixel: half a voxel's depth plus the margin.
+    float near_m = 0.0F;
     float far_m = 0.0F;
     std::int32_t blocks_width = 0;
-    bool asks_all = false;  ///< and not only where the nearest pixel does not tell
+    bool asks_all = false;  ///< all rays are tested, not only if the nearest pixel gives no decision
 };
 
-/// Of a layer of 8 x 8 voxels, x first, a bit each.
+/// One bit for each voxel of a layer of 8 x 8, x first.
 struct LayerBits {
     std::uint64_t certain = 0;
-    std::uint64_t open = 0;  ///< the nearest pixel does not tell
+    std::uint64_t open = 0;  ///< the nearest pixel gives no decision
 };
 
 inline constexpr int kBrick = MarkGrid::kBrick;
@@ -60,14 +62,14 @@ using F = hn::CappedTag<float, MarkGrid::kBrick>;
 using I = hn::RebindToSigned<F>;
 using V = hn::Vec<F>;
 
-/// Some voxels of a row, a lane each: centres in the camera's frame, and where they are seen, as if at
-/// `near_m` if they are nearer.
+/// Voxels of a row, one per lane: their centres in the camera's frame, and their image positions. A voxel
+/// nearer than `near_m` is projected as if at `near_m`.
 struct LayerCentres {
     V x, y, z;
     V u, v;
 };
 
-/// Of a layer whose first voxel's centre is at `p_camera`, those from the `at`-th on.
+/// The voxels from the `at`-th on, of a layer whose first voxel's centre is at `p_camera`.
 HWY_INLINE LayerCentres centres_from(const CertainTest& test, const Eigen::Vector3f& p_camera,
                                      std::size_t at) {
     const F f;
@@ -91,16 +93,16 @@ HWY_INLINE V in_picture(V pixel, float last) {
     return hn::Min(hn::Max(pixel, hn::Zero(f)), hn::Set(f, last));
 }
 
-/// Asks the pixel nearest to each centre.
+/// Tests the pixel nearest to each centre.
 HWY_INLINE LayerBits ask_nearest_pixels(const CertainTest& test, const Eigen::Vector3f& p_camera) {
     const F f;
     const I i;
     LookUps<F> passed_m;
-    std::uint64_t passes = 0;    // the nearest pixel's ray the voxel's sphere
-    std::uint64_t in_depth = 0;  // where voxels are open if nothing tells
+    std::uint64_t passes = 0;    // the nearest pixel's ray passes the voxel's sphere
+    std::uint64_t in_depth = 0;  // voxels that are open without a decision
     for (std::size_t at = 0; at < 64; at += hn::Lanes(f)) {
         const LayerCentres centres = centres_from(test, p_camera, at);
-        // Of a centre beside the picture the nearest is at its edge, and perhaps too far away.
+        // For a centre outside the image the nearest pixel is at the border, and possibly too far away.
         const V u = in_picture(hn::Round(centres.u), test.last_u);
         const V v = in_picture(hn::Round(centres.v), test.last_v);
         passed_m.put(at, hn::ConvertTo(i, hn::Add(hn::Mul(v, hn::Set(f, test.width)), u)));
@@ -129,7 +131,7 @@ HWY_INLINE LayerBits ask_nearest_pixels(const CertainTest& test, const Eigen::Ve
     return {certain, in_depth & ~(test.asks_all ? certain : passes & has_ray)};
 }
 
-/// Those that no ray in the square about them reaches left out.
+/// Removes voxels that no ray in the square around them reaches.
 HWY_INLINE std::uint64_t ask_windows(const CertainTest& test, const SquareOfPixels& square,
                                      const Eigen::Vector3f& p_camera) {
     const F f;
@@ -153,7 +155,7 @@ HWY_INLINE std::uint64_t ask_windows(const CertainTest& test, const SquareOfPixe
     return may_pass;
 }
 
-/// `p_camera`: the centre of the brick's first voxel. `marks`: that voxel's. `open`: by row.
+/// `p_camera`: centre of the brick's first voxel. `marks`: that voxel's byte. `open`: bits by row.
 void test_brick(const CertainTest& test, const SquareOfPixels& square, const Eigen::Vector3f& p_camera,
                 std::uint8_t* marks, std::ptrdiff_t y_stride, std::ptrdiff_t z_stride, std::uint8_t* open) {
     for (int z = 0; z < kBrick; ++z) {
@@ -164,7 +166,7 @@ void test_brick(const CertainTest& test, const SquareOfPixels& square, const Eig
             *open++ = static_cast<std::uint8_t>(layer.open >> (kBrick * y));
             const std::uint64_t certain = layer.certain >> (kBrick * y) & 0xFFU;
             if (certain == 0) continue;
-            // Bit i to byte i.
+            // Moves bit i to byte i.
             const std::uint64_t seven = ((certain & 0x7FU) * 0x02040810204081ULL) & 0x0001010101010101ULL;
             const std::uint64_t eight = seven | ((certain >> 7U) << 56U);
             std::memcpy(marks + y * y_stride + z * z_stride, &eight, sizeof(eight));
@@ -216,11 +218,11 @@ CertainTest test_of(const CertainView& view, const PlacedImage& image, const Rea
 
 using OpenRows = std::array<std::uint8_t, std::size_t{kBrick} * kBrick>;
 
-/// Who takes a voxel for a hit need not know whether it is passed, too.
+/// Removes voxels in which rays end: for a hit it does not matter whether a ray also passes the voxel.
 void leave_out(const EndsOfBrick& ends, const std::array<int, 3>& lowest, OpenRows& open) {
     if (std::ranges::all_of(open, [](std::uint8_t row) { return row == 0; })) return;
     for (const int key : lowest) {
-        if (key < 0 || key >= kVoxelsPerAxis) return;  // nothing ends where there are no keys
+        if (key < 0 || key >= kVoxelsPerAxis) return;  // no ray ends outside the keys
     }
     const BrickMask mask =
         ends(morton_of({static_cast<std::uint16_t>(lowest[0]), static_cast<std::uint16_t>(lowest[1]),

@@ -17,11 +17,11 @@
 #define OCTOSKIN_END_VOXELS_TYPES
 namespace octoskin {
 
-/// Where the words of a box's bricks are.
+/// Positions of the words of a box's bricks.
 struct WordGrid {
     std::array<std::uint32_t, 3> lowest;  ///< brick
-    std::array<std::uint32_t, 3> steps;   ///< words from a brick to the next along each axis
-    std::uint32_t nowhere = 0;            ///< for rays that end in nothing
+    std::array<std::uint32_t, 3> steps;   ///< words from one brick to the next along each axis
+    std::uint32_t nowhere = 0;            ///< for rays without an end at a surface
 };
 
 }  // namespace octoskin
@@ -31,8 +31,8 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of `count` pixels the word and the bit of the voxel in which each one's ray ends; as many as fill a vector
-/// are read and written.
+/// Finds the word and the bit of the voxel in which each of `count` pixels' rays ends. Reads and writes whole
+/// vectors.
 void find_places(const WordGrid& grid, const std::uint32_t* key_xy, const std::uint32_t* key_z,
                  std::size_t count, std::uint32_t* places, std::uint32_t* bits) {
     const hn::CappedTag<std::uint32_t, 16> k;
@@ -41,7 +41,7 @@ void find_places(const WordGrid& grid, const std::uint32_t* key_xy, const std::u
         const auto bricks = hn::Sub(hn::ShiftRight<kBrickHeight>(keys), hn::Set(k, grid.lowest[axis]));
         return hn::Mul(bricks, hn::Set(k, grid.steps[axis]));
     };
-    // Bits 0 and 1 to 0 and 3: Morton order.
+    // Moves bits 0 and 1 to 0 and 3: Morton order.
     const auto spread = [&](auto keys)
                             HWY_ATTR { return hn::Or(mask(keys, 1), hn::ShiftLeft<2>(mask(keys, 2))); };
     for (std::size_t i = 0; i < count; i += hn::Lanes(k)) {
@@ -97,7 +97,7 @@ void EndVoxels::mark(const PlacedImage& rays, std::size_t part) {
         (grid, rays.key_xy.data() + v * rays.width, rays.key_z.data() + v * rays.width, rays.width,
          own.places.data(), own.bits.data());
         const auto set = [&](std::size_t u) { own.words[own.places[u]] |= std::uint64_t{1} << own.bits[u]; };
-        // Neighbours' bits are of one word, for which the next would wait.
+        // Neighbouring pixels often share a word, and each write would wait for the one before.
         const std::size_t quarter = rays.width / 4;
         for (std::size_t u = 0; u < quarter; ++u) {
             set(u);

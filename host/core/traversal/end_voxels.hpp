@@ -1,4 +1,4 @@
-// The voxels in which the rays of an image end.
+// The set of voxels in which the rays of an image end.
 #pragma once
 
 #include <cstddef>
@@ -12,24 +12,25 @@
 
 namespace octoskin {
 
-/// A bit for each voxel of a box and part. Its memory stays for the next image.
+/// One bit for each voxel of a box, per part. Keeps its memory for the next image.
 class EndVoxels {
   public:
-    /// Of no ray yet; `box` holds the ends of all that are to come. False, and nothing done, if it has over
-    /// `voxels_max` voxels, in whole bricks. O(voxels of the box / 64). Throws std::bad_alloc.
+    /// Starts an empty set; `box` contains the ends of all rays to come. Returns false and does nothing if
+    /// the box has over `voxels_max` voxels, in whole bricks. O(voxels of the box / 64). Throws
+    /// std::bad_alloc.
     [[nodiscard]] bool begin(const KeyBox& box, std::size_t voxels_max, std::size_t parts);
-    /// Takes the rays of one part of the image that end in something. Several threads may each take one;
-    /// some 0.2 ms for 512 x 424. Throws std::bad_alloc.
+    /// Adds the rays of one part of the image that end at a surface. Several threads may each take a part;
+    /// about 0.2 ms for 512 x 424. Throws std::bad_alloc.
     void mark(const PlacedImage& rays, std::size_t part);
 
     [[nodiscard]] BrickMask of(MortonCode brick) const noexcept;
 
   private:
-    /// Of one part's rows.
+    /// The data of one part's rows.
     struct Part {
-        std::vector<std::uint64_t> words;   ///< by brick, as in a BrickMask; a last one for no voxel
-        std::vector<std::uint32_t> places;  ///< of a row's ends: a word each,
-        std::vector<std::uint32_t> bits;    ///< and a bit of it
+        std::vector<std::uint64_t> words;   ///< by brick, as in a BrickMask; one last word for no voxel
+        std::vector<std::uint32_t> places;  ///< word of each end of a row
+        std::vector<std::uint32_t> bits;    ///< bit of each end of a row
     };
 
     BrickBox box_;

@@ -1,4 +1,4 @@
-// The rows of an image in bands, one for each that works on it at a time.
+// Divides the rows of an image into bands that are processed in parallel.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,11 +12,11 @@
 
 namespace octoskin {
 
-/// A vector of any instruction set holds no more entries.
+/// Upper limit of the lanes of any instruction set.
 inline constexpr std::size_t kLanesMax = 64;
 
-/// What placed rows add up to. In a cache line of its own: each band's are written with every vector of
-/// pixels.
+/// Sums over the projected rows of a band. Each has its own cache line, because it is written with every
+/// vector of pixels.
 struct alignas(64) RowSums {
     DepthPixelCounts counts;
     Eigen::Vector3f lowest;  ///< of all ends
@@ -28,19 +28,19 @@ struct alignas(64) RowSums {
 };
 
 struct ImageBands {
-    std::uint32_t rows = 0;  ///< of each but the last
+    std::uint32_t rows = 0;  ///< of all bands but the last
     std::uint32_t count = 0;
 };
 
-/// What is written beyond the end of a row that is no multiple of a vector the next row overwrites: one has
-/// to do all of them.
+/// If the width is not a multiple of a vector, writes reach beyond the end of a row, and the next row
+/// overwrites that part. One band must then contain all rows.
 [[nodiscard]] constexpr ImageBands bands_of(std::uint32_t width, std::uint32_t height) noexcept {
     constexpr std::uint32_t kBandRows = 32;
     const std::uint32_t rows = width % kLanesMax == 0 ? kBandRows : std::max(height, 1U);
     return {rows, (height + rows - 1) / rows};
 }
 
-/// Calls work(band, first row, row behind the last) for each, by `crew`, if there is one.
+/// Calls work(band, first row, row behind the last) for each band, on the thread pool `crew` if there is one.
 template <class Work>
 void for_each_band(const ImageBands& bands, std::uint32_t height, Crew* crew, Work&& work) {
     Crew alone(1);
@@ -50,7 +50,7 @@ void for_each_band(const ImageBands& bands, std::uint32_t height, Crew* crew, Wo
     });
 }
 
-/// Takes the sums of each band; `placed.origin` is bounded, too.
+/// Combines the sums of all bands; the bounds also include `placed.origin`.
 inline void take_sums(const std::vector<RowSums>& bands, PlacedImage& placed) {
     RowSums all{{}, placed.origin, placed.origin};
     for (const RowSums& band : bands) {

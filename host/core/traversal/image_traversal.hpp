@@ -1,5 +1,5 @@
-// Which voxels the rays of one depth image pass: exactly those of OctoMap's computeUpdate, most of them
-// without walking a ray.
+// Finds the voxels that the rays of one depth image pass: exactly those of OctoMap's computeUpdate, most of
+// them without walking a ray.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,9 +18,9 @@
 
 namespace octoskin {
 
-/// Marks, in a grid that spans the image's rays and has no mark, each voxel that a ray passes before its end,
-/// and perhaps voxels in which a ray ends in something: who takes those for hits loses nothing. Keeps its
-/// working memory between images.
+/// Marks each voxel that a ray passes before its end, in a clear grid that spans the image's rays. It may
+/// also mark voxels in which a ray ends at a surface; a caller that takes those for hits is not affected.
+/// Keeps its working memory between images.
 class ImageTraversal {
   public:
     void mark_passed(const PlacedImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,

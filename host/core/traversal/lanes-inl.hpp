@@ -1,5 +1,5 @@
-// Vectors of the instruction set that is being compiled for; included once for each (see Highway's
-// foreach_target.h, which comes before).
+// Vector types of the instruction set being compiled. Included once for each (see Highway's foreach_target.h,
+// which comes before).
 #if defined(OCTOSKIN_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef OCTOSKIN_LANES_INL
 #undef OCTOSKIN_LANES_INL
@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// As many doubles as a vector holds, and as many floats and integers.
+/// Vectors of doubles, and of as many floats and integers.
 using Doubles = hn::ScalableTag<double>;
 using Floats = hn::Rebind<float, Doubles>;
 using Ints = hn::Rebind<std::int32_t, Doubles>;
@@ -25,7 +25,7 @@ using Double = hn::Vec<Doubles>;
 using Float = hn::Vec<Floats>;
 using Mask = hn::Mask<Doubles>;
 
-/// Bit i is that of lane i. Sixteen lanes at most: they fit two bytes.
+/// Bit i is lane i. Sixteen lanes at most, which fit two bytes.
 template <class Tag, class AnyMask>
 HWY_INLINE std::uint64_t bits_of(Tag tag, AnyMask mask) {
     std::array<std::uint8_t, 8> bits{};
@@ -34,7 +34,7 @@ HWY_INLINE std::uint64_t bits_of(Tag tag, AnyMask mask) {
            ((std::uint64_t{1} << hn::Lanes(tag)) - 1U);
 }
 
-/// Calls visit(lane) for each lane that is set, in ascending order.
+/// Calls visit(lane) for each set lane, in ascending order.
 template <class Tag, class AnyMask, class Visit>
 HWY_INLINE void for_each_set(Tag tag, AnyMask mask, Visit&& visit) {
     std::array<std::uint8_t, hn::MaxLanes(Tag()) / 8 + 8> bits{};
@@ -44,9 +44,9 @@ HWY_INLINE void for_each_set(Tag tag, AnyMask mask, Visit&& visit) {
     }
 }
 
-/// What a raster has at the places of 64 voxels, worked out for as many at once as AnyTag has lanes. Looked
-/// up one by one: a processor has many loads under way at once, and its gathers are no quicker, or much
-/// slower.
+/// The values of a raster at the places of 64 voxels, for as many voxels at a time as AnyTag has lanes. The
+/// values are loaded one by one: a processor overlaps many loads, and its gather instructions are not faster,
+/// or are much slower.
 template <class AnyTag>
 class LookUps {
   public:
@@ -69,7 +69,7 @@ class LookUps {
 HWY_INLINE Float squared_length_of(Float x, Float y, Float z) {
     return hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
 }
-/// The length of (x, y, z) as OctoMap computes it: in single precision but for the square root.
+/// The length of (x, y, z) as OctoMap computes it: in single precision except for the square root.
 HWY_INLINE Double length_of(Float x, Float y, Float z) {
     return hn::Sqrt(hn::PromoteTo(Doubles(), squared_length_of(x, y, z)));
 }

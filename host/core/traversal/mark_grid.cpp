@@ -17,7 +17,7 @@ constexpr std::array<std::uint64_t, 16> kRowPlaces = [] {
     return places;
 }();
 
-/// Bit 0 of each of eight bytes, the first byte's lowest.
+/// Collects bit 0 of eight bytes; the first byte gives the lowest bit.
 constexpr unsigned low_bits_of(std::uint64_t eight) {
     return static_cast<unsigned>(((eight & 0x0101010101010101ULL) * 0x0102040810204080ULL) >> 56U);
 }
@@ -46,7 +46,7 @@ bool MarkGrid::span(VoxelKey lowest, VoxelKey highest, std::size_t voxels_max) {
     const std::size_t bytes = voxels + kBrick;
     if (bytes > capacity_) {
         forget();
-        // Zeroes that the system has not to write before somebody marks them.
+        // calloc: the system need not write the zeroes before a mark is set.
         marks_.reset(static_cast<std::uint8_t*>(std::calloc(bytes, 1)));
         if (marks_ == nullptr) throw std::bad_alloc();
         capacity_ = bytes;

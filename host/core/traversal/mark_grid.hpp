@@ -1,4 +1,4 @@
-// One byte for each voxel of a box: passed by a ray or not.
+// The visited grid: one byte for each voxel of a box, passed by a ray or not.
 #pragma once
 
 #include <algorithm>
@@ -15,19 +15,19 @@
 
 namespace octoskin {
 
-/// Rows run along x. The box begins and ends on a multiple of eight voxels along each axis, so that eight
-/// marks of a row are one aligned word and a brick of 8 x 8 x 8 voxels is wholly inside or outside; and it is
-/// at least a voxel wider on every side than what was asked for, which is where rounding may lead a ray.
+/// Rows run along x. The box begins and ends at a multiple of eight voxels along each axis: eight bytes of a
+/// row are then one aligned word, and a brick of 8 x 8 x 8 voxels is completely inside or outside. The box is
+/// at least one voxel wider on each side than requested, because rounding may lead a ray there.
 class MarkGrid {
   public:
     static constexpr std::uint8_t kPassed = 1;
     static constexpr int kBrick = kBrickEdge;
 
-    /// Spans the voxels from `lowest` to `highest`, both inside, without a mark; false, and nothing done, if
-    /// that takes over `voxels_max`. The memory stays, and what is never marked is never touched. Throws
-    /// std::bad_alloc.
+    /// Spans the voxels from `lowest` to `highest`, both included, without marks. Returns false and does
+    /// nothing if this needs over `voxels_max`. Keeps the memory, and does not touch bytes that are never
+    /// marked. Throws std::bad_alloc.
     [[nodiscard]] bool span(VoxelKey lowest, VoxelKey highest, std::size_t voxels_max);
-    /// Gives the memory back, marks and all.
+    /// Releases the memory and all marks.
     void forget() noexcept;
 
     [[nodiscard]] std::ptrdiff_t index_of(VoxelKey key) const noexcept {
@@ -36,7 +36,7 @@ class MarkGrid {
     [[nodiscard]] std::ptrdiff_t index_of(int x, int y, int z) const noexcept {
         return (x - corner_[0]) + (y - corner_[1]) * stride_[1] + (z - corner_[2]) * stride_[2];
     }
-    /// A place for marks that count for nothing.
+    /// Index for marks without effect.
     [[nodiscard]] std::ptrdiff_t nowhere() const noexcept { return static_cast<std::ptrdiff_t>(voxels_); }
 
     [[nodiscard]] const std::array<int, 3>& corner() const noexcept { return corner_; }
@@ -44,15 +44,16 @@ class MarkGrid {
     [[nodiscard]] const std::array<std::ptrdiff_t, 3>& stride() const noexcept { return stride_; }
     [[nodiscard]] std::uint8_t* marks() noexcept { return marks_.get(); }
 
-    /// Calls take(brick, passed) for each brick of the box, marked or not, in Morton order, and leaves no
-    /// mark; `brick`: the code of its first voxel. What has no key is left out.
+    /// Calls take(brick, passed) for each brick of the box, marked or not, in Morton order, and clears the
+    /// grid. `brick`: the code of its first voxel. Voxels without a key are left out.
     template <class Take>
     void drain(Take&& take);
 
   private:
-    /// What is marked in a brick, and from now on nothing.
+    /// Returns the marked voxels of a brick and clears them.
     [[nodiscard]] BrickMask take_brick(VoxelKey lowest) noexcept;
-    /// Where rounding led rays out of the octree there are no keys. `box`: all that have one.
+    /// Clears the marks outside the octree, where rounding led rays and there are no keys. `box`: all voxels
+    /// with a key.
     void clear_beyond_keys(const KeyBox& box) noexcept;
 
     struct Free {
@@ -79,7 +80,7 @@ void MarkGrid::drain(Take&& take) {
         box, [](const VoxelCube&) { return CubeVerdict::some; },
         [&](MortonCode brick, bool) { take(brick, take_brick(key_of_morton(brick))); });
     clear_beyond_keys(box);
-    marks_[voxels_] = 0;  // nowhere is somewhere in the next grid
+    marks_[voxels_] = 0;  // this index is a voxel in the next grid
 }
 
 }  // namespace octoskin

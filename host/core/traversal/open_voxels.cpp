@@ -18,11 +18,11 @@
 #define OCTOSKIN_OPEN_VOXELS_TYPES
 namespace octoskin {
 
-/// Along each axis of the map.
+/// A value for each axis of the map.
 using AlongAxes = std::array<float, 3>;
 
-/// The rays of an image, from the camera: pixel (u, v)'s direction, per metre of depth, is
-/// first + u * next_u + v * next_v.
+/// The rays of an image from the camera: the direction of pixel (u, v), per metre of depth, is first + u *
+/// next_u + v * next_v.
 struct RayField {
     AlongAxes first;
     AlongAxes next_u;
@@ -31,16 +31,16 @@ struct RayField {
     std::uint32_t width = 0;
 };
 
-/// A voxel as the camera sees it, made a little smaller and a little larger; metres.
+/// A voxel relative to the camera, slightly shrunk and slightly enlarged; metres.
 struct AskedVoxel {
     AlongAxes centre;  ///< from the camera
-    /// 1 or -1 along an axis on whose upper or lower side of the origin's voxel this one lies, else 0: a ray
-    /// that goes the other way never comes there, whatever is rounded.
+    /// 1 or -1 along an axis if this voxel is above or below the origin's voxel, else 0: a ray in the
+    /// opposite direction never reaches it, whatever the rounding.
     AlongAxes side;
     float half_smaller = 0.0F;
     float half_larger = 0.0F;
     float margin_m = 0.0F;
-    float nearest_m = 0.0F;  ///< depths of the larger one
+    float nearest_m = 0.0F;  ///< depths of the enlarged voxel
     float furthest_m = 0.0F;
 };
 
@@ -58,13 +58,14 @@ using WideVec = hn::Vec<Wide>;
 using WideMask = hn::Mask<Wide>;
 using Directions = std::array<WideVec, 3>;
 
-/// Some rays: which lie so that they meet the voxel, or perhaps do, however far they reach.
+/// The rays whose lines meet the voxel certainly, and possibly, for any length.
 struct Meeting {
     WideMask surely;
     WideMask perhaps;
 };
 
-/// A line meets a box unless it lies aside of it, seen along an axis that is square to it and to an edge.
+/// A line meets a box unless the two are separated in a projection along an axis that is perpendicular to the
+/// line and to an edge.
 HWY_INLINE Meeting meeting_of(const AskedVoxel& voxel, const Directions& directions) {
     const Wide f;
     Meeting meeting{hn::FirstN(f, hn::Lanes(f)), hn::FirstN(f, hn::Lanes(f))};
@@ -81,13 +82,13 @@ HWY_INLINE Meeting meeting_of(const AskedVoxel& voxel, const Directions& directi
     return meeting;
 }
 
-/// What some rays tell of a voxel: whether one passes it for certain, else which perhaps do.
+/// Result of some rays for a voxel: whether one certainly passes it, else which possibly do.
 struct Told {
     bool is_passed = false;
     WideMask perhaps;
 };
 
-/// Of rays that end near the voxel, or of a voxel near the camera.
+/// For rays that end near the voxel, and for voxels near the camera.
 HWY_INLINE Told tell_by_distance(const AskedVoxel& voxel, const Directions& directions, WideMask asked,
                                  WideVec reach) {
     const Wide f;
@@ -109,7 +110,7 @@ HWY_INLINE Told tell_by_distance(const AskedVoxel& voxel, const Directions& dire
         out_larger = hn::Min(out_larger, hn::Add(middle, larger));
     }
     const WideMask is_in = hn::And(asked, hn::Lt(in_smaller, out_smaller));
-    // What ends in a voxel does not pass it.
+    // A ray that ends in a voxel does not pass it.
     const WideMask is_end = hn::And(is_in, hn::And(hn::Gt(reach, hn::Add(in_smaller, margin)),
                                                    hn::Lt(reach, hn::Sub(out_smaller, margin))));
     const WideMask may_pass =
@@ -118,7 +119,8 @@ HWY_INLINE Told tell_by_distance(const AskedVoxel& voxel, const Directions& dire
             hn::AndNot(is_end, hn::And(asked, may_pass))};
 }
 
-/// Does the ray of a pixel of a row pass the voxel for certain? Else adds to `perhaps` those that perhaps do.
+/// True if the ray of a pixel of the row certainly passes the voxel. Otherwise adds the rays that possibly
+/// pass it to `perhaps`.
 HWY_INLINE bool is_passed_in_row(const RayField& rays, const AskedVoxel& voxel, const PixelBox& box,
                                  std::uint32_t v, std::vector<std::uint32_t>& perhaps) {
     const Wide f;
@@ -150,7 +152,7 @@ HWY_INLINE bool is_passed_in_row(const RayField& rays, const AskedVoxel& voxel, 
         if (hn::AllFalse(f, told.perhaps)) continue;
         WideMask may_pass = told.perhaps;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            constexpr float kStill = -1e-5F;  // and what single precision may make of it
+            constexpr float kStill = -1e-5F;  // with the error of single precision
             may_pass = hn::And(may_pass, hn::Ge(hn::Mul(directions[axis], hn::Set(f, voxel.side[axis])),
                                                 hn::Set(f, kStill)));
         }
@@ -161,16 +163,15 @@ HWY_INLINE bool is_passed_in_row(const RayField& rays, const AskedVoxel& voxel, 
     return false;
 }
 
-/// Tiles of a picture, a lane each, beside each other from pixel (u, v) on: those of which a ray may meet the
-/// voxel.
+/// Tests adjacent tiles of the image from pixel (u, v) on, one per lane: true where a ray may meet the voxel.
 HWY_INLINE WideMask may_meet(const RayField& rays, const AskedVoxel& voxel, std::uint32_t u,
                              std::uint32_t v) {
     const Wide f;
     constexpr float kHalf_px = 0.5F * kTile;
     const WideVec at =
         hn::MulAdd(hn::Iota(f, 0.0F), hn::Set(f, float{kTile}), hn::Set(f, static_cast<float>(u) + kHalf_px));
-    Directions directions;  // of the tiles' middles
-    AlongAxes off;          // the furthest from those
+    Directions directions;  // directions of the tiles' centres
+    AlongAxes off;          // largest deviation from them
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const float in_row = rays.first[axis] + (static_cast<float>(v) + kHalf_px) * rays.next_v[axis];
         directions[axis] = hn::Add(hn::Set(f, in_row), hn::Mul(at, hn::Set(f, rays.next_u[axis])));
@@ -192,7 +193,7 @@ HWY_INLINE WideMask may_meet(const RayField& rays, const AskedVoxel& voxel, std:
     return may;
 }
 
-/// For a voxel that many pixels may see: tiles of them first.
+/// For a voxel that many pixels may see: tests tiles of pixels first.
 bool is_passed_in_tiles(const RayField& rays, const AskedVoxel& voxel, const PixelBox& box,
                         std::vector<std::uint32_t>& perhaps) {
     const Wide f;
@@ -215,7 +216,7 @@ bool is_passed_in_tiles(const RayField& rays, const AskedVoxel& voxel, const Pix
     return false;
 }
 
-/// From the row `middle` outwards: rays that pass are found soonest there.
+/// Works outwards from the row `middle`, where rays that pass are found soonest.
 bool is_passed(const RayField& rays, const AskedVoxel& voxel, const PixelBox& box, std::uint32_t middle,
                std::vector<std::uint32_t>& perhaps) {
     if (box.v_last - box.v_first > 2 * kTile) return is_passed_in_tiles(rays, voxel, box, perhaps);

@@ -1,4 +1,4 @@
-// Voxels that the nearest pixel does not decide: all pixels that see one are asked.
+// Tests voxels for which the nearest pixel gives no decision: all pixels that see the voxel are tested.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,13 +13,13 @@
 
 namespace octoskin {
 
-/// Keeps references to all but the lattice.
+/// Keeps references to all arguments except the lattice.
 class OpenVoxels {
   public:
     OpenVoxels(const CertainView& view, const PlacedImage& image, const VoxelLattice& lattice,
                const PictureTest& picture);
 
-    /// True if a ray passes the voxel for certain; else `pieces` gets the rays that perhaps pass it.
+    /// True if a ray certainly passes the voxel. Otherwise adds the rays that possibly pass it to `pieces`.
     [[nodiscard]] bool is_passed(const Eigen::Vector3d& centre_map, std::vector<RayPiece>& pieces);
 
   private:
@@ -27,7 +27,7 @@ class OpenVoxels {
     const PlacedImage& image_;
     const PictureTest& picture_;
     Eigen::Vector3d origin_;            ///< map frame
-    Eigen::Vector3d centre_of_origin_;  ///< of the voxel that holds it, map frame
+    Eigen::Vector3d centre_of_origin_;  ///< centre of the voxel that contains it, map frame
     double half_depth_m_;
     Eigen::Vector3d first_;  ///< the ray of pixel (0, 0), map frame, per metre of depth
     Eigen::Vector3d next_u_;

@@ -88,7 +88,7 @@ SquareOfPixels PictureTest::square_of_voxels(const Eigen::Vector3d& centre, int 
     const double other_slopes = voxels * view_.radius_m / nearest_m;
     const auto apart = [&](Eigen::Index axis, double focal) {
         const double slope = centre[axis] / centre.z();
-        // Of slopes between two the corners are no further apart than at one of them.
+        // For slopes between two values the corners are no further apart than at one of the two.
         return focal * std::max(corner_m(axis, slope - other_slopes), corner_m(axis, slope + other_slopes)) /
                nearest_m;
     };

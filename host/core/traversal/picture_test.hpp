@@ -1,4 +1,4 @@
-// What the picture of a voxel, or of a brick of voxels, tells before any of its rays is looked at.
+// Brick visibility test: decides by the image of a voxel or a brick, before any of its rays is read.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,35 +14,36 @@
 
 namespace octoskin {
 
-/// Cubes are named by their centre in the camera's frame, metres, and their edge in voxels. Keeps references
-/// to the view and to the image's windows.
+/// Cubes are given by their centre in the camera's frame, metres, and their edge in voxels. Keeps references
+/// to the view and to the image's range pyramid.
 class PictureTest {
   public:
     PictureTest(const CertainView& view, const ReachWindows& reach);
 
-    /// No part of the cube is in the picture.
+    /// True if no part of the cube is in the image.
     [[nodiscard]] bool is_out_of_sight(const Eigen::Vector3d& centre, int voxels) const;
-    /// The pixels that may see a cube; empty if that comes too near to the camera to tell.
+    /// The pixels that may see a cube; empty if the cube is too near to the camera for a decision.
     [[nodiscard]] std::optional<PixelBox> pixels_of(const Eigen::Vector3d& centre, int voxels) const;
-    /// Those whose rays may pass a voxel, all if it comes near to the camera; empty if none does.
+    /// The pixels whose rays may pass a voxel, all if it is near to the camera; empty if there is none.
     [[nodiscard]] std::optional<PixelBox> pixels_of_voxel(const Eigen::Vector3d& centre) const;
-    /// Around the pixel of any of a cube's voxels' centres it holds all pixels whose rays may pass that
-    /// voxel.
+    /// A square that, around the pixel of the centre of any voxel of the cube, contains all pixels whose rays
+    /// may pass that voxel.
     [[nodiscard]] SquareOfPixels square_of_voxels(const Eigen::Vector3d& centre, int voxels) const;
-    /// Which of its voxels are passed for certain, by what the nearest pixels tell.
+    /// The cube's voxels that are certainly passed, as far as the range pyramid decides it.
     [[nodiscard]] CubeVerdict of_cube(const Eigen::Vector3d& centre, int voxels) const;
-    /// The longest reach in a box, or in one a little larger; negative if no pixel has a ray.
+    /// The longest reach in a box, or in a slightly larger one; negative if no pixel has a ray.
     [[nodiscard]] float longest(const PixelBox& box) const { return reach_.of(box).longest; }
 
   private:
-    /// A voxel whose centre is seen at this slope has its corners no further off in the picture than this
-    /// times the focal length by its nearest depth; the voxel a little enlarged, x or y of the camera.
+    /// Upper bound for the image distance of a voxel's corners from its centre seen at this slope: the result
+    /// times the focal length, divided by the voxel's nearest depth. The voxel is slightly enlarged; x or y
+    /// of the camera.
     [[nodiscard]] double corner_m(Eigen::Index axis, double slope) const;
 
     const CertainView& view_;
     CameraIntrinsics camera_;
-    std::array<Eigen::Vector3d, 4> sides_;  ///< of the picture: their planes' normals, inwards
-    std::array<double, 4> half_edge_{};     ///< how far a voxel reaches along each, and the margin
+    std::array<Eigen::Vector3d, 4> sides_;  ///< normals of the image border planes, inwards
+    std::array<double, 4> half_edge_{};     ///< half extent of a voxel along each normal, plus the margin
     const ReachWindows& reach_;
 };
 

@@ -21,7 +21,7 @@
 #define OCTOSKIN_PLACED_IMAGE_TYPES
 namespace octoskin {
 
-/// What does not change from pixel to pixel.
+/// Values that are the same for all pixels.
 struct Placement {
     std::array<std::array<double, 4>, 3> T;  ///< map from camera, row by row
     double voxels_per_m = 0.0;
@@ -29,7 +29,7 @@ struct Placement {
     float half_depth_m = 0.0F;  ///< of a voxel, along the optical axis
 };
 
-/// A row of the image: as many entries as are worked on at once may be read beyond its end.
+/// A row of the image. Up to one vector may be read beyond its end.
 struct Row {
     const float* depth_m;  ///< NaN beyond the row's end
     const double* ray_x;
@@ -44,7 +44,7 @@ struct Row {
 HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 
-/// One row of `T_map_camera * p`, added up as Eigen does.
+/// One row of `T_map_camera * p`, with the additions in Eigen's order.
 HWY_INLINE Float placed(const std::array<double, 4>& row, Double x, Double y, Double z) {
     const Doubles d;
     const Double sum = hn::Add(hn::Add(hn::Mul(hn::Set(d, row[0]), x), hn::Mul(hn::Set(d, row[1]), y)),
@@ -58,12 +58,12 @@ HWY_INLINE Double scaled_by(double voxels_per_m, Float coordinate) {
     return hn::Mul(hn::Set(d, voxels_per_m), hn::PromoteTo(d, coordinate));
 }
 
-/// Where a coordinate has a key (see `VoxelLattice::key_of`).
+/// True where a coordinate has a key (see `VoxelLattice::key_of`).
 HWY_INLINE Mask has_key(Double scaled) {
     const Doubles d;
     return hn::And(hn::Ge(scaled, hn::Set(d, -kOriginKey)), hn::Lt(scaled, hn::Set(d, kOriginKey)));
 }
-/// Anything where there is none: what a NaN converts to depends on the processor.
+/// Any value where there is no key: the conversion of a NaN depends on the processor.
 HWY_INLINE auto key_of(Double scaled, Mask has_key) {
     const Ints i;
     const Double floored = hn::Floor(hn::IfThenElseZero(has_key, scaled));
@@ -77,7 +77,7 @@ HWY_INLINE Mask is_at_face(Double scaled) {
     return hn::Lt(from_face, margin);
 }
 
-/// What is worked out for some pixels at once.
+/// Results for one vector of pixels.
 struct Ends {
     Float x, y, z;
     Float reach_m;
@@ -90,7 +90,7 @@ HWY_INLINE auto narrow(Mask mask) {
     return hn::Gt(hn::DemoteTo(f, hn::IfThenElseZero(mask, hn::Set(d, 1.0))), hn::Zero(f));
 }
 
-/// Rays beyond the maximum range end there, computed as OctoMap does: float but for the square root.
+/// Rays beyond the maximum range end at it, computed as in OctoMap: float except for the square root.
 HWY_INLINE void clip(Ends& ends, float range_max_m, const Eigen::Vector3f& origin) {
     const Doubles d;
     const Floats f;
@@ -99,7 +99,7 @@ HWY_INLINE void clip(Ends& ends, float range_max_m, const Eigen::Vector3f& origi
     const Float z = hn::Sub(ends.z, hn::Set(f, origin.z()));
     const double max_m = static_cast<double>(range_max_m);
     const Double squared = hn::PromoteTo(d, squared_length_of(x, y, z));
-    // Most are clearly nearer, and a root takes long. Where this lets one through the next line decides.
+    // Most ends are clearly nearer, and a square root is slow. The exact test follows.
     if (hn::AllFalse(d, hn::Gt(squared, hn::Set(d, max_m * max_m * (1.0 - 1e-9))))) return;
     const Double length = hn::Sqrt(squared);
     const Mask is_beyond = hn::Gt(length, hn::Set(d, max_m));
@@ -174,7 +174,7 @@ void place_row(const Placement& to, const Row& row, PlacedImage& image, RowSums&
         hn::StoreU(hn::IfThenElse(is_used_f, ends.reach_m, hn::Set(f, -1.0F)), f, image.reach_m.data() + at);
         hn::StoreU(ends.range_m, d, image.range_m.data() + at);
 
-        // A ray that ends in nothing passes no voxel that it ends in.
+        // A ray without an end at a surface does not pass the voxel in which it ends.
         const Mask is_less =
             hn::Or(hn::Lt(ends.range_m, hn::Zero(d)),
                    hn::Or(is_at_face(scaled_x), hn::Or(is_at_face(scaled_y), is_at_face(scaled_z))));

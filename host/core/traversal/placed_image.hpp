@@ -1,4 +1,4 @@
-// The rays of one depth image, placed in the map: where each pixel's ray ends.
+// The projected image: the rays of one depth image in the map, and where each ends.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@
 
 namespace octoskin {
 
-/// What became of each pixel: width * height = the sum of these.
+/// Counts the results of all pixels; their sum is width * height.
 struct DepthPixelCounts {
     std::uint64_t used = 0;
     std::uint64_t no_value = 0;     ///< NaN: no return, filtered, or the robot
@@ -29,39 +29,41 @@ struct DepthPixelCounts {
     }
 };
 
-/// Row-major, one entry a pixel, and some more: as many as a vector of any instruction set holds may be read
-/// from each. In a pixel that has no ray the end is the camera and the reach is negative.
+/// Row-major, one entry per pixel, plus padding: one vector of any instruction set may be read from each
+/// entry. For a pixel without a ray the end is the camera and the reach is negative.
 struct PlacedImage {
     static constexpr std::uint32_t kNoKey = ~std::uint32_t{0};
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< of every ray, map frame, metres
-    /// Map frame, metres, in OctoMap's single precision; empty of place_voxels().
+    /// Map frame, metres, in OctoMap's single precision; empty after place_voxels().
     std::vector<float> end_x;
     std::vector<float> end_y;
     std::vector<float> end_z;
     std::vector<float> reach_m;  ///< depth of the end along the optical axis
-    std::vector<float>
-        passed_m;  ///< a ray passes the voxels that it is in before this depth, or ends in them
-    /// Measured, along the ray; negative: the ray ends in nothing, as beyond the maximum, or there is none.
-    std::vector<double> range_m;        ///< of place_image(), empty otherwise
-    std::vector<std::uint32_t> key_xy;  ///< of the end's voxel: x, and y in the upper half
-    std::vector<std::uint32_t> key_z;   ///< kNoKey where the ray ends in nothing
+    /// A ray passes the voxels that it is in before this depth, or ends in them.
+    std::vector<float> passed_m;
+    /// Measured range along the ray; negative if the ray has no end at a surface (for example beyond the
+    /// maximum) or there is no ray.
+    std::vector<double> range_m;        ///< set by place_image(), empty otherwise
+    std::vector<std::uint32_t> key_xy;  ///< key of the end's voxel: x, and y in the upper half
+    std::vector<std::uint32_t> key_z;   ///< kNoKey if the ray has no end at a surface
     DepthPixelCounts counts;
     [[nodiscard]] std::size_t pixels() const noexcept { return std::size_t{width} * height; }
     Eigen::Vector3f lowest = Eigen::Vector3f::Zero();  ///< of all ends and the origin
     Eigen::Vector3f highest = Eigen::Vector3f::Zero();
 };
 
-/// Nearer to a voxel's face, in voxels and as a share of the coordinate, rounding may decide on which side an
-/// end lies: as OctoMap walks, its ray may neither pass nor end in the voxel before the face.
+/// If an end is nearer to a voxel's face than this (in voxels, and as a share of the coordinate), rounding
+/// may decide on which side it lies: in OctoMap's walk its ray may neither pass nor end in the voxel before
+/// the face.
 inline constexpr double kAtFace = 1e-3;
 inline constexpr double kAtFaceShare = 4e-6;
 
-/// Every pixel's ray is independent of every other's, and of how many are worked on at once: the result is
-/// bit for bit that of Eigen's `T_map_camera * (depth * ray)`. Places every pixel of `image` (of the camera's
-/// size, asserted) as seen from `T_map_camera`. A range beyond `range_max_m` (0: none) ends at it, as in
-/// OctoMap's `computeUpdate`. Some 2 ms for 512 x 424, which `crew` shares, if there is one.
+/// Projects all pixels of `image` (of the camera's size, asserted) as seen from `T_map_camera`. A range
+/// beyond `range_max_m` (0: no limit) ends at it, as in OctoMap's `computeUpdate`. The pixels are
+/// independent: the result equals Eigen's `T_map_camera * (depth * ray)`, bit for bit, for any vector length.
+/// About 2 ms for 512 x 424, shared by the thread pool `crew` if there is one.
 void place_image(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
                  const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed,
                  Crew* crew = nullptr);

@@ -22,20 +22,20 @@
 #define OCTOSKIN_PLACED_VOXELS_TYPES
 namespace octoskin {
 
-/// What does not change from pixel to pixel.
+/// Values that are the same for all pixels.
 struct VoxelPlacement {
     std::array<std::array<float, 4>, 3> T;  ///< map from camera, row by row
     float voxels_per_m = 0.0F;
     float resolution_m = 0.0F;
     float range_max_m = 0.0F;   ///< infinite: none
     float half_depth_m = 0.0F;  ///< of a voxel, along the optical axis
-    /// Rounding may decide on which side of a face an end lies that is no further from it, in voxels: of a
-    /// point at the camera, and so much more for each metre of its camera coordinates' sum.
+    /// An end within this distance of a face, in voxels, may be on either side by rounding: the value for a
+    /// point at the camera, and the increase per metre of the sum of its camera coordinates.
     float unsure = 0.0F;
     float unsure_per_m = 0.0F;
 };
 
-/// A row of the image; as many entries as a vector holds may be read beyond its end.
+/// A row of the image. Up to one vector may be read beyond its end.
 struct RowOfDepths {
     const float* depth_m;  ///< NaN beyond the row's end
     const float* ray_x;
@@ -44,7 +44,7 @@ struct RowOfDepths {
     std::size_t width = 0;
 };
 
-/// So near to the maximum range, as a share of it, rounding may decide whether a ray ends there.
+/// Within this share of the maximum range, rounding may decide whether a ray ends there.
 inline constexpr float kAtRangeMax = 1e-5F;
 
 }  // namespace octoskin
@@ -54,11 +54,11 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sixteen at most: the bits of a mask then fit two bytes.
+// Sixteen lanes at most: the bits of a mask then fit two bytes.
 using Tag = hn::CappedTag<float, 16>;
 using Lanes = hn::Vec<Tag>;
 
-/// One coordinate of ends in the map, metres.
+/// One map coordinate of the ends, metres.
 HWY_INLINE Lanes moved(const std::array<float, 4>& row, Lanes x, Lanes y, Lanes z) {
     const Tag f;
     const Lanes sum = hn::Add(hn::Add(hn::Mul(hn::Set(f, row[0]), x), hn::Mul(hn::Set(f, row[1]), y)),
@@ -70,7 +70,7 @@ HWY_INLINE Lanes from_face(Lanes scaled) {
     return hn::Abs(hn::Sub(scaled, hn::Round(scaled)));
 }
 
-/// Of some pixels at once.
+/// Results for one vector of pixels.
 struct Placed {
     Lanes reach_m;
     Lanes end_m[3];
@@ -103,7 +103,7 @@ HWY_INLINE Placed place(const VoxelPlacement& to, Lanes depth, Lanes ray_x, Lane
     const Lanes margin = hn::Add(hn::Add(hn::Set(f, to.unsure), hn::Mul(hn::Set(f, to.unsure_per_m), extent)),
                                  hn::Mul(hn::Set(f, static_cast<float>(kAtFaceShare)), furthest));
     const Lanes edge = hn::Set(f, static_cast<float>(kOriginKey));
-    // Of a ray that ends in nothing the voxel matters only where the octree ends.
+    // For a ray without an end at a surface, the voxel matters only at the octree's bounds.
     const auto is_at_face =
         hn::And(hn::Lt(to_face, margin),
                 hn::Or(hn::Not(placed.is_beyond), hn::Gt(furthest, hn::Sub(edge, hn::Set(f, 1.0F)))));
@@ -115,7 +115,7 @@ HWY_INLINE Placed place(const VoxelPlacement& to, Lanes depth, Lanes ray_x, Lane
     return placed;
 }
 
-/// Which of them are used, and the others counted.
+/// Returns the used pixels and counts the others.
 HWY_INLINE hn::Mask<Tag> count(const Placed& placed, Lanes depth, hn::Mask<Tag> in_row,
                                DepthPixelCounts& counts) {
     const Tag f;
@@ -153,7 +153,8 @@ HWY_INLINE void store(const Placed& placed, hn::Mask<Tag> is_used, float half_de
     hn::StoreU(hn::IfThenElse(is_used, hn::Sub(placed.reach_m, less), none), f, image.passed_m.data() + at);
 }
 
-/// Places what is sure, and sets a bit for each pixel of the row that is not, in whole words.
+/// Projects the pixels with a certain result, and sets a bit, in whole words, for each other pixel of the
+/// row.
 void place_sure(const VoxelPlacement& to, const RowOfDepths& row, PlacedImage& image, RowSums& sums,
                 std::uint64_t* unsure) {
     const Tag f;
@@ -188,7 +189,7 @@ namespace {
 
 HWY_EXPORT(place_sure);
 
-/// One image, placed row by row.
+/// Projects one image row by row.
 class Placer {
   public:
     Placer(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
@@ -209,7 +210,7 @@ class Placer {
                 to_.T[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
                     static_cast<float>(T_map_camera(i, j));
         }
-        // Each of a dozen roundings is 6e-8 of what it rounds, at most the sum of all terms.
+        // Each of about a dozen roundings is 6e-8 of its value, which is at most the sum of all terms.
         constexpr double kRoundings = 1e-6;
         const double per_voxel = kRoundings / lattice.resolution_m();
         to_.unsure = static_cast<float>(kAtFace + per_voxel * T_map_camera.translation().lpNorm<1>());
@@ -242,7 +243,7 @@ class Placer {
     }
 
   private:
-    /// As place_image() does.
+    /// Same computation as place_image().
     void place_exactly(std::uint32_t u, std::uint32_t v, RowSums& sums) const {
         const std::size_t at = std::size_t{v} * image_.width + u;
         const float depth_m = image_.depth_m[at];

@@ -20,27 +20,27 @@
 #define OCTOSKIN_RAY_PIECES_TYPES
 namespace octoskin {
 
-/// What all rays of the image have in common along one axis. Whole numbers are held as doubles, exactly.
+/// Values of all rays of the image along one axis. Whole numbers are stored exactly, as doubles.
 struct WalkAxis {
     const float* end = nullptr;  ///< by pixel
     float origin = 0.0F;
-    double floored_origin = 0.0;  ///< of the voxel that holds it: key less kOriginKey
-    double half_edge_m = 0.0;     ///< OctoMap has it in single precision
-    double stride = 0.0;          ///< what one voxel adds to an index
+    double floored_origin = 0.0;  ///< of the voxel that contains it: key less kOriginKey
+    double half_edge_m = 0.0;     ///< in single precision, as in OctoMap
+    double stride = 0.0;          ///< increment of the index per voxel
 };
 
 struct Walk {
     std::array<WalkAxis, 3> axes;
     double resolution_m = 0.0;
     double voxels_per_m = 0.0;
-    double first = 0.0;    ///< index of the voxel that holds the origin
-    double nowhere = 0.0;  ///< index where a mark counts for nothing
-    double error_m = 0.0;  ///< distances differ by less, however they are added up
+    double first = 0.0;    ///< index of the voxel that contains the origin
+    double nowhere = 0.0;  ///< index for marks without effect
+    double error_m = 0.0;  ///< upper bound of the error of distances, for any order of additions
     const float* reach_m = nullptr;
     std::uint8_t* marks = nullptr;
 };
 
-/// Adding it to a whole number below 2^51 leaves that in the low bits, as an integer.
+/// Added to a whole number below 2^51, it leaves the number as an integer in the low bits.
 constexpr double kIntegerShift = 4503599627370496.0;  // 2^52
 constexpr std::uint64_t kIntegerBits = (std::uint64_t{1} << 52U) - 1;
 
@@ -50,7 +50,7 @@ constexpr std::uint64_t kIntegerBits = (std::uint64_t{1} << 52U) - 1;
 HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 
-/// Some rays along one axis: see `Ray`. `faces`: from origin to end, signed.
+/// Rays along one axis, one per lane: see `Ray`. `faces`: from origin to end, signed.
 struct Crossings {
     Double next;
     Double step;
@@ -58,11 +58,11 @@ struct Crossings {
     Double faces;
 };
 
-/// As plan_axis() does. `length_m` and the quotient are in single precision.
+/// Same as plan_axis(). `length_m` and the quotient are in single precision.
 HWY_INLINE Crossings plan(const Walk& walk, const WalkAxis& axis, Float end, Float length_m) {
     const Doubles d;
     const Floats f;
-    // Two points so near to each other that their distance underflows: no direction, and no step.
+    // If two points are so close that their distance underflows: no direction and no step.
     const Float quotient = hn::Div(hn::Sub(end, hn::Set(f, axis.origin)), length_m);
     const Double direction = hn::PromoteTo(d, hn::IfThenElseZero(hn::Gt(length_m, hn::Zero(f)), quotient));
     const Mask is_up = hn::Gt(direction, hn::Zero(d));
@@ -81,8 +81,8 @@ HWY_INLINE Crossings plan(const Walk& walk, const WalkAxis& axis, Float end, Flo
             hn::Sub(end_floored, hn::Set(d, axis.floored_origin))};
 }
 
-/// Goes over the faces that are crossed before `from`, unless that is the origin; true where it is not
-/// certain which those are.
+/// Skips the faces that are crossed before `from`, unless that is the origin. True where it is uncertain
+/// which faces those are.
 HWY_INLINE Mask begin_at(Crossings& axis, Double from, Double error, Double& index) {
     const Doubles d;
     const Mask is_later = hn::Gt(from, hn::Zero(d));
@@ -94,7 +94,7 @@ HWY_INLINE Mask begin_at(Crossings& axis, Double from, Double error, Double& ind
     return hn::And(is_later, hn::Lt(hn::Min(hn::Sub(axis.next, from), since_last), error));
 }
 
-/// Marks the voxel of each lane; what is added to an index keeps it whole.
+/// Marks the voxel of each lane. The additions keep an index whole.
 HWY_INLINE void mark(Double index, std::uint8_t* marks) {
     const Doubles d;
     HWY_ALIGN std::array<double, hn::MaxLanes(Doubles())> shifted;
@@ -104,32 +104,32 @@ HWY_INLINE void mark(Double index, std::uint8_t* marks) {
     }
 }
 
-/// As many pieces as there are lanes, on their way.
+/// Walks one piece per lane.
 class Walkers {
   public:
-    /// `count` of them, at least one; a lane without a piece does not walk.
+    /// `count`: number of pieces, at least one. A lane without a piece does not walk.
     HWY_NOINLINE Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count);
 
     [[nodiscard]] HWY_INLINE bool have_ended() const { return hn::AllFalse(Doubles(), is_walking_); }
-    /// True where the walk could not tell two faces apart.
+    /// True where the order of two faces is uncertain.
     [[nodiscard]] HWY_INLINE Mask is_undecided() const { return is_undecided_; }
-    /// One face each; marks the voxel behind it.
+    /// Crosses one face per lane and marks the voxel behind it.
     HWY_INLINE void step(const Walk& walk);
 
   private:
     Crossings x_, y_, z_;
-    Double nearest_;  ///< distance to the next face of all
+    Double nearest_;  ///< distance to the nearest next face
     Double index_;
     Double last_;
     Double to_;
     Double error_;
     Double beyond_;         ///< distance at which the walk has certainly passed the end
-    Double nearly_beyond_;  ///< and possibly
+    Double nearly_beyond_;  ///< distance at which it has possibly passed the end
     Mask is_walking_;
     Mask is_undecided_;
 };
 
-// Not part of what calls it: Clang with sanitizers takes minutes to compile the two in one.
+// Not inlined: Clang with sanitizers takes minutes to compile it together with its caller.
 HWY_NOINLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::size_t count) {
     const Doubles d;
     const Floats f;
@@ -160,7 +160,7 @@ HWY_NOINLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::siz
     last_ = hn::Add(index_, hn::Add(hn::Mul(x_.faces, hn::Set(d, walk.axes[0].stride)),
                                     hn::Add(hn::Mul(y_.faces, hn::Set(d, walk.axes[1].stride)),
                                             hn::Mul(z_.faces, hn::Set(d, walk.axes[2].stride)))));
-    // A pixel without a ray has its end in the origin's voxel, as has a ray that passes nothing.
+    // A pixel without a ray has its end in the origin's voxel, as has a ray that passes no voxel.
     is_walking_ = hn::And(hn::Ne(index_, last_), hn::FirstN(d, count));
 
     const Double per_depth = hn::Div(length, hn::PromoteTo(d, hn::GatherIndex(f, walk.reach_m, pixel)));
@@ -174,7 +174,7 @@ HWY_NOINLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::siz
     beyond_ = hn::Add(length, error_);
     nearly_beyond_ = hn::Sub(length, error_);
     nearest_ = hn::Min(hn::Min(x_.next, y_.next), z_.next);
-    // OctoMap leaves out a voxel that it enters so late.
+    // OctoMap leaves out a voxel that is entered this late.
     is_undecided_ = hn::Or(is_undecided_, hn::AndNot(is_whole, hn::Gt(nearest_, nearly_beyond_)));
     is_walking_ = hn::And(is_walking_, hn::Ne(index_, last_));
     is_undecided_ = hn::And(is_undecided_, is_walking_);
@@ -185,7 +185,7 @@ HWY_NOINLINE Walkers::Walkers(const Walk& walk, const RayPiece* pieces, std::siz
 
 HWY_INLINE void Walkers::step(const Walk& walk) {
     const Doubles d;
-    // As walk_ray(): on a tie z goes before y and y before x.
+    // Same as walk_ray(): on a tie z precedes y and y precedes x.
     const Mask x_before_y = hn::Lt(x_.next, y_.next);
     const Double nearer = hn::Min(x_.next, y_.next);
     const Mask z_is_later = hn::Lt(nearer, z_.next);
@@ -219,8 +219,8 @@ void tell_undecided(const Walkers& walkers, const RayPiece* pieces, std::size_t 
     });
 }
 
-/// Two vectors of them at a time: while one waits for its last sum the other goes on. If too few are left for
-/// two, the second walks what the first walks.
+/// Walks two vectors at a time: while one waits for its last sum, the other continues. If too few pieces are
+/// left, the second repeats the first.
 void walk_all(const Walk& walk, std::span<const RayPiece> pieces, std::vector<std::uint32_t>& undecided) {
     const std::size_t lanes = hn::Lanes(Doubles());
     for (std::size_t first = 0; first < pieces.size(); first += 2 * lanes) {
@@ -272,8 +272,8 @@ void walk_pieces(const PlacedImage& image, const VoxelLattice& lattice, std::spa
                         .half_edge_m = static_cast<double>(static_cast<float>(lattice.resolution_m() * 0.5)),
                         .stride = static_cast<double>(grid.stride()[i])};
     }
-    // A sum of n distances up to s is off by n * s * 2^-53 at most, however it is added up; a product by
-    // less.
+    // A sum of n distances up to s has an error of at most n * s * 2^-53, in any order of additions; a
+    // product has a smaller one.
     const double faces = static_cast<double>(size[0]) + size[1] + size[2];
     walk.error_m = 4.0 * faces * faces * lattice.resolution_m() * std::numeric_limits<double>::epsilon();
     HWY_DYNAMIC_DISPATCH(walk_all)(walk, pieces, undecided);

@@ -1,4 +1,4 @@
-// Pieces of an image's rays, walked many at once.
+// Ray segments: pieces of an image's rays, many of which are walked at a time.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,11 @@ struct RayPiece {
     float to_m = 0.0F;    ///< infinity: to its end
 };
 
-/// Marks as passed what OctoMap's computeRayKeys visits of each piece's ray between its two depths, and
-/// perhaps more of what it visits of that ray. A whole ray (from 0 to infinity) is walked in OctoMap's
-/// arithmetic, rounding error by rounding error. A walk that begins later has other rounding errors: of two
-/// faces that are crossed at almost the same distance it could not tell the first, so its pixel goes to
-/// `undecided`, and what was marked of it is what it passes in truth. The grid spans every ray. About 1 ns a
-/// voxel.
+/// Marks as passed the voxels that OctoMap's computeRayKeys visits of each piece's ray between its two
+/// depths, and possibly more of that ray's voxels. A whole ray (from 0 to infinity) is walked in OctoMap's
+/// arithmetic, with the same rounding errors. A walk that begins later has other rounding errors: if two
+/// faces are crossed at almost the same distance, their order is uncertain. The pixel is then added to
+/// `undecided`; the voxels marked for it so far are correct. The grid spans all rays. About 1 ns per voxel.
 void walk_pieces(const PlacedImage& image, const VoxelLattice& lattice, std::span<const RayPiece> pieces,
                  MarkGrid& grid, std::vector<std::uint32_t>& undecided);
 

@@ -10,13 +10,13 @@ struct More {
     float operator()(float a, float b) const noexcept { return b > a ? b : a; }
 };
 
-/// One of each block of pixels. `row` is working memory.
+/// Reduces each block of pixels to one value. `row` is working memory.
 template <class Choose>
 void take_blocks(const float* pixels, std::uint32_t width, std::uint32_t height, std::vector<float>& row,
                  std::vector<float>& blocks, Choose choose) {
     constexpr std::uint32_t kBlock = ReachWindows::kBlock;
     const std::uint32_t columns = (width + kBlock - 1) / kBlock;
-    // A last column of half a block stands twice.
+    // If the last block is only half as wide, its column is used twice.
     row.resize(std::size_t{columns} * kBlock);
     blocks.resize(std::size_t{columns} * ((height + kBlock - 1) / kBlock));
     float* out = blocks.data();
@@ -30,7 +30,7 @@ void take_blocks(const float* pixels, std::uint32_t width, std::uint32_t height,
     }
 }
 
-/// Windows of twice the edge `by`.
+/// Builds windows with twice the edge `by`.
 template <class Choose>
 void widen(const std::vector<float>& in, std::uint32_t columns, std::uint32_t rows, std::uint32_t by,
            std::vector<float>& row, std::vector<float>& out, Choose choose) {
@@ -57,7 +57,7 @@ void ReachWindows::begin(const PlacedImage& image) noexcept {
 
 SquareOfPixels ReachWindows::square(float half_px) const noexcept {
     static_assert(kBlock == 2);
-    // As many blocks as it may begin and end in.
+    // The number of blocks that the square may touch.
     const float blocks = half_px + 2.0F;
     for (std::uint32_t k = 0; k < kLevels; ++k) {
         if (blocks < static_cast<float>((1U << k) + 1)) return {levels_[k].longest.data(), half_px};

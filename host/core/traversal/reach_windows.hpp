@@ -1,4 +1,4 @@
-// How far the rays of rectangles of pixels go.
+// Range pyramid (min/max): the shortest and longest reach of the rays in a rectangle of pixels.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace octoskin {
 
-/// Columns and rows of an image, both ends inside.
+/// Columns and rows of an image, both ends included.
 struct PixelBox {
     std::uint32_t u_first = 0;
     std::uint32_t u_last = 0;
@@ -21,29 +21,31 @@ struct PixelBox {
     std::uint32_t v_last = 0;
 };
 
-/// Of squares of pixels, wherever they lie.
+/// Longest reaches in squares of pixels at any position.
 struct SquareOfPixels {
-    /// By the block that holds the square's first pixel: of a window that holds the square. Null if there is
-    /// none.
+    /// Indexed by the block that contains the square's first pixel: the longest reach in a window that
+    /// contains the square. Null if no window is large enough.
     const float* longest_m = nullptr;
     float half_px = 0.0F;
 };
 
-/// A sparse table (Bender & Farach-Colton, LATIN 2000), two-dimensional: for each power of two a window of so
-/// many blocks' edge at every block. A box is covered by windows that overlap, four if it is nearly square,
-/// so the answer is that of a box of whole blocks: at most a pixel larger on each side. A pixel without a ray
-/// counts as a negative reach. Its memory stays for the next image.
+/// A two-dimensional sparse table (Bender & Farach-Colton, LATIN 2000): for each power of two, at every block
+/// a window with an edge of so many blocks. A box is covered by overlapping windows, four if it is nearly
+/// square. The result is that of a box of whole blocks, at most a pixel larger on each side. A pixel without
+/// a ray has a negative reach. Keeps its memory for the next image.
 class ReachWindows {
   public:
     static constexpr std::uint32_t kBlock = 2;  ///< pixels along each edge
     static constexpr std::uint32_t kLevels = 5;
 
     struct Span {
-        /// Every ray passes what it is in before this depth, or ends in it; see PlacedImage::passed_m.
+        /// Each ray passes the voxels that it is in before this depth, or ends in them; see
+        /// PlacedImage::passed_m.
         float shortest = std::numeric_limits<float>::infinity();
         float longest = -std::numeric_limits<float>::infinity();
     };
-    /// Windows of 2^k blocks' edge, by the block in their first corner; cut off at the image's end.
+    /// Windows with an edge of 2^k blocks, indexed by the block in their first corner; cut off at the image's
+    /// border.
     struct Level {
         std::vector<float> shortest;
         std::vector<float> longest;
@@ -55,12 +57,12 @@ class ReachWindows {
         take_shortest(image);
         take_longest(image);
     }
-    /// The same in parts: after `begin` two threads may each do one of the others.
+    /// The same in parts: after `begin`, two threads may each run one of the other two.
     void begin(const PlacedImage& image) noexcept;
     void take_shortest(const PlacedImage& image);
     void take_longest(const PlacedImage& image);
 
-    /// O(1) but for boxes larger than 64 pixels, or much longer than wide.
+    /// O(1), except for boxes larger than 64 pixels or much longer than wide.
     [[nodiscard]] Span of(const PixelBox& box) const noexcept {
         const std::uint32_t u_last = box.u_last / kBlock;
         const std::uint32_t v_last = box.v_last / kBlock;
@@ -82,11 +84,11 @@ class ReachWindows {
         return span;
     }
 
-    /// That of the largest windows that are no larger than so many blocks.
+    /// Level of the largest windows that are no larger than `blocks`.
     [[nodiscard]] static constexpr std::uint32_t level_of(std::uint32_t blocks) noexcept {
         return static_cast<std::uint32_t>(std::bit_width(blocks)) - 1U;
     }
-    /// So many pixels to each side of a point; they may be none of the image's.
+    /// The square with `half_px` pixels on each side of a point; the pixels may lie outside the image.
     [[nodiscard]] SquareOfPixels square(float half_px) const noexcept;
     [[nodiscard]] const Level& level(std::uint32_t k) const noexcept { return levels_[k]; }
     [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }

@@ -6,7 +6,7 @@
 namespace octoskin {
 namespace {
 
-/// The least of each value and those `by` to its left and right; at the edge, of those that are there.
+/// The minimum of each value and the values `by` to its left and right; at the border, of the existing ones.
 void spread_along_row(const float* in, float* out, std::uint32_t width, std::uint32_t by) {
     const std::uint32_t edge = std::min(by, width);
     for (std::uint32_t u = 0; u < edge; ++u)

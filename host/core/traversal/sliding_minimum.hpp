@@ -1,4 +1,4 @@
-// The least value around each place of a raster.
+// The minimum around each place of a raster.
 #pragma once
 
 #include <cstdint>
@@ -6,14 +6,15 @@
 
 namespace octoskin {
 
-/// Values of an image, or of its blocks, row by row.
+/// Size of an image, or of its blocks, stored row by row.
 struct Raster {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
 };
 
-/// Each value becomes the least of the square `radius` to each side of it, at the edge of what is there of
-/// it; it is already that of `had`. `work`: memory to keep. O(values * log(radius / had)).
+/// Replaces each value by the minimum of the square with `radius` values on each side, cut off at the border.
+/// On entry the values are already minima with the radius `had`. `work`: memory to keep. O(values *
+/// log(radius / had)).
 void spread_minimum(std::vector<float>& values, std::vector<float>& work, const Raster& raster,
                     std::uint32_t had, std::uint32_t radius);
 

@@ -19,7 +19,7 @@
 #define OCTOSKIN_VOXEL_RAYS_TYPES
 namespace octoskin {
 
-/// Pixels of an image, both ends inside; empty if a last one is less than its first.
+/// Pixels of an image, both ends included; empty if a last one is less than its first.
 struct SeenPixels {
     int u_first, u_last, v_first, v_last;
 };
@@ -31,11 +31,11 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sixteen at most: the bits of a mask then fit two bytes.
+// Sixteen lanes at most: the bits of a mask then fit two bytes.
 using Tag = hn::CappedTag<float, 16>;
 using Lanes = hn::Vec<Tag>;
 
-/// Where a ray that is `off` the centre at its depth is in the voxel there.
+/// True where a ray at distance (off_x, off_y) from the centre, at its depth, is inside the voxel.
 HWY_INLINE auto is_inside(const Kernel& rays, Lanes off_x, Lanes off_y) {
     const Tag f;
     Lanes furthest = hn::Zero(f);
@@ -46,14 +46,14 @@ HWY_INLINE auto is_inside(const Kernel& rays, Lanes off_x, Lanes off_y) {
     return hn::Lt(furthest, hn::Set(f, rays.inside_m));
 }
 
-/// How far the ray of a pixel is from a centre at its depth, along the camera's x or y.
+/// Distance of a pixel's ray from a centre at its depth, along the camera's x or y.
 HWY_INLINE Lanes off_by(Lanes pixel, float optical_axis, float per_focal, Lanes z, Lanes centre) {
     const Tag f;
     const Lanes slope = hn::Mul(hn::Sub(pixel, hn::Set(f, optical_axis)), hn::Set(f, per_focal));
     return hn::Sub(hn::Mul(slope, z), centre);
 }
 
-/// Columns and rows, a lane each.
+/// Columns and rows, one pixel per lane.
 struct Pixels {
     Lanes u, v;
 };
@@ -63,7 +63,7 @@ HWY_INLINE Lanes within(Lanes pixel, float last) {
     return hn::Min(hn::Max(pixel, hn::Zero(f)), hn::Set(f, last));
 }
 
-/// Their places in a raster: of pixels, or of blocks of 2^shift pixels.
+/// Indices in a raster of pixels, or of blocks of 2^shift pixels.
 template <int kShift>
 HWY_INLINE auto places_of(std::uint32_t columns, const Pixels& pixels) {
     const hn::Rebind<std::int32_t, Tag> i;
@@ -74,7 +74,7 @@ HWY_INLINE auto places_of(std::uint32_t columns, const Pixels& pixels) {
 
 using WordLookUps = LookUps<Tag>;
 
-/// Centres, a lane each, in the camera's frame.
+/// Centres in the camera's frame, one per lane.
 struct Centres {
     Lanes x, y, z;
 };
@@ -86,7 +86,7 @@ HWY_INLINE Centres centres_of(const Kernel& rays, const Centre& first, std::size
             hn::Add(hn::Set(f, first.z), hn::LoadU(f, rays.offsets[2].data() + cell))};
 }
 
-/// Where they are seen; as if at `near_m`, if they are nearer.
+/// Image positions of the centres; a centre nearer than `near_m` is projected as if at `near_m`.
 HWY_INLINE Pixels pixels_at(const Kernel& rays, const Centres& centres) {
     const Tag f;
     const Lanes per_z = hn::Div(hn::Set(f, 1.0F), hn::Max(centres.z, hn::Set(f, rays.near_m)));
@@ -96,14 +96,14 @@ HWY_INLINE Pixels pixels_at(const Kernel& rays, const Centres& centres) {
     return {seen_at(centres.x, rays.fx, rays.u_centre), seen_at(centres.y, rays.fy, rays.v_centre)};
 }
 
-/// Of a word's voxels: those before the camera, and of them those passed by the ray of the pixel nearest to
-/// their centre.
+/// Voxels of a word: those in front of the camera, and of them those that the ray of the pixel nearest to
+/// their centre passes.
 struct Passed {
     std::uint64_t is_before = 0;
     std::uint64_t certainly = 0;
 };
 
-/// Without a branch: none would be foreseen.
+/// Without branches, which could not be predicted.
 HWY_INLINE Passed ask_nearest(const Kernel& rays, const Centre& first, std::size_t word_cell) {
     const Tag f;
     WordLookUps passed_m;
@@ -111,7 +111,7 @@ HWY_INLINE Passed ask_nearest(const Kernel& rays, const Centre& first, std::size
     for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f)) {
         const Centres centres = centres_of(rays, first, word_cell + bit);
         const Pixels centre = pixels_at(rays, centres);
-        // Of a centre beside the picture the nearest is at its edge, and perhaps too far away.
+        // For a centre outside the image the nearest pixel is at the border, and possibly too far away.
         const Pixels nearest{within(hn::Round(centre.u), rays.last_u),
                              within(hn::Round(centre.v), rays.last_v)};
         passed_m.put(bit, places_of<0>(rays.width, nearest));
@@ -132,8 +132,8 @@ HWY_INLINE Passed ask_nearest(const Kernel& rays, const Centre& first, std::size
     return passed;
 }
 
-/// For each voxel of a word the pixels whose rays are no further than `half_m` from its centre at its depth,
-/// along the camera's x and y.
+/// For each voxel of a word, the pixels whose rays are within `half_m` of its centre at its depth, along the
+/// camera's x and y.
 class NearPixels {
   public:
     HWY_INLINE void put(std::size_t bit, const Kernel& rays, const Pixels& centre, Lanes z, float half_m) {
@@ -144,7 +144,7 @@ class NearPixels {
         const Lanes half_v = hn::Mul(half, hn::Set(f, rays.fy));
         const auto store = [&](Lanes pixel, auto& pixels)
                                HWY_ATTR { hn::Store(hn::ConvertTo(i, pixel), i, pixels.data() + bit); };
-        // Beside the image a first one is beyond it, or a last one before it.
+        // Outside the image, a first pixel is behind the last column or row, or a last one before the first.
         const auto first = [&](Lanes at, float last) HWY_ATTR {
             return hn::Min(hn::Ceil(hn::Max(at, hn::Zero(f))), hn::Set(f, last + 1.0F));
         };
@@ -164,7 +164,7 @@ class NearPixels {
     alignas(64) std::array<std::int32_t, 64> u_first_, u_last_, v_first_, v_last_;
 };
 
-/// Those of whose rays perhaps one goes on, and the pixels of each.
+/// Returns the voxels of whose rays one possibly continues, and stores the pixels of each.
 HWY_INLINE std::uint64_t ask_window(const Kernel& rays, const SquareOfPixels& square, const Centre& first,
                                     std::size_t word_cell, NearPixels& near_pixels) {
     const Tag f;
@@ -187,8 +187,8 @@ HWY_INLINE std::uint64_t ask_window(const Kernel& rays, const SquareOfPixels& sq
     return may_pass;
 }
 
-/// Calls visit(which of the lanes, first column, row) for some pixels of a row after the other until it says
-/// true.
+/// Calls visit(mask of the lanes, first column, row) for one vector of pixels after the other until it
+/// returns true.
 template <class Visit>
 HWY_INLINE bool visit_pixels(const SeenPixels& seen, Visit&& visit) {
     const Tag f;
@@ -204,7 +204,8 @@ HWY_INLINE Lanes loaded(const Kernel& rays, const float* values, int u, int v) {
     return hn::LoadU(Tag(), values + static_cast<std::size_t>(v) * rays.width + static_cast<std::size_t>(u));
 }
 
-/// Whether of a voxel's rays perhaps one goes on. Rows are not asked one by one: of most voxels no ray does.
+/// True if one of a voxel's rays possibly continues. Combines all rows in one test, because for most voxels
+/// no ray does.
 HWY_INLINE bool may_any_pass(const Kernel& rays, const Centre& centre, const SeenPixels& seen) {
     const Tag f;
     const Lanes beyond = hn::Set(f, centre.z + rays.margin_m);
@@ -234,7 +235,7 @@ HWY_INLINE bool is_any_passing(const Kernel& rays, const Centre& centre, const S
     });
 }
 
-/// The voxels of the brick whose first one's centre is at `first`: VoxelRays::passed().
+/// VoxelRays::passed() for the brick whose first voxel's centre is at `first`.
 void find_passed(const Kernel& rays, const SquareOfPixels& square, const Centre& first, const BrickMask& ends,
                  BrickMask& mask) {
     const WordVerdicts verdicts = judge_words(rays, first);
@@ -260,7 +261,7 @@ void find_passed(const Kernel& rays, const SquareOfPixels& square, const Centre&
     }
 }
 
-/// Of one voxel, by those of its rays' pixels.
+/// The votes of one voxel's rays.
 HWY_INLINE RayVote vote_of(const Kernel& rays, float z, const SeenPixels& seen) {
     const Tag f;
     const Lanes begin = hn::Set(f, z - rays.half_depth_m);
@@ -277,7 +278,7 @@ HWY_INLINE RayVote vote_of(const Kernel& rays, float z, const SeenPixels& seen) 
     return vote;
 }
 
-/// VoxelRays::vote_on().
+/// Implements VoxelRays::vote_on().
 void count_votes(const Kernel& rays, const Centre& first, const BrickMask& voxels, RayVote* votes) {
     const Tag f;
     for (std::size_t number = 0; number < voxels.size(); ++number) {
@@ -307,12 +308,13 @@ namespace {
 HWY_EXPORT(find_passed);
 HWY_EXPORT(count_votes);
 
-/// In edges. A filtered depth of 3 cm of noise is still 0.6 cm off: were it 0.5, a surface just behind a
-/// voxel would mark it now and then; at 0 one in the voxel's farther half is not seen (docs/results.md).
+/// In edges. A filtered depth with 3 cm of noise still has an error of 0.6 cm. With 0.5, a surface just
+/// behind a voxel would sometimes mark the voxel occupied; with 0, a surface in the voxel's farther half is
+/// not detected (docs/results/notebook-2026-11.md).
 constexpr double kEndsBehindCentre = 0.2;
 
-/// In edges. Rays nearer to a voxel's corners graze what is beside it: they would free surfaces
-/// (docs/results.md).
+/// In edges. Rays nearer to a voxel's corners graze neighbouring voxels: they would free surfaces
+/// (docs/results/notebook-2026-11.md).
 constexpr double kNearCentre = 0.45;
 
 }  // namespace
@@ -380,7 +382,7 @@ BrickMask VoxelRays::passed(const Brick& brick, const BrickMask& ends) const {
     const float nearest_m =
         brick.z + std::min({z_offsets[0], z_offsets[73], z_offsets[146], z_offsets[219], z_offsets[292],
                             z_offsets[365], z_offsets[438], z_offsets[511]});
-    // Which holds the pixels of each voxel's rays.
+    // A square that contains the pixels of each voxel's rays.
     SquareOfPixels square;
     if (nearest_m > 0.0F) {
         constexpr float kRounding_px = 0.01F;

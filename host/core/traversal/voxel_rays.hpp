@@ -1,5 +1,5 @@
-// Which rays of an image a voxel sees, and what they do there: the question that the depth update `fast`
-// asks.
+// Finds the rays of an image that pass through a voxel, and their effect on it: the query of the depth update
+// `fast`.
 #pragma once
 
 #include <array>
@@ -14,42 +14,42 @@
 
 namespace octoskin {
 
-/// A voxel's rays are those that are in it at its centre's depth. How many of them...
+/// Votes of a voxel's rays, which are the rays inside it at the depth of its centre.
 struct RayVote {
-    std::uint32_t end = 0;    ///< ... end in the voxel, before its centre or less than 0.2 edges behind it
-    std::uint32_t go_on = 0;  ///< ... end further away: what they end in may lie behind the voxel
+    std::uint32_t end = 0;    ///< end in the voxel, before its centre or less than 0.2 edges behind it
+    std::uint32_t go_on = 0;  ///< end further away; their surface may be behind the voxel
 };
 
-/// Rays of one image over one lattice; docs/method.md has the figure. What all of it is made of is in the
-/// camera's frame and single precision. Keeps references to what it is made from, and its memory.
+/// The rays of one image in one lattice; docs/concepts/sensor-models.md has the figure. All values are in the camera's frame
+/// and in single precision. Keeps references to its arguments, and keeps its memory.
 class VoxelRays {
   public:
-    /// The view has a `depth_max_m`: a camera without a lens.
+    /// The view must have a `depth_max_m`: a camera without a lens.
     void begin(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
                const VoxelLattice& lattice);
 
-    /// A brick's first voxel, in the camera's frame, metres.
+    /// Centre of a brick's first voxel in the camera's frame, metres.
     struct Brick {
         float x = 0.0F, y = 0.0F, z = 0.0F;
     };
     [[nodiscard]] Brick brick_at(VoxelKey lowest) const;
-    /// The voxels of a brick that a ray of theirs passes or ends in; but for some of those in which rays end
-    /// in something, which are given. Its eight cubes of 4 x 4 x 4 are looked at together: of most all voxels
-    /// are, or none. In the others, one look-up for most, that of the pixel nearest to the centre; all of a
-    /// voxel's rays for those where that one does not. None that OctoMap's computeUpdate has not among its
-    /// free or occupied ones. About 1 us.
+    /// The voxels of a brick that one of their rays passes or ends in, except for some of those in `ends`,
+    /// where rays end at a surface. The eight cubes of 4 x 4 x 4 are tested together first: for most of them
+    /// the result is all or none. In the others most voxels take one look-up, of the pixel nearest to the
+    /// centre; all rays of a voxel are tested only if that gives no decision. All of these voxels are among
+    /// the free or occupied ones of OctoMap's computeUpdate. About 1 us.
     [[nodiscard]] BrickMask passed(const Brick& brick, const BrickMask& ends) const;
-    /// Of those voxels, by their cell; the others' votes stay as they are. None of a voxel that is not wholly
-    /// before the camera.
+    /// Sets the votes of the given voxels, by cell; other votes are left unchanged. A voxel that is not
+    /// completely in front of the camera gets no votes.
     void vote_on(const Brick& brick, const BrickMask& voxels, std::span<RayVote, kBrickVoxels> votes) const;
-    /// From the camera to a voxel's centre.
+    /// Distance from the camera to a voxel's centre, metres.
     [[nodiscard]] float range_m(const Brick& brick, std::size_t cell) const noexcept;
 
-    /// What a kernel works with.
+    /// Data of the vector code.
     struct Kernel {
         std::array<std::array<float, kBrickVoxels>, 3> offsets;  ///< from the first voxel's centre to each
         std::array<std::array<float, 8>, 3> middles;  ///< and to the middle of each word of a BrickMask
-        /// What camera x and y add along each axis of the map.
+        /// Map-axis components of the camera's x and y.
         std::array<std::array<float, 2>, 3> across;
         const float* passed_m = nullptr;
         const float* reach_m = nullptr;
@@ -58,13 +58,14 @@ class VoxelRays {
         float last_u = 0.0F, last_v = 0.0F;
         float fx = 0.0F, fy = 0.0F;
         float per_fx = 0.0F, per_fy = 0.0F;
-        float u_centre = 0.0F, v_centre = 0.0F;  ///< the optical axis, in pixels from the first one's centre
-        float half_x_m = 0.0F, half_y_m = 0.0F;  ///< a voxel reaches no further along the camera's x and y
+        float u_centre = 0.0F,
+              v_centre = 0.0F;                   ///< optical axis, in pixels from the first one's centre
+        float half_x_m = 0.0F, half_y_m = 0.0F;  ///< half extent of a voxel along the camera's x and y
         float inside_m = 0.0F;                   ///< from a voxel's centre to its faces, less the margin
-        float near_centre_m = 0.0F;  ///< a ray that passes so near to the centre speaks for the voxel
+        float near_centre_m = 0.0F;              ///< a ray within this distance of the centre counts for it
         float half_edge_m = 0.0F;
         float half_depth_m = 0.0F;
-        float end_m = 0.0F;  ///< a ray that ends so far behind the centre ends in the voxel
+        float end_m = 0.0F;  ///< a ray that ends up to this far behind the centre ends in the voxel
         float near_m = 0.0F;
         float margin_m = 0.0F;
         float depth_max_m = 0.0F;

@@ -9,10 +9,10 @@
 namespace octoskin {
 namespace {
 
-/// Squares as wide as this, and wider, are put together of blocks of pixels.
+/// Squares of this width and more are composed of blocks of pixels.
 constexpr std::uint32_t kBlock = 4;
 constexpr std::uint32_t kBlockRadius = 8;
-/// The depth at a rung's end, in lengths of that at its beginning.
+/// Ratio of the depths at an interval's end and beginning.
 constexpr double kRungRatio = 1.2;
 
 Raster blocks_of(const PlacedImage& image) {
@@ -31,15 +31,15 @@ std::vector<float> shortest_of_blocks(const PlacedImage& image, const std::vecto
     return shortest;
 }
 
-/// Puts intervals together in which a ray must be walked.
+/// Joins the intervals in which a ray must be walked.
 class Pieces {
   public:
-    /// `open_m`: where one has begun already; negative: none.
+    /// `open_m`: begin of an open interval; negative: none.
     explicit Pieces(float open_m) : open_m_(open_m) {}
 
     [[nodiscard]] float open_m() const noexcept { return open_m_; }
 
-    /// Between `from_m` and `to_m` the ray needs no walk before `safe_m`.
+    /// Adds the interval from `from_m` to `to_m`, in which the ray needs no walk before `safe_m`.
     template <class Emit>
     void add(float from_m, float to_m, float safe_m, Emit&& emit) {
         if (safe_m > from_m) {
@@ -68,8 +68,8 @@ void WalkLadder::set_rungs(const CertainView& view, const PlacedImage& image) {
     const double focal_max = std::max(camera.fx, camera.fy);
     const double x = std::max(camera.cx, camera.width - camera.cx) / camera.fx;
     const double y = std::max(camera.cy, camera.height - camera.cy) / camera.fy;
-    // A point and the centre of a voxel that holds it are seen `radius_m` apart at most, and that under the
-    // larger an angle the further from the optical axis.
+    // A point and the centre of its voxel are at most `radius_m` apart. The angle at which this distance is
+    // seen grows with the distance from the optical axis.
     const double spread_m = view.radius_m * std::sqrt(1.0 + std::max(x * x, y * y));
     const double reach_max_m =
         static_cast<double>(*std::max_element(image.reach_m.begin(), image.reach_m.end()));
@@ -94,7 +94,7 @@ void WalkLadder::fill_rungs(const CertainView& view, const PlacedImage& image) {
     const auto fill = [&](std::vector<Rung>& rungs, std::vector<float> shortest, const Raster& raster,
                           std::uint32_t pixels) {
         std::uint32_t had = 0;
-        for (Rung& rung : rungs) {  // from far to near: squares grow
+        for (Rung& rung : rungs) {  // from far to near: the squares grow
             const std::uint32_t radius = (rung.radius_px + pixels - 1) / pixels;
             spread_minimum(shortest, rows_, raster, had, radius);
             had = std::max(had, radius);
@@ -103,7 +103,7 @@ void WalkLadder::fill_rungs(const CertainView& view, const PlacedImage& image) {
         }
         std::ranges::reverse(rungs);
     };
-    // A voxel whose nearest pixel has no ray asks the others.
+    // For a voxel whose nearest pixel has no ray, the other pixels decide.
     std::vector<float> passed_m(std::size_t{image.width} * image.height);
     for (std::size_t i = 0; i < passed_m.size(); ++i) {
         passed_m[i] = image.reach_m[i] < 0.0F ? std::numeric_limits<float>::infinity() : image.passed_m[i];

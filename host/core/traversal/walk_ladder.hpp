@@ -1,4 +1,4 @@
-// From where to where each ray of an image must be walked.
+// Finds the ray segments that must be walked for each ray of an image.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,14 @@
 
 namespace octoskin {
 
-/// A ray needs no walk at a depth at which every voxel it may be in is certain (certain_view.hpp). The
-/// nearest pixel of such a voxel lies around the ray's own, within a square that is the smaller the further
-/// away the voxel is: so depths are cut into a ladder of intervals, each with its square, and a ray needs no
-/// walk in an interval if the shortest ray of its square reaches well beyond it.
+/// A ray need not be walked at depths at which all voxels it may be in are certain (certain_view.hpp). The
+/// nearest pixel of such a voxel lies within a square around the ray's own pixel; the square shrinks with the
+/// distance of the voxel. The depths are therefore divided into intervals, each with its square. A ray need
+/// not be walked in an interval if the shortest ray of the square reaches well beyond it.
 class WalkLadder {
   public:
-    /// Adds what must be walked of all rays, pixel by pixel. About 2 ms for 512 x 424. Keeps its memory.
+    /// Adds the segments of all rays that must be walked, pixel by pixel. About 2 ms for 512 x 424. Keeps its
+    /// memory.
     void find_pieces(const CertainView& view, const PlacedImage& image, std::vector<RayPiece>& pieces);
 
   private:
@@ -25,15 +26,15 @@ class WalkLadder {
     struct Rung {
         float from_m = 0.0F;
         float to_m = 0.0F;
-        std::uint32_t radius_px = 0;  ///< pixels to each side of the square
-        std::vector<float> safe_m;    ///< a pixel's ray, or those of a block, need no walk before this
+        std::uint32_t radius_px = 0;  ///< half width of the square, pixels
+        std::vector<float> safe_m;    ///< depth before which the rays of a pixel or block need no walk
     };
 
     void set_rungs(const CertainView& view, const PlacedImage& image);
     void fill_rungs(const CertainView& view, const PlacedImage& image);
 
-    std::vector<Rung> near_;  ///< of blocks of pixels, from the camera on
-    std::vector<Rung> far_;   ///< of pixels
+    std::vector<Rung> near_;  ///< for blocks of pixels, from the camera outwards
+    std::vector<Rung> far_;   ///< for pixels
     std::vector<float> rows_;
     std::vector<RayPiece> block_pieces_;
 };

@@ -1,5 +1,5 @@
-// What can be said of a brick's eight words of 4 x 4 x 4 voxels without looking at any voxel; included once
-// for each instruction set (see Highway's foreach_target.h, which comes before).
+// Decides on a brick's eight words of 4 x 4 x 4 voxels without testing single voxels. Included once for each
+// instruction set (see Highway's foreach_target.h, which comes before).
 #ifndef OCTOSKIN_WORD_VERDICTS_TYPES
 #define OCTOSKIN_WORD_VERDICTS_TYPES
 
@@ -31,19 +31,19 @@ namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Kernel = VoxelRays::Kernel;
 
-// One for each word of a BrickMask, or a part of them.
+// One lane for each word of a BrickMask, or for a part of the words.
 using WordTag = hn::CappedTag<float, 8>;
 using WordInts = hn::RebindToSigned<WordTag>;
 using Words = hn::Vec<WordTag>;
 
-/// Of the eight words of a brick, a bit each: those of which every voxel is passed, and those of which none
-/// is.
+/// One bit for each of the eight words of a brick: words with all voxels passed, and words with none passed.
 struct WordVerdicts {
     std::uint32_t all = 0;
     std::uint32_t none = 0;
 };
 
-/// First and last pixel, of a row or a column, whose rays may be in one of 64 voxels at its centre's depth.
+/// First and last pixel, of a row or column, whose rays may be inside one of 64 voxels at the depth of its
+/// centre.
 struct Seen {
     Words first, last;
 };
@@ -51,7 +51,7 @@ struct Seen {
 HWY_INLINE Seen seen_of(Words middle, float half_m, Words per_nearest, Words per_furthest, float focal,
                         float optical_axis) {
     const WordTag f;
-    // A voxel's centre is up to three halves of an edge from the middle, its side a half further.
+    // A voxel's centre is up to three halves of an edge from the middle, and its side another half.
     const Words reach = hn::Set(f, 4.0F * half_m);
     const Words low = hn::Sub(middle, reach);
     const Words high = hn::Add(middle, reach);
@@ -72,7 +72,7 @@ HWY_INLINE auto block_of(Words pixel, float last) {
     return hn::ShiftRight<1>(hn::ConvertTo(WordInts(), inside));
 }
 
-/// What can be said of the words without looking at any voxel. `first`: the centre of the brick's first.
+/// Decides on the words without testing single voxels. `first`: the centre of the brick's first voxel.
 HWY_INLINE WordVerdicts judge_words(const Kernel& rays, const Centre& first) {
     const WordTag f;
     const WordInts i;
@@ -102,7 +102,7 @@ HWY_INLINE WordVerdicts judge_words(const Kernel& rays, const Centre& first) {
         const auto u_last = block_of(u.last, rays.last_u);
         const auto v_first = block_of(v.first, rays.last_v);
         const auto v_last = block_of(v.last, rays.last_v);
-        // Two windows cover what is twice as long.
+        // Two windows cover twice their length.
         const auto size = hn::Max(hn::Sub(u_last, u_first), hn::Sub(v_last, v_first));
         const auto size_max = static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(i, size))) + 1;
         const std::uint32_t level =

@@ -1,4 +1,4 @@
-// A box of voxels, and an octree's cube of them.
+// A box of voxels, and the cube of an octree node.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace octoskin {
 
-/// Lowest and highest key along each axis, both inside.
+/// Lowest and highest key along each axis, both included.
 struct KeyBox {
     VoxelKey lowest;
     VoxelKey highest;
@@ -18,14 +18,14 @@ struct KeyBox {
     }
 };
 
-/// The voxels whose keys agree with `lowest` in all but the low `height` bits, which are 0 in `lowest`: an
-/// octree node's cube, 2^height voxels along each edge.
+/// The voxels whose keys equal `lowest` except in the low `height` bits, which are 0 in `lowest`: the cube of
+/// an octree node, with 2^height voxels along each edge.
 struct VoxelCube {
     VoxelKey lowest;
     unsigned height = 0;
 };
 
-/// Whether they have a voxel in common.
+/// True if they have a voxel in common.
 [[nodiscard]] constexpr bool do_meet(const VoxelCube& cube, const KeyBox& box) noexcept {
     const int last = (1 << cube.height) - 1;
     const auto is_along = [last](int lowest, int box_lowest, int box_highest) {

@@ -1,5 +1,5 @@
-// Morton order: the bits of x, y and z interleaved, x lowest. It is the depth-first order of an octree whose
-// children are numbered as OctoMap's are, so every octree node is one run of codes.
+// Morton order interleaves the bits of x, y and z, with x lowest. It is the depth-first order of an octree
+// whose children are numbered as in OctoMap, so each octree node is one range of codes.
 #pragma once
 
 #include <cstdint>

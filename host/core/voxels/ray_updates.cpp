@@ -17,24 +17,23 @@
 #define OCTOSKIN_RAY_KEYS_TYPES
 namespace octoskin {
 
-/// The faces that a ray crosses along one axis, in units of the distance between two: face i at t_first + i *
-/// t_step metres from the origin.
+/// The faces that a ray crosses along one axis: face i is at t_first + i * t_step metres from the origin.
 struct Crossings {
     std::int32_t count = 0;
     double t_first = 0.0;
     double t_step = 0.0;
     double per_step = 0.0;        ///< 1 / t_step; 0 for an axis never stepped
     double first_in_steps = 0.0;  ///< t_first / t_step; for an axis never stepped anything between 0 and 1
-    double key_step = 0.0;        ///< what a step adds to a packed key
+    double key_step = 0.0;        ///< what one step adds to a packed key
 };
 
-/// Keys are packed into one number, 16 bits an axis, x lowest: what a double holds exactly.
+/// Keys are packed into one number with 16 bits per axis, x lowest. A double represents it exactly.
 struct RayCrossings {
     std::array<Crossings, 3> axes;
     double first_key = 0.0;
 };
 
-/// The key and the gap behind it in one piece.
+/// Writes the key and the gap behind it together.
 inline void put(VoxelUpdate& update, std::int64_t packed_key, float log_odds) {
     static_assert(offsetof(VoxelUpdate, key) == 0 && offsetof(VoxelUpdate, log_odds) == sizeof packed_key);
     std::memcpy(static_cast<void*>(&update), &packed_key, sizeof packed_key);
@@ -53,13 +52,13 @@ using Places = hn::Rebind<std::int32_t, Times>;
 using Keys = hn::Rebind<std::int64_t, Times>;
 using Time = hn::Vec<Times>;
 
-/// In steps of an axis. OctoMap adds up the steps, 2^16 of them at most, which rounds a crossing by less than
-/// 5e-7 of one.
+/// In steps of an axis. OctoMap adds up to 2^16 steps, which rounds a crossing by less than 5e-7 of a step.
 constexpr double kMargin = 1e-6;
 
-/// What makes it unsure how many faces of another axis were crossed before faces of one.
+/// Detects where rounding makes it uncertain how many faces of another axis were crossed before those of one
+/// axis.
 struct Doubts {
-    // In steps, until the next face of the other axis.
+    // In steps, to the next face of the other axis.
     Time least;
     Time most;
     hn::Mask<Times> is_beyond_last;
@@ -78,7 +77,7 @@ HWY_INLINE Time crossed_before(const Crossings& axis, Time t, Doubts& doubts) {
     return hn::Min(hn::Max(count, hn::Zero(d)), count_max);
 }
 
-/// Puts the voxels behind the faces of one axis, `own`, into their places.
+/// Writes the voxels behind the faces of one axis, `own`, to their places in the order.
 HWY_INLINE void place_behind(const Crossings& own, const Crossings& b, const Crossings& c, double first_key,
                              Doubts& doubts, float log_odds, VoxelUpdate* updates) {
     const Times d;
@@ -87,7 +86,7 @@ HWY_INLINE void place_behind(const Crossings& own, const Crossings& b, const Cro
     constexpr std::size_t kLanesMax = hn::MaxLanes(d);
     const Time last = hn::Set(d, static_cast<double>(own.count - 1));
     for (std::int32_t begin = 0; begin < own.count; begin += static_cast<std::int32_t>(hn::Lanes(d))) {
-        // Past the last face there is none: that one is taken again.
+        // Lanes beyond the last face repeat that face.
         const Time number = hn::Min(hn::Iota(d, static_cast<double>(begin)), last);
         const Time t = hn::MulAdd(number, hn::Set(d, own.t_step), hn::Set(d, own.t_first));
         const Time of_own = hn::Add(number, hn::Set(d, 1.0));
@@ -106,7 +105,7 @@ HWY_INLINE void place_behind(const Crossings& own, const Crossings& b, const Cro
     }
 }
 
-/// Puts the voxel behind each face into its place. False if that cannot be told of some.
+/// Writes the voxel behind each face to its place. False if the order of some voxels is uncertain.
 bool place_updates(const RayCrossings& ray, float log_odds, VoxelUpdate* updates) {
     const Times d;
     Doubts doubts{hn::Set(d, 0.5), hn::Set(d, 0.5), hn::FirstN(d, 0)};
@@ -128,8 +127,8 @@ namespace {
 
 HWY_EXPORT(place_updates);
 
-/// False if the axis leads away from the last voxel, or its last face is crossed where the ray ends, as
-/// nearly as OctoMap can tell.
+/// False if the axis leads away from the last voxel, or if OctoMap's arithmetic may not reach the axis' last
+/// face before the ray ends.
 bool take_axis(const Ray& ray, std::size_t axis, std::uint16_t first, std::uint16_t last,
                RayCrossings& crossings) {
     constexpr double kBeforeEnd = 1.0 - 1e-9;
@@ -161,7 +160,7 @@ std::span<VoxelUpdate> list_ray_updates(const Ray& ray, float log_odds, std::vec
         std::size_t faces = 0;
         for (const Crossings& axis : crossings.axes) faces += static_cast<std::size_t>(axis.count);
         buffer.front() = {ray.first, log_odds};
-        // The voxel behind the last face is the last one, which is not visited.
+        // The voxel behind the last face is the ray's last one, which is not visited.
         if (HWY_DYNAMIC_DISPATCH(place_updates)(crossings, log_odds, buffer.data()))
             return {buffer.data(), faces};
     }

@@ -1,4 +1,4 @@
-// One term for all voxels of one ray at once: of what walk_ray_keys() visits, without walking.
+// Lists one term for all voxels that walk_ray_keys() visits, without walking the ray.
 #pragma once
 
 #include <span>
@@ -9,14 +9,16 @@
 
 namespace octoskin {
 
-/// One update for each voxel that walk_ray_keys() visits, in its order, at the beginning of `buffer`, which
-/// is made longer where need be, so that one more has room behind them. A step from voxel to voxel must wait
-/// for the one before, and which axis it goes along no processor foresees. So no step is taken here: for each
-/// face that the ray crosses it is worked out how many faces of the other two axes it has crossed before,
-/// several faces at a time, which says at once where in the order the voxel behind that face comes, and which
-/// one it is. Where two faces are crossed so close together that rounding decides which comes first, or the
-/// ray ends so close behind a face that rounding decides whether it gets there, the ray is walked. O(voxels),
-/// about 2 ns each. Throws std::bad_alloc.
+/// Writes one update for each voxel that walk_ray_keys() visits, in its order, to the beginning of `buffer`.
+/// The buffer grows if needed and always has room for one more update.
+///
+/// In a walk each step depends on the one before, and its axis cannot be predicted. Therefore this function
+/// does not walk. For each face that the ray crosses it computes how many faces of the other two axes the ray
+/// has crossed before, several faces at a time. This gives the voxel behind the face and its place in the
+/// order. The ray is walked instead if rounding decides which of two faces comes first, or whether the ray
+/// reaches a face near its end.
+///
+/// O(voxels), about 2 ns each. Throws std::bad_alloc.
 [[nodiscard]] std::span<VoxelUpdate> list_ray_updates(const Ray& ray, float log_odds,
                                                       std::vector<VoxelUpdate>& buffer);
 

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kNeverStepped = std::numeric_limits<double>::max();
 
-/// Fills in one axis. The casts are OctoMap's: a border in double but for its half edge, a direction in
-/// single precision; without them a voxel in a few million differs.
+/// Fills in one axis. The casts are those of OctoMap: a border is in double, but its half edge is in single
+/// precision, as is the direction. Without them one voxel in a few million differs.
 void plan_axis(Ray& ray, std::size_t axis, const VoxelLattice& lattice, std::uint16_t first_key, float origin,
                float direction) {
     if (!(direction > 0.0F) && !(direction < 0.0F)) {
@@ -41,8 +41,8 @@ Result<Ray, RayFault> plan_ray(const VoxelLattice& lattice, const Eigen::Vector3
     const Eigen::Vector3f offset = end - origin;
     const float length_squared = offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z();
     ray.length_m = static_cast<float>(std::sqrt(static_cast<double>(length_squared)));
-    // Two points on either side of a face, so close that the square underflows: the origin's voxel and no
-    // step (OctoMap divides by zero here and walks until an assertion stops it).
+    // If two points on either side of a face are so close that the square underflows: the origin's voxel and
+    // no step. (OctoMap divides by zero here and walks until an assertion stops it.)
     const Eigen::Vector3f direction =
         ray.length_m > 0.0F ? Eigen::Vector3f(offset / ray.length_m) : Eigen::Vector3f::Zero();
     plan_axis(ray, 0, lattice, first->x, origin.x(), direction.x());

@@ -1,5 +1,5 @@
-// Which voxels a ray passes through: exactly the keys of OctoMap 1.9's computeRayKeys, for any origin and
-// end.
+// Finds the voxels that a ray passes through: exactly the keys of OctoMap 1.9's computeRayKeys, for any
+// origin and end.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,18 +19,18 @@ enum class RayFault : std::uint8_t {
 };
 
 /// A ray prepared for walking. Along each axis i the ray crosses voxel faces at distances t_next[i],
-/// t_next[i] + t_step[i], ... from the origin; whichever axis has the nearest crossing is stepped next
-/// (Amanatides and Woo 1987).
+/// t_next[i] + t_step[i], ... from the origin. The axis with the nearest crossing is stepped next (Amanatides
+/// and Woo 1987).
 struct Ray {
-    VoxelKey first;                      ///< holds the origin
-    VoxelKey last;                       ///< holds the end; never visited
+    VoxelKey first;                      ///< contains the origin
+    VoxelKey last;                       ///< contains the end; never visited
     std::array<std::int32_t, 3> sign{};  ///< of the direction along each axis: -1, 0, 1
     std::array<double, 3> t_next{};  ///< distance to the next face, metres; huge for an axis never stepped
     std::array<double, 3> t_step{};  ///< distance between two faces, metres
     float length_m = 0.0F;
-    /// No walk takes more steps. Exact arithmetic crosses |last - first| faces along each axis within the
-    /// length. Coordinates are at most 2^15 voxels and single precision has 24 bits, so rounding moves a
-    /// crossing by far less than one voxel: each axis can be stepped once too often, never twice.
+    /// Upper bound on the steps of a walk. Exact arithmetic crosses |last - first| faces along each axis
+    /// within the length. Coordinates are at most 2^15 voxels and single precision has 24 bits, so rounding
+    /// moves a crossing by far less than one voxel: each axis can take one step too many, never two.
     std::int32_t steps_max = 0;
 };
 
@@ -38,16 +38,17 @@ struct Ray {
 [[nodiscard]] Result<Ray, RayFault> plan_ray(const VoxelLattice& lattice, const Eigen::Vector3f& origin,
                                              const Eigen::Vector3f& end);
 
-/// How a caller numbers voxels: a linear index, and what one step along each axis adds to it.
+/// The caller's numbering of voxels: a linear index, and the increment for one step along each axis.
 struct VoxelIndexing {
     std::ptrdiff_t first = 0;
     std::ptrdiff_t last = 0;
     std::array<std::ptrdiff_t, 3> stride{};
 };
 
-/// Calls visit(index) for each voxel between origin and end, the origin's own included, the end's excluded;
-/// for none if both lie in one voxel. Along each axis the walk may leave the span between the two by one
-/// voxel (see `Ray::steps_max`), and the numbering must tell those apart too. O(voxels), about 4 ns each.
+/// Calls visit(index) for each voxel from the origin to the end: the origin's own is included, the end's is
+/// not. If both lie in one voxel there is no call. Along each axis the walk may leave the range between the
+/// two by one voxel (see `Ray::steps_max`); the numbering must give such voxels distinct indices. O(voxels),
+/// about 4 ns each.
 template <class Visit>
 void walk_ray(const Ray& ray, const VoxelIndexing& indexing, Visit&& visit) {
     if (indexing.first == indexing.last) return;
@@ -58,8 +59,8 @@ void walk_ray(const Ray& ray, const VoxelIndexing& indexing, Visit&& visit) {
     std::ptrdiff_t index = indexing.first;
     visit(index);
     for (std::int32_t step = 0; step < ray.steps_max; ++step) {
-        // On a tie z goes before y and y before x. Selecting instead of branching: which axis comes next is
-        // close to random, and a wrong guess costs more than the whole step.
+        // On a tie z precedes y and y precedes x. Selects instead of branches: the next axis is nearly
+        // random, and a misprediction costs more than the whole step.
         const bool is_x = x_next < y_next && x_next < z_next;
         const bool is_y = !(x_next < y_next) && y_next < z_next;
         const bool is_z = !is_x && !is_y;
@@ -68,14 +69,14 @@ void walk_ray(const Ray& ray, const VoxelIndexing& indexing, Visit&& visit) {
         y_next += is_y ? ray.t_step[1] : 0.0;
         z_next += is_z ? ray.t_step[2] : 0.0;
         if (index == indexing.last) return;
-        // Rounding led past the last voxel. OctoMap ends the ray here too, and so drops the voxel just
-        // entered, even where that one was passed in truth.
+        // Rounding led past the last voxel. OctoMap also ends the ray here and omits the voxel just entered,
+        // even if the ray passes it.
         if (std::min({x_next, y_next, z_next}) > static_cast<double>(ray.length_m)) return;
         visit(index);
     }
 }
 
-/// The same, with keys. A voxel beyond the octree's bounds (rounding, within one voxel of them) is left out.
+/// The same, with keys. Omits a voxel beyond the octree's bounds, which rounding can reach within one voxel.
 template <class Visit>
 void walk_ray_keys(const Ray& ray, Visit&& visit) {
     // One field of 20 bits an axis, offset by one so that a key of -1 borrows nothing from its neighbour.

@@ -1,13 +1,13 @@
-// What measured a voxel.
+// The kind of sensor that measured a voxel.
 #pragma once
 
 #include <cstdint>
 
 namespace octoskin {
 
-/// The later one's evidence is the stronger.
+/// Ordered by strength: the evidence of a later kind is stronger.
 enum class SensorKind : std::uint8_t {
-    none,   ///< no sensor: the client of a query knows that the robot itself is there
+    none,   ///< no sensor: the client of a query knows that the robot occupies the voxel
     range,  ///< a range sensor
     camera,
 };

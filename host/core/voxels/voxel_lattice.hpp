@@ -1,4 +1,4 @@
-// Where voxels are: OctoMap's discrete keys and their arithmetic. Nothing here knows what a voxel holds.
+// Positions of voxels: OctoMap's discrete keys and their arithmetic. Independent of what a voxel contains.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ struct VoxelKey {
 inline constexpr int kVoxelsPerAxis = 65536;
 inline constexpr int kOriginKey = kVoxelsPerAxis / 2;
 
-/// The infinite grid of cubes of one edge length, cut off at the octree's bounds.
+/// The grid of cubes of one edge length within the octree's bounds.
 class VoxelLattice {
   public:
     /// `resolution_m` is finite and positive (asserted).
@@ -29,8 +29,9 @@ class VoxelLattice {
     [[nodiscard]] double resolution_m() const noexcept { return resolution_m_; }
 
     /// The key along one axis; empty for a coordinate that is not finite or outside the octree. A coordinate
-    /// exactly on a face belongs to the upper voxel. OctoMap's `coordToKeyChecked(double)`, but an integer is
-    /// made only of a number that fits one: what a NaN or 1e30 converts to depends on the processor.
+    /// exactly on a face belongs to the upper voxel. Same as OctoMap's `coordToKeyChecked(double)`, but only
+    /// a number that fits is converted to an integer: the conversion of a NaN or 1e30 depends on the
+    /// processor.
     [[nodiscard]] std::optional<std::uint16_t> key_of(double coordinate_m) const noexcept {
         const double scaled = voxels_per_m_ * coordinate_m;
         if (!(scaled >= -kOriginKey && scaled < kOriginKey)) return std::nullopt;
@@ -39,7 +40,7 @@ class VoxelLattice {
         return static_cast<std::uint16_t>(floored + kOriginKey);
     }
 
-    /// The voxel that holds a point in the map frame, metres; empty if any coordinate has no key.
+    /// The voxel that contains a point in the map frame, metres; empty if a coordinate has no key.
     [[nodiscard]] std::optional<VoxelKey> key_of(const Eigen::Vector3d& p_map) const noexcept {
         const auto x = key_of(p_map.x());
         const auto y = key_of(p_map.y());

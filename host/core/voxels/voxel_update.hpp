@@ -1,4 +1,4 @@
-// What is to be added to a voxel, whatever it holds.
+// A value to be added to a voxel.
 #pragma once
 
 #include "host/core/voxels/voxel_lattice.hpp"

@@ -9,12 +9,12 @@ namespace octoskin {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-/// What may be off before anything is compared.
+/// Prior standard deviations of the camera's error.
 constexpr double kTurnSigmaRad = 3.0 / kDegPerRad;
 constexpr double kShiftSigmaM = 0.05;
 constexpr double kScaleSigma = 0.02;
 
-/// Errors that are larger are not what this model is true for.
+/// The linear model does not hold for larger errors.
 constexpr double kTurnMaxRad = 10.0 / kDegPerRad;
 
 }  // namespace
@@ -54,7 +54,8 @@ void CameraJudge::decide() {
     evidence_ = std::move(found.evidence);
     const Vector& likeliest = found.likeliest;
     const bool is_named = evidence_.is_to_be_named() && likeliest.head<3>().norm() <= kTurnMaxRad;
-    // The unknowns move points of the camera to where they are; the camera moves the other way round.
+    // The unknowns move the camera's points to their true places; the camera's own error has the opposite
+    // sign.
     likeliest_ = {.turn_deg = -kDegPerRad * likeliest.head<3>(),
                   .shift_m = -likeliest.segment<3>(3),
                   .depth_scale = 1.0 + likeliest[6]};

@@ -6,27 +6,27 @@
 namespace octoskin {
 namespace {
 
-/// Nearer to the sensor the robot's own surroundings are no evidence.
+/// Closer to the sensor, the robot's own surroundings are ignored.
 constexpr double kWalkBeginM = 0.1;
 constexpr double kWalkStepM = 0.03;
-/// A surface is crossed where the camera's depth and the ray's own come within this of each other.
+/// A surface counts as crossed where the camera's depth and the ray's depth differ by at most this.
 constexpr double kCrossingM = 0.12;
-/// Of a walk in steps of changing length: the part of the way to what is seen that a step takes.
+/// Step of a walk, as a fraction of the distance to the seen surface.
 constexpr double kStepShare = 0.4;
 constexpr double kStepMinM = 0.02;
-/// What is doubtful is so for 3 cm about (CertainPixels): no ray steps over it.
+/// A doubtful pixel makes 3 cm around it doubtful (CertainPixels): no step is long enough to skip that.
 constexpr double kStepMaxM = 0.08;
 constexpr int kSamplesMax = 120;
-/// How far something that nobody has seen hides what is behind it, for the length of a step.
+/// Depth by which an unseen object is assumed to hide what is behind it, used for the step length.
 constexpr double kUnknownM = 0.1;
-/// A surface is looked at this far before and behind where the ray meets it.
+/// A surface is sampled this far before and behind the point where the ray meets it.
 constexpr double kBesideM = 0.05;
-/// A ray that slides along a surface says nothing of where it meets it.
+/// A ray nearly parallel to a surface does not determine where it meets the surface.
 constexpr double kDepthPerMMin = 0.25;
-/// Between the pixels of a plane, two to each side.
+/// Angle between the pixels of a plane; `kPlaneSteps` pixels to each side.
 constexpr double kPlaneStepRad = 0.006;
 constexpr int kPlaneSteps = 2;
-/// From a plane the pixels deviate by no more.
+/// Largest deviation of the pixels from a plane.
 constexpr double kPlaneSigmaMaxM = 0.1;
 
 }  // namespace
@@ -40,7 +40,7 @@ CameraView::CameraView(const WitnessImages& images, const CameraIntrinsics& came
       T_camera_map_(T_map_camera.inverse()),
       ray_slope_max_(ray_slope_max) {}
 
-/// The pixel that the point is seen in, row-major.
+/// The pixel that shows the point, row-major.
 std::optional<std::size_t> CameraView::pixel_at(const Eigen::Vector3d& p_camera) const {
     if (!(p_camera.z() > 0.0)) return std::nullopt;
     const RaySlope ray{p_camera.x() / p_camera.z(), p_camera.y() / p_camera.z()};
@@ -95,7 +95,7 @@ std::optional<SeenPlane> CameraView::plane_at(const Eigen::Vector3d& p_camera) c
     }
     if (!std::isfinite(sum)) return std::nullopt;
     constexpr double kCount = 25.0;
-    constexpr double kSquaresOfSteps = 50.0;  // of i, and of j, over all pixels
+    constexpr double kSquaresOfSteps = 50.0;  // sum of i^2, and of j^2, over all pixels
     const double middle = sum / kCount;
     const double per_u = sum_u / kSquaresOfSteps;
     const double per_v = sum_v / kSquaresOfSteps;
@@ -131,8 +131,8 @@ bool CameraView::is_stopped(const Eigen::Vector3d& origin, const Eigen::Vector3d
     return false;
 }
 
-/// `crossed_m` along a ray in camera coordinates: where it goes through the surface, and how fast. Negative
-/// speed: from behind.
+/// `crossed_m`: along a ray in camera coordinates. Returns where the ray crosses the surface, and its change
+/// of depth per metre; negative: from behind.
 std::optional<CameraView::Crossing> CameraView::crossing_at(const Eigen::Vector3d& p,
                                                             const Eigen::Vector3d& d,
                                                             double crossed_m) const {
@@ -163,7 +163,7 @@ RayReach CameraView::reach(const Eigen::Vector3d& origin, const Eigen::Vector3d&
     std::optional<Before> before;
     double along_m = kWalkBeginM;
     for (int i = 0; i < kSamplesMax && along_m <= range_max_m; ++i) {
-        // A pixel without a value hides as the robot does.
+        // A pixel without a value is treated like the robot: it hides the ray.
         const Look seen = look_at_camera(p + along_m * d).value_or(Look{-kUnknownM, true, Certainty::none});
         const bool is_hidden = seen.behind_m < 0.0;
         const bool was_hidden = before && before->behind_m < 0.0;
@@ -185,7 +185,7 @@ RayReach CameraView::reach(const Eigen::Vector3d& origin, const Eigen::Vector3d&
                 (was_hidden ? reach.hidden_until_m : reach.clear_m) = crossing->along_m;
                 return reach;
             }
-            // Else the ray passes an outline.
+            // Otherwise, the ray passes an outline.
         }
         if (is_hidden || was_hidden || !seen.is_clear()) reach.hidden_until_m = along_m;
         if (!is_hidden && seen.is_clear()) reach.clear_m = along_m;

@@ -8,9 +8,9 @@ namespace octoskin {
 namespace {
 
 constexpr double kDifferSigmas = 4.0;
-/// A smaller step than this is not seen in the noise that the filter leaves.
+/// A smaller depth step is not visible in the noise that the filter leaves.
 constexpr double kStepMaxM = 0.1;
-/// A second difference has sqrt(6) times the noise of one value; 4.5 of those.
+/// A second difference has sqrt(6) times the noise of one value; this is 4.5 of those.
 constexpr double kStepSigmas = 11.0;
 /// Pixels from the middle of a second difference to its ends.
 constexpr std::size_t kReachPx = 1;
@@ -45,7 +45,7 @@ void CertainPixels::doubt_values(const DepthImage& raw, const DepthImage& filter
     inverse_depth_.resize(width_ * height_);
     for (std::size_t i = 0; i < is_doubtful_.size(); ++i) {
         const float depth_m = filtered.depth_m[i];
-        // Not true of a NaN either.
+        // False for a NaN, too.
         const bool agrees = std::abs(raw.depth_m[i] - depth_m) <= differ_max_m_;
         is_doubtful_[i] = agrees ? 0 : 1;
         inverse_depth_[i] = 1.0F / depth_m;
@@ -57,7 +57,8 @@ void CertainPixels::doubt_edges(const DepthImage& filtered) {
         const float middle = inverse_depth_[i];
         const float bend = inverse_depth_[i - step] + inverse_depth_[i + step] - 2.0F * middle;
         const float depth_m = filtered.depth_m[i];
-        return std::abs(bend) * depth_m * depth_m > step_max_m_;  // what has no value is doubtful anyway
+        // pixels without a value are doubtful anyway
+        return std::abs(bend) * depth_m * depth_m > step_max_m_;
     };
     for (std::size_t v = kReachPx; v + kReachPx < height_; ++v) {
         for (std::size_t u = kReachPx; u + kReachPx < width_; ++u) {
@@ -68,7 +69,7 @@ void CertainPixels::doubt_edges(const DepthImage& filtered) {
     }
 }
 
-/// A window of (2 margin + 1) squared, by rows and then by columns; beyond the border all is doubtful.
+/// Uses a window of (2 margin + 1) squared, by rows and then by columns; beyond the border, all is doubtful.
 void CertainPixels::raise(std::vector<Certainty>& certainty, std::size_t margin_px, Certainty to) {
     in_row_.resize(width_ * height_);
     for (std::size_t v = 0; v < height_; ++v) {

@@ -1,5 +1,5 @@
-// Which pixels of a depth image show without doubt what is there: those away from depth edges, from pixels
-// without a value, and from where the filter changed what the camera measured.
+// Finds the reliable pixels of a depth image: those away from depth edges, from pixels without a value, and
+// from pixels that the filter changed.
 #pragma once
 
 #include <cstddef>
@@ -11,31 +11,31 @@
 namespace octoskin {
 
 struct CertaintyConfig {
-    double camera_sigma_m = 0.03;  ///< of a pixel's depth as it came
-    bool is_filtered = true;       ///< else the image as it came is compared with itself
-    /// About every doubtful pixel: within the first no surface is certain, within the second not that nothing
-    /// is before what is seen. 2 and 3 cm at 2.5 m.
+    double camera_sigma_m = 0.03;  ///< standard deviation of a pixel's raw depth
+    bool is_filtered = true;       ///< false: the raw image is compared with itself
+    /// Margins around every doubtful pixel: within the first, no surface is certain; within the second, it is
+    /// not certain that the space before the surface is free. 2 and 3 cm at 2.5 m.
     double surface_margin_rad = 0.008;
     double clear_margin_rad = 0.012;
 };
 
-/// Of a pixel.
+/// Certainty of a pixel.
 enum class Certainty : std::uint8_t {
-    none,     ///< there may be anything
-    surface,  ///< what is seen is there
+    none,     ///< anything may be present
+    surface,  ///< the seen surface is there
     clear,    ///< and nothing is before it, however thin
 };
 
-/// Finds them in one image after the other; from the second of a size on it takes no memory.
+/// Processes one image after the other; allocates no memory from the second image of a size on.
 class CertainPixels {
   public:
     CertainPixels(const CameraIntrinsics& camera, const CertaintyConfig& config);
 
-    /// `raw`: as the camera gave it; `filtered`: after the filter, with the robot in it; both of the camera's
-    /// size (asserted). `certainty`: by pixel, row-major. A pixel is doubtful if either image has no
-    /// value there, if the two differ by more than 4 sigma, or if the inverse depth, which is linear in a
-    /// plane, bends there by a step of 10 cm or more (unfiltered: by 11 sigma); all within the
-    /// margins of one, and of the image's border, is less certain. About 3 ms for 512 x 424.
+    /// `raw`: the camera's image; `filtered`: after the filter, with the robot; both of the camera's size
+    /// (asserted). `certainty`: by pixel, row-major. A pixel is doubtful in three cases: either image has no
+    /// value, the two differ by more than 4 sigma, or the inverse depth (linear in a plane) bends by a step
+    /// of 10 cm or more (unfiltered: by 11 sigma). All pixels within the margins of a doubtful one, and of
+    /// the image's border, are less certain. About 3 ms for 512 x 424.
     void find(const DepthImage& raw, const DepthImage& filtered, std::vector<Certainty>& certainty);
 
   private:
@@ -52,7 +52,7 @@ class CertainPixels {
     std::vector<float> inverse_depth_;
     std::vector<std::uint8_t> is_doubtful_;
     std::vector<std::uint8_t> in_row_;  ///< is_doubtful_, widened along its row
-    std::vector<std::uint16_t> above_;  ///< how many rows of the window are doubtful in a column
+    std::vector<std::uint16_t> above_;  ///< number of doubtful rows of the window in a column
 };
 
 }  // namespace octoskin

@@ -1,5 +1,5 @@
-// An error that all sensors share, by weighted least squares, and what each sensor says of it. The same for
-// the camera's seven unknowns and for a joint's one.
+// Estimates an error that all sensors share by weighted least squares, and each sensor's evidence for it.
+// Used for the camera's seven unknowns and for a joint's one.
 #pragma once
 
 #include <Eigen/Dense>
@@ -13,7 +13,7 @@
 
 namespace octoskin {
 
-/// What one sensor knows of N unknowns: normal equations.
+/// One sensor's information about N unknowns: normal equations.
 template <int N>
 struct ErrorShare {
     Eigen::Matrix<double, N, N> information = Eigen::Matrix<double, N, N>::Zero();
@@ -26,15 +26,15 @@ struct ErrorShare {
     }
 };
 
-/// The normal equations of one sensor's comparisons: of N unknowns that all sensors share, and of what is the
-/// sensor's own, its offset (m) and how much thicker than expected the walls are that it sees from behind
+/// The normal equations of one sensor's comparisons. Unknowns: N that all sensors share, and two of the
+/// sensor's own: its offset (m), and how much thicker than expected the walls are that it sees from behind
 /// (m).
 template <int N>
 class ErrorFit {
   public:
     using Vector = Eigen::Matrix<double, N, 1>;
 
-    /// `change`: of the range with each of the N.
+    /// `change`: change of the range with each of the N unknowns.
     void add(const Vector& change, const RangeChange& range) {
         Eigen::Matrix<double, kAll, 1> all;
         all << change, 1.0, (range.is_from_behind ? -1.0 : 0.0);
@@ -42,14 +42,14 @@ class ErrorFit {
         moment_ += range.weight * range.off_m * all;
         weight_ += range.weight;
     }
-    /// The oldest of some 1500 comparisons, of all sensors, count for little: to be called with each.
+    /// Reduces the weight of old comparisons; about 1500 count. Call once for each comparison of any sensor.
     void forget() {
         constexpr double kKept = 1.0 - 1.0 / 1500.0;
         information_ *= kKept;
         moment_ *= kKept;
         weight_ *= kKept;
     }
-    /// The sensor's own unknowns, with their prior, taken out of its normal equations (Schur complement).
+    /// Eliminates the sensor's own unknowns, with their prior, from its normal equations (Schur complement).
     [[nodiscard]] ErrorShare<N> without_own() const {
         constexpr double kOffsetSigmaM = 0.01;
         constexpr double kWallSigmaM = 0.04;
@@ -71,36 +71,36 @@ class ErrorFit {
     double weight_ = 0.0;
 };
 
-/// What the sensors say of an error: log-likelihood ratios to none.
+/// The sensors' evidence for an error: log-likelihood ratios of the error to none.
 struct ErrorEvidence {
     std::vector<double> said;   ///< by sensor
-    double sum = 0.0;           ///< less what the error is unlikely by itself
-    double evidence = 0.0;      ///< the same without the sensor that speaks for it most
-    std::size_t explained = 0;  ///< sensors that speak for it
-    double moved_m = 0.0;       ///< by so much it moves what is predicted, in the mean of squares
+    double sum = 0.0;           ///< sum, minus the prior's cost of the error
+    double evidence = 0.0;      ///< the same without the strongest supporter
+    std::size_t explained = 0;  ///< number of sensors that support the error
+    double moved_m = 0.0;       ///< root mean square by which the error moves the predictions, metres
 
-    /// Less is no fault.
+    /// A smaller effect is no fault.
     static constexpr double kMovedMinM = 0.006;
-    /// `unlikely`: so much evidence is rare where nothing is off.
+    /// `unlikely`: evidence that is rare without an error.
     [[nodiscard]] bool is_suspect(double unlikely) const {
         return evidence >= unlikely && moved_m >= kMovedMinM;
     }
     [[nodiscard]] bool is_to_be_named() const {
         return evidence >= 4.5 && explained >= 2 && moved_m >= kMovedMinM;
     }
-    /// Of what is named.
+    /// For an error that is already reported.
     [[nodiscard]] bool is_to_be_kept() const { return evidence >= 3.0; }
 };
 
-/// The likeliest error, by what all sensors know.
+/// The most likely error by all sensors' information.
 template <int N>
 struct ErrorEstimate {
-    Eigen::Matrix<double, N, N> information;  ///< the prior's, too
+    Eigen::Matrix<double, N, N> information;  ///< including the prior's
     Eigen::Matrix<double, N, 1> moment;
     Eigen::Matrix<double, N, 1> likeliest;
     ErrorEvidence evidence;
 
-    /// `sigmas`: what may be off before anything is compared.
+    /// `sigmas`: prior standard deviations of the unknowns.
     ErrorEstimate(std::span<const ErrorShare<N>> shares, const Eigen::Matrix<double, N, 1>& sigmas) {
         ErrorShare<N> all;
         for (const ErrorShare<N>& share : shares) {

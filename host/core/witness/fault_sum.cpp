@@ -6,17 +6,17 @@
 namespace octoskin {
 namespace {
 
-/// What fits counts for a sensor until so much is together.
+/// Limit of the evidence against a fault that counts as credit for a sensor.
 constexpr double kCreditMax = 14.0;
-/// Each comparison that says anything takes this of the evidence.
+/// Subtracted from the evidence at each informative comparison.
 constexpr double kDoubt = 0.15;
-/// Weak evidence of one place, 0.3 m about, adds up to this at the most: it may be of one thing. Less than
-/// what names.
+/// Weak evidence from one place (within 0.3 m) adds up to at most this, because it may come from one object.
+/// Less than the evidence for a report.
 constexpr double kPlaceM = 0.3;
 constexpr double kPlaceMax = 5.0;
-/// Evidence that is together counts up to this.
+/// Upper limit of the accumulated evidence.
 constexpr double kEvidenceMax = 40.0;
-/// A comparison that says so much is for a fault or against it, until some 64 others are.
+/// A comparison with this much evidence counts as for or against a fault; about the newest 64 are counted.
 constexpr double kSaysMuch = 0.5;
 constexpr float kForgotten = 1.0F - 1.0F / 64.0F;
 

@@ -3,7 +3,7 @@
 namespace octoskin {
 namespace {
 
-/// What a joint may be off before anything is compared: radians, metres of a prismatic one.
+/// Prior standard deviation of a joint's offset: radians, or metres of a prismatic joint.
 constexpr double kOffsetSigma = 0.1;
 
 }  // namespace
@@ -22,7 +22,7 @@ void JointJudge::decide() {
     for (std::size_t joint = 0; joint < kJointsMax; ++joint) {
         for (std::size_t i = 0; i < sensors_.size(); ++i) shares[i] = sensors_[i][joint].without_own();
         ErrorEstimate<1> found(shares, Fit::Vector(kOffsetSigma));
-        // One that moves no sensor, as those that the rig does not have, says nothing.
+        // A joint that moves no sensor, or that the rig does not have, gives no evidence.
         const bool says_something = found.evidence.sum > 0.0;
         const bool is_better = evidence_.sum <= 0.0 || found.evidence.evidence > evidence_.evidence;
         if (joint > 0 && !(says_something && is_better)) continue;

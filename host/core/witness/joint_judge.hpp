@@ -1,4 +1,4 @@
-// Whether one joint that is not where its joint states say explains what range sensors contradict.
+// Decides whether an offset of one joint from its joint states explains the contradictions of range sensors.
 #pragma once
 
 #include <array>
@@ -13,32 +13,32 @@
 
 namespace octoskin {
 
-/// Which joint, and by how much it is further than its joint states say: radians, metres of a prismatic one.
+/// A joint and its offset from its joint states: radians, or metres of a prismatic joint.
 struct JointError {
     std::size_t joint = 0;
     double offset = 0.0;
 };
 
-/// CameraJudge's estimate, of one unknown: of each joint alone its offset, by the ranges of all sensors that
-/// it carries. Of some 1500 newest comparisons. 0.8 kB a sensor.
+/// CameraJudge's estimate with one unknown: for each joint alone its offset, from the ranges of all sensors
+/// that the joint carries. Uses about the newest 1500 comparisons. 0.8 kB a sensor.
 class JointJudge {
   public:
     explicit JointJudge(std::size_t sensors) : sensors_(sensors) {}
 
-    /// `twists`: how the sensor moves with each joint, camera coordinates. About 1 us.
+    /// `twists`: motion of the sensor with each joint, camera coordinates. About 1 us.
     void compare(std::uint16_t sensor, const RangeChange& change, const JointTwists& twists);
-    /// After all comparisons with one image. About 10 us for 34 sensors.
+    /// Call after all comparisons with one image. About 10 us for 34 sensors.
     void decide();
 
-    /// The likeliest joint's, while at least two sensors speak for it, and all but the one that does so most
-    /// by a likelihood ratio of e^4.5.
+    /// The error of the most likely joint, while at least two sensors support it, and all sensors except the
+    /// strongest supporter support it by a likelihood ratio of e^4.5.
     [[nodiscard]] const std::optional<JointError>& error() const noexcept { return error_; }
-    /// An error is so likely that no sensor may be named. One unknown takes up less of what is not quite as
-    /// predicted than the camera's seven.
+    /// True if an error is so likely that no sensor may be reported. One unknown fits less of the general
+    /// deviations than the camera's seven, so the limit is lower.
     [[nodiscard]] bool is_suspect() const { return evidence_.is_suspect(1.75); }
-    /// The likeliest joint, also while it has no error.
+    /// The most likely joint, even if its error is not significant.
     [[nodiscard]] const JointError& likeliest() const noexcept { return likeliest_; }
-    /// What is said of that.
+    /// The evidence for the most likely error.
     [[nodiscard]] const ErrorEvidence& evidence() const noexcept { return evidence_; }
 
   private:

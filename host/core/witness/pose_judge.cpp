@@ -5,15 +5,15 @@
 namespace octoskin {
 namespace {
 
-/// What explains more by this, with the evidence that one sensor alone gives left out, is what is off. An
-/// error of the camera has seven unknowns to a joint's one, and takes up some of everything that is not quite
-/// as predicted: it has to lead by a share of all that it explains, too.
+/// An explanation leads if it explains more by this margin, without the strongest single sensor. An error of
+/// the camera has seven unknowns, a joint's error one, and fits part of every deviation. The camera must
+/// therefore also lead by a fraction of all that it explains.
 constexpr double kLead = 3.0;
 constexpr double kLeadOfCamera = 0.25;
-/// A lead of a shorter time is of one view of one thing.
+/// A shorter lead may come from one view of one object.
 constexpr Nanoseconds kLeadTime{3'000'000'000};
 
-/// By how much more one error explains than another, without the sensor that says so most.
+/// By how much more one error explains than another, without the strongest single sensor.
 double lead(const ErrorEvidence& of, const ErrorEvidence& to) {
     double sum = 0.0;
     double most = 0.0;
@@ -52,7 +52,7 @@ void PoseJudge::decide(HostTime now) {
     const bool is_alone = leader != Leader::none && now - leads_since_ >= kLeadTime;
     PoseFault fault;
     if (!is_alone || leader == Leader::camera) fault.camera = camera_.likeliest();
-    // No sensor speaks for a joint where none is behind one that moves it: there is nothing to weigh.
+    // If no sensor supports any joint's error, there is nothing to compare.
     const bool is_any_joint = joints_.evidence().explained > 0;
     if (is_any_joint && (!is_alone || leader == Leader::joint)) fault.joint = joints_.likeliest();
     fault.explained = std::max(fault.camera ? camera_.evidence().explained : 0,

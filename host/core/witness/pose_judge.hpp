@@ -1,5 +1,5 @@
-// What is off where several sensors contradict the camera: the camera, or a joint of the robot that carries
-// the sensors.
+// Decides what causes the contradictions of several sensors with the camera: the camera, or a joint that
+// carries the sensors.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,27 @@
 
 namespace octoskin {
 
-/// With both one of them is off; which is not known.
+/// If both are set, one of them is wrong, but it is not known which.
 struct PoseFault {
     std::optional<CameraError> camera;
     std::optional<JointError> joint;
-    std::size_t explained = 0;  ///< sensors that speak for it
+    std::size_t explained = 0;  ///< number of sensors that support it
 };
 
-/// Weighs an error of the camera against that of one joint, by the same comparisons. 2 kB a sensor.
+/// Compares an error of the camera with that of one joint, by the same comparisons. 2 kB a sensor.
 class PoseJudge {
   public:
     explicit PoseJudge(std::size_t sensors) : camera_(sensors), joints_(sensors) {}
 
-    /// `twists`: how the sensor moves with each joint, camera coordinates. About 2 us.
+    /// `twists`: motion of the sensor with each joint, camera coordinates. About 2 us.
     void compare(std::uint16_t sensor, const RangeChange& change, const JointTwists& twists);
-    /// After all comparisons with one image, made at `now`. About 20 us for 34 sensors.
+    /// Call after all comparisons with one image, made at `now`. About 20 us for 34 sensors.
     void decide(HostTime now);
 
-    /// While one of the two judges has an error: that of the one that has explained clearly more for some
-    /// seconds, else of both.
+    /// Set while one of the two judges has an error: the error of the one that has explained clearly more for
+    /// some seconds, otherwise both.
     [[nodiscard]] const std::optional<PoseFault>& fault() const noexcept { return fault_; }
-    /// An error of the one or the other is so likely that no sensor may be named.
+    /// True if an error of either is so likely that no sensor may be reported.
     [[nodiscard]] bool is_suspect() const noexcept { return camera_.is_suspect() || joints_.is_suspect(); }
     [[nodiscard]] const CameraJudge& camera() const noexcept { return camera_; }
     [[nodiscard]] const JointJudge& joints() const noexcept { return joints_; }

@@ -6,26 +6,26 @@
 namespace octoskin {
 namespace {
 
-/// What is off by more is of something else.
+/// A larger difference comes from another object.
 constexpr double kOffMaxM = 0.15;
-/// From here on a comparison counts as of an outlier (Huber).
+/// From this deviation on, a comparison counts as an outlier (Huber).
 constexpr double kHuberSigmas = 2.0;
-/// Of the robot's pose and the surface that the image gives.
+/// Uncertainty of the robot's pose and of the surface in the image.
 constexpr double kPoseSigmaM = 0.01;
-/// Comparisons of one time and place are not independent: they count for less than they say.
+/// Comparisons close in time and place are not independent: their weight is reduced.
 constexpr double kCounts = 0.7;
-/// Those of a wall from behind for even less: its thickness changes from place to place.
+/// Weight of comparisons with a wall from behind: lower, because the thickness varies from place to place.
 constexpr double kCountsFromBehind = 0.2;
 constexpr double kWallM = 0.03;
-/// A ray along a surface says nothing of where it meets it.
+/// A ray nearly parallel to a surface does not determine where it meets the surface.
 constexpr double kAlongMin = 0.25;
-/// Of a cone's peak so much must be of surfaces that have a plane.
+/// Minimum share of a cone's peak that comes from surfaces with a plane.
 constexpr double kPlaneShareMin = 0.4;
 
 }  // namespace
 
-/// A point p of a ray with direction d lies on the plane n.p + D = 0 that the camera sees, and, with its
-/// error, on n.(p + turn x p + shift) + D scale = 0.
+/// A point p of a ray with direction d lies on the plane n.p + D = 0 that the camera sees. With the camera's
+/// error, it lies on n.(p + turn x p + shift) + D scale = 0.
 std::optional<RangeChange> range_change(const RangeCompared& compared, std::span<const PlaneHit> hits) {
     if (std::abs(compared.off_m) > kOffMaxM) return std::nullopt;
     RangeChange change{.is_from_behind = compared.is_from_behind};

@@ -10,32 +10,34 @@ namespace octoskin {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-/// About an ideal ray four more, to see how its range changes with its direction.
+/// Angle of four rays around an ideal ray, which show how its range changes with its direction.
 constexpr double kBesideRad = 1.0 * kRadPerDeg;
-/// Between the rays of a cone.
+/// Angle between the rays of a cone.
 constexpr double kSpacingRad = 5.0 * kRadPerDeg;
-/// The first so many metres of range with this much of the most signal of any such are what is measured.
+/// The measured peak: the first interval of this length (metres of range) with this fraction of the strongest
+/// interval's signal.
 constexpr double kPeakWidthM = 0.15;
 constexpr double kPeakShare = 0.3;
-/// How much that is differs from sensor to sensor and with what is seen: if the peak is another one within
-/// these, there is no prediction.
+/// That fraction varies between sensors and scenes. If the peak changes within these limits, there is no
+/// prediction.
 constexpr double kPeakShareMin = 0.15;
 constexpr double kPeakShareMax = 0.5;
 constexpr double kSamePeakM = 0.03;
-/// If more of the signal may come from where the camera does not see, there is no prediction.
+/// If a larger share of the signal may come from unseen space, there is no prediction.
 constexpr double kUnseenShareMax = 0.1;
-/// Rays of a smaller part do not count for what is clear.
+/// Rays with a smaller weight are ignored for the free space.
 constexpr double kWeightMin = 0.003;
-/// Of how far the peak's ranges are spread, and of how far the peak is from the mean of all.
+/// Fraction of the spread of the peak's ranges, and of the distance of the peak from the mean of all.
 constexpr double kSpreadShare = 0.25;
-/// Of a peak so much must be of surfaces that have a plane, and these be of one direction, within some 10
-/// degrees (the mean normal's length), if it is to be one surface.
+/// To count as one surface, at least this share of a peak must come from surfaces with a plane, and these
+/// must have one direction within about 10 degrees (length of the mean normal).
 constexpr double kPlaneShareMin = 0.4;
 constexpr double kOnePlane = 0.985;
-/// Of how far the ranges are spread of a ray and of those a degree beside it: what a mount may be off.
+/// Fraction of the spread of the ranges of a ray and of those one degree beside it: a mount's angular
+/// tolerance.
 constexpr double kRayShare = 0.5;
 
-/// `axis` moved by `angle` towards `turn` about it; turns are the same for every axis of one sensor.
+/// `axis` rotated by `angle` towards `turn` about it; turns are the same for every axis of one sensor.
 Eigen::Vector3d off_axis(const Eigen::Vector3d& axis, double angle, double turn) {
     return turned_z(axis.normalized()) * Eigen::Vector3d(std::sin(angle) * std::cos(turn),
                                                          std::sin(angle) * std::sin(turn), std::cos(angle));
@@ -50,7 +52,7 @@ double turn_rad(std::size_t i) {
 RangePredictor::RangePredictor(const Eigen::Vector3d& direction_sensor, const BeamOptics& optics,
                                const PredictorConfig& config)
     : config_(config), is_cone_(optics.is_cone()) {
-    if (!direction_sensor.allFinite()) return;  // nor is any beam
+    if (!direction_sensor.allFinite()) return;  // no beam is finite then, either
     const double turned_by = kTurnDeg * kRadPerDeg;
     std::array<Eigen::Vector3d, kTurns> turned_axes;
     for (std::size_t i = 0; i < kTurns; ++i)
@@ -94,7 +96,7 @@ RangePredictor::RangePredictor(const Eigen::Vector3d& direction_sensor, const Be
     for (std::size_t i = 0; i < kTurns; ++i) turned_[i] = bundle_about(turned_axes[i]);
 }
 
-/// Deviation of the ranges of a bundle's rays, of those that meet something.
+/// Standard deviation of the ranges of a bundle's rays that meet a surface.
 double RangePredictor::spread_of(const Bundle& bundle, const Followed& rays) {
     double count = 0.0;
     double sum = 0.0;
@@ -128,7 +130,7 @@ RangePredictor::Followed RangePredictor::follow(const CameraView& view,
     return rays;
 }
 
-/// Of the peak; of a cone's rays some meet no plane.
+/// Hits of the peak; some of a cone's rays meet no plane.
 std::vector<PlaneHit> RangePredictor::hits_of(const Echoes& echoes, const Followed& rays) {
     std::vector<PlaneHit> hits;
     double peak = 0.0;
@@ -168,7 +170,7 @@ RangePredictions RangePredictor::predict(const CameraView& view,
         if (is_cone_) {
             predictions.hits = hits_of(echoes, rays);
         } else if (const RayReach& axis = rays.front().reach; axis.surface_m) {
-            // A single ray's range is its own; those beside it only say how sure that is.
+            // A single ray determines the range; the rays beside it determine the uncertainty only.
             predictions.mounted.range_m = axis.surface_m;
             predictions.mounted.depth_per_m = axis.depth_per_m;
             predictions.mounted.is_from_behind = axis.is_from_behind;
@@ -246,8 +248,8 @@ RangePrediction RangePredictor::prediction_of(const Bundle& bundle, const Follow
     return prediction;
 }
 
-/// The first stretch with enough signal. False: which one that is depends on how much is enough, for a cone
-/// that sees a little of something near.
+/// Finds the first interval with enough signal. False if the result depends on the required fraction, as for
+/// a cone that sees a small part of a near object.
 bool RangePredictor::find_peak(Echoes& echoes) const {
     const auto begin = echoes.all.begin();
     const auto end = begin + static_cast<std::ptrdiff_t>(echoes.count);

@@ -1,4 +1,4 @@
-// Which range the camera's image makes one expect of a sensor: as the rig has it mounted, and turned.
+// Predicts a sensor's range from the camera's image: for the sensor as mounted in the rig, and turned.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,54 +11,54 @@
 
 namespace octoskin {
 
-/// What a sensor ranges, in the map: where, and its normal, towards the camera.
+/// The surface that a sensor measures, map frame: a point, and its normal towards the camera.
 struct SeenSurface {
     Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal_map = Eigen::Vector3d::UnitZ();
 };
 
 struct RangePrediction {
-    std::optional<double> range_m;       ///< of the surface that the camera sees there
-    double sigma_m = 0.0;                ///< of that, without the range's own
-    double hidden_until_m = 0.0;         ///< nearer than this there may be anything
-    double clear_m = 0.0;                ///< from there to here the camera sees nothing
-    double depth_per_m = 1.0;            ///< RayReach's, of most of it
-    bool is_from_behind = false;         ///< RayReach's, of any of it
-    std::optional<SeenSurface> surface;  ///< of most of it, if that is one plane
+    std::optional<double> range_m;       ///< range of the surface that the camera sees there
+    double sigma_m = 0.0;                ///< its standard deviation, without the sensor's own
+    double hidden_until_m = 0.0;         ///< nearer than this, anything may be present
+    double clear_m = 0.0;                ///< the camera sees free space from there to here
+    double depth_per_m = 1.0;            ///< of RayReach, for most of it
+    bool is_from_behind = false;         ///< of RayReach, for any of it
+    std::optional<SeenSurface> surface;  ///< the surface of most of it, if that is one plane
 };
 
-/// In so many directions, evenly about the zone's axis.
+/// Number of turned directions, evenly distributed about the zone's axis.
 inline constexpr std::size_t kTurns = 8;
 inline constexpr double kTurnDeg = 10.0;
 
-/// Where one ray of a sensor meets a plane that the camera sees, in camera coordinates.
+/// Where a ray of a sensor meets a plane that the camera sees, in camera coordinates.
 struct PlaneHit {
     Eigen::Vector3d p = Eigen::Vector3d::Zero();
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the ray
     SeenPlane plane;
-    double share = 1.0;  ///< of the signal that is ranged
+    double share = 1.0;  ///< share of the measured signal
 };
 
 struct RangePredictions {
-    std::vector<PlaneHit> hits;                  ///< that make the range as mounted, if there is one
-    RangePrediction mounted;                     ///< as the rig has it
-    std::array<RangePrediction, kTurns> turned;  ///< about the sensor's position by kTurnDeg
+    std::vector<PlaneHit> hits;                  ///< hits that form the range as mounted, if there is one
+    RangePrediction mounted;                     ///< as mounted in the rig
+    std::array<RangePrediction, kTurns> turned;  ///< turned about the sensor's position by kTurnDeg
 };
 
 struct PredictorConfig {
-    double camera_sigma_m = 0.03;   ///< of an image's value
-    double turn_sigma_rad = 0.012;  ///< by which a mount may be off that nobody would call turned
-    double range_max_m = 2.5;       ///< further away nothing is predicted
+    double camera_sigma_m = 0.03;   ///< standard deviation of an image's value
+    double turn_sigma_rad = 0.012;  ///< tolerated angular error of a mount
+    double range_max_m = 2.5;       ///< no prediction beyond this
 };
 
-/// One zone of one sensor.
+/// Predicts for one zone of one sensor.
 class RangePredictor {
   public:
     RangePredictor(const Eigen::Vector3d& direction_sensor, const BeamOptics& optics,
                    const PredictorConfig& config);
 
-    /// From where the sensor was. Follows 13 rays for an ideal ray, about 170 for the VL53L1X's cone: 5 and
-    /// 50 us.
+    /// Predicts from the sensor's pose. Follows 13 rays for an ideal ray, about 170 for the VL53L1X's cone: 5
+    /// and 50 us.
     [[nodiscard]] RangePredictions predict(const CameraView& view,
                                            const Eigen::Isometry3d& T_map_sensor) const;
 
@@ -81,7 +81,7 @@ class RangePredictor {
         std::optional<PlaneHit> hit;
     };
     using Followed = std::vector<FollowedRay>;
-    /// In ascending order of range; the peak is some of them.
+    /// In ascending order of range; the peak is a contiguous part of them.
     struct Echoes {
         std::array<Echo, 128> all;
         std::size_t count = 0;

@@ -8,46 +8,48 @@
 namespace octoskin {
 namespace {
 
-/// By so much camera, robot and rig may be off without anybody's fault.
+/// Tolerated errors of camera, robot and rig.
 constexpr double kToleranceM = 0.02;
 constexpr double kPoseSigmaM = 0.01;
-/// What one comparison may say at the most: one in fifty is of something that nobody thought of.
+/// Upper limit of a comparison's evidence: one range in fifty comes from an unmodelled cause.
 constexpr double kMisfitMax = 4.0;
-/// The offset that is looked for.
+/// The offset that is tested.
 constexpr double kOffsetM = 0.06;
-/// Where the camera does not see what is before a surface, a range that is shorter by this is of something
-/// else,
+/// Where the camera does not see the space before a surface, a range shorter by this comes from another
+/// object,
 constexpr double kSomethingElseM = 0.12;
-/// and one that is a little shorter may be.
+/// and a slightly shorter one may.
 constexpr double kMisfitOfHiddenMax = 1.2;
-/// What ends so little beyond where the camera does not see may be of there: the image is of another instant,
-/// and the camera a little off.
+/// A range that ends within this margin of unseen space may end in that space: the image is from another
+/// instant, and the camera slightly misplaced.
 constexpr double kHiddenMarginM = 0.1;
-/// Thinner than this is a wall, and that much of noise.
+/// Walls are thinner than this, plus this much noise.
 constexpr double kWallM = 0.1;
 constexpr double kWallNoiseM = 0.06;
-/// A ray along a surface says little of how thick it is.
+/// A ray nearly parallel to a surface says little about its thickness.
 constexpr double kAlongMin = 0.3;
-/// Short is shorter than what is there by this and 3 sigma. Then log(1/3 / 1/50), and log(2/3) where not.
+/// A short range is shorter than the surface's by this plus 3 sigma. Evidence: log(1/3 / 1/50), otherwise
+/// log(2/3).
 constexpr double kShortM = 0.12;
 constexpr double kShortRatio = 2.8;
 constexpr double kNotShortRatio = -0.4;
 
-/// No fault is named, but that of single ranges, while the newest dozen fit what the rig says this well.
+/// No fault except `often_short` is reported while the newest dozen ranges fit the rig this well.
 constexpr double kMisfitShare = 1.0 / 12.0;
 constexpr double kMisfitOfSoundMax = 0.35;
-/// Two that are exchanged both range like the other: no exchange, if the other denies it so much.
+/// Of two exchanged sensors, both fit the other: no exchange if the other contradicts it by this evidence.
 constexpr double kDeniedFrom = -6.0;
-/// Evidence of a shorter time is of one view of one thing; and it takes the camera's so long.
+/// Evidence over a shorter time may come from one view of one object; the camera's error needs as long to
+/// show.
 constexpr Nanoseconds kEvidenceTime{3'000'000'000};
-/// So far may the camera have a place from where it is, and a sensor still be named for what it contradicts
-/// there. What two exchanged sensors contradict is larger than what a camera does that is off.
+/// A sensor is reported only if the camera misplaces the place of its contradictions by less than this.
+/// Contradictions of exchanged sensors are larger than those of a misplaced camera.
 constexpr double kMisplacedM = 0.1;
 constexpr double kMisplacedOfExchangedM = 0.25;
-/// So many others may contradict the camera beside one that is named: of two that are exchanged both do.
+/// At most this many other sensors may contradict the camera: of two exchanged sensors, both do.
 constexpr std::size_t kOthersMax = 1;
 
-/// Places in Sensor::faults; turns come after these.
+/// Indices in Sensor::faults; turns follow.
 constexpr std::size_t kTooLong = 0;
 constexpr std::size_t kTooShort = 1;
 constexpr std::size_t kOftenShort = 2;
@@ -87,7 +89,7 @@ SensorJudge::Expected SensorJudge::expected(const Compared& compared,
     if (!prediction.range_m || !prediction.is_from_behind || !prediction.surface) return expected;
     const auto known = thickness_.known_to_others(compared.sensor, prediction.surface->p_map);
     if (!known) return expected;
-    // Of a turned mount the ray's direction is not quite that.
+    // For a turned mount, the ray's direction is only approximate.
     const double along =
         std::max(kAlongMin, std::abs(prediction.surface->normal_map.dot(compared.beam.direction_map)));
     *expected.at.range_m -= known->thickness_m / along;
@@ -96,13 +98,13 @@ SensorJudge::Expected SensorJudge::expected(const Compared& compared,
     return expected;
 }
 
-/// Minus the logarithm of a range's likelihood, but for a constant; empty: nothing can be said.
+/// Negative logarithm of a range's likelihood, except for a constant; empty: no evidence.
 std::optional<double> SensorJudge::misfit(const Expected& expected, double range_m, double sigma_m) {
     const RangePrediction& at = expected.at;
     double off_m = 0.0;
     double misfit_max = kMisfitMax;
     if (!at.range_m) {
-        // Nothing is known but where there is nothing.
+        // Only the extent of the free space is known.
         off_m = std::min(range_m - at.hidden_until_m, at.clear_m - range_m);
         if (!(off_m > kToleranceM + 3.0 * sigma_m)) return std::nullopt;
     } else if (range_m >= *at.range_m) {
@@ -165,7 +167,7 @@ bool SensorJudge::contradicts(const Sensor& sensor) const {
     return sensor.verdict.fault || sensor.is_far_off || sensor.verdict.evidence >= kContradictsFrom;
 }
 
-/// While one of the two is named or likely.
+/// For use while one of the two is reported or likely.
 SensorDoubt SensorJudge::doubt_of_pose() const {
     const bool is_camera = pose_.fault() ? !pose_.fault()->joint : pose_.camera().is_suspect();
     return is_camera ? SensorDoubt::camera_is_off : SensorDoubt::joint_is_off;
@@ -176,7 +178,7 @@ std::optional<SensorDoubt> SensorJudge::against_naming(std::uint16_t number, con
     if (pose_.fault() || pose_.is_suspect()) return doubt_of_pose();
     if (pose_.camera().may_misplace_m(number, p_camera) > misplaced_max_m)
         return SensorDoubt::camera_not_known;
-    // Another test may have found one since the newest image was judged: they are counted anew.
+    // Counted again, because another test may have found one since the newest image was evaluated.
     const auto contradicting =
         std::ranges::count_if(sensors_, [this](const Sensor& sensor) { return contradicts(sensor); });
     const auto others = static_cast<std::size_t>(contradicting) - (contradicts(sensors_[number]) ? 1U : 0U);
@@ -184,7 +186,8 @@ std::optional<SensorDoubt> SensorJudge::against_naming(std::uint16_t number, con
     return std::nullopt;
 }
 
-/// From behind, what ends before the surface may end at something that the camera does not see: that is weak.
+/// A range from behind that ends before the surface may end on an object that the camera does not see: weak
+/// evidence.
 template <typename Misfit>
 void SensorJudge::weigh_fault(FaultSum& sum, const Compared& compared, const Expected& mounted,
                               double sigma_m, const Misfit& misfit_with_fault) {
@@ -228,8 +231,8 @@ void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
     }
 }
 
-/// Where the camera sees that nothing is, once is enough. Elsewhere something may be: but not between two
-/// images in which the sensor saw the surface behind it.
+/// In space that the camera sees as free, one short range is sufficient. Elsewhere an object may be present,
+/// but not between two images in which the sensor saw the surface behind it.
 void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
                               double misfit_mounted) {
     const RangePrediction& at = mounted.at;
@@ -262,7 +265,7 @@ void SensorJudge::weigh_exchange(const Compared& of, const Expected& own, const 
                 [&](double at_m) { return misfit(others, at_m, sigma_m); });
 }
 
-/// Not what a few seconds say, nor what as many comparisons deny.
+/// False for evidence over a few seconds only, or with more comparisons against the fault than for it.
 bool SensorJudge::is_convincing(const Sensor& sensor, const FaultSum& sum) const {
     if (sensor.now - sum.since < kEvidenceTime) return false;
     const bool is_short = &sum == &sensor.faults[kOftenShort];
@@ -270,9 +273,9 @@ bool SensorJudge::is_convincing(const Sensor& sensor, const FaultSum& sum) const
     return static_cast<double>(sum.fors) >= static_cast<double>(sum.againsts);
 }
 
-/// Of a sensor without enough evidence for any fault: whether there is enough against all of them. A turn, or
-/// an exchange, that would not have changed a range is not waited for; an offset and short ranges always
-/// show.
+/// For a sensor without enough evidence for any fault: decides whether there is enough evidence against all
+/// of them. A turn or an exchange that would not have changed a range is not required to be excluded. An
+/// offset and short ranges always show.
 std::optional<SensorDoubt> SensorJudge::doubt_of(Sensor& sensor) const {
     sensor.verdict.not_excluded.reset();
     bool is_left = false;
@@ -335,7 +338,7 @@ void SensorJudge::decide(std::uint16_t number) {
     }
 }
 
-/// What contradicts is not for others.
+/// Readings of contradicting sensors are not stored for others.
 void SensorJudge::remember(const Compared& compared) {
     const RangePrediction& at = compared.predictions.mounted;
     if (contradicts(sensors_[compared.sensor]) || !at.range_m || !at.is_from_behind || !at.surface) return;

@@ -1,6 +1,6 @@
-// Sequential tests of range sensors against what the camera predicts of them: whether each ranges as the rig
-// has it, or as one that is off, turned, exchanged with another, or short every now and then; or whether one
-// error of the camera, or of a joint, explains as much.
+// Sequential tests of range sensors against the camera's predictions. Decide whether a sensor ranges as
+// mounted in the rig, or has an offset, is turned, is exchanged with another, or is occasionally short; and
+// whether one error of the camera, or of a joint, explains as much.
 #pragma once
 
 #include <array>
@@ -20,90 +20,91 @@ namespace octoskin {
 
 enum class SensorFault : std::uint8_t {
     ranges_too_long,   ///< by several centimetres
-    ranges_too_short,  ///< the same
-    often_short,       ///< one range of a few ends where there is nothing
-    turned,            ///< its mount, by about 10 degrees
-    exchanged,         ///< with another of its node
+    ranges_too_short,  ///< by several centimetres
+    often_short,       ///< some of its ranges end in free space
+    turned,            ///< its mount is turned by about 10 degrees
+    exchanged,         ///< exchanged with another sensor of its node
 };
 
 inline constexpr std::size_t kSensorFaults = 5;
 
-/// Why a sensor can neither be named nor be said to agree.
+/// Why a sensor can neither be reported nor be said to agree.
 enum class SensorDoubt : std::uint8_t {
-    too_few_comparisons,  ///< one of its faults would not have shown yet
+    too_few_comparisons,  ///< one of the faults would not have shown yet
     ambiguous,            ///< a fault has neither enough evidence for it nor enough against it
-    camera_not_known,     ///< the other sensors do not show well enough where the camera is
-    camera_is_off,        ///< an error of the camera is named, or likely
-    several_contradict,   ///< more than two sensors do
-    joint_is_off,         ///< an offset of a joint is named, alone or beside the camera, or likely
+    camera_not_known,     ///< the other sensors do not determine the camera's pose well enough
+    camera_is_off,        ///< an error of the camera is reported, or likely
+    several_contradict,   ///< more than two sensors contradict the camera
+    joint_is_off,         ///< an offset of a joint is reported (alone or beside the camera), or likely
 };
 
-/// One range and what the camera predicts at its time.
+/// One range with the camera's predictions at its time.
 struct Compared {
-    std::uint16_t sensor = 0;  ///< by its place in the rig, node by node
-    Beam beam;                 ///< with a range
+    std::uint16_t sensor = 0;  ///< index in the rig, node by node
+    Beam beam;                 ///< has a range
     RangePredictions predictions;
-    JointTwists twists_camera = {};  ///< how the sensor moves with each joint, camera coordinates
+    JointTwists twists_camera = {};  ///< motion of the sensor with each joint, camera coordinates
 };
 
 class SensorJudge {
   public:
-    /// `sensors_of_nodes`: how many each node has.
+    /// `sensors_of_nodes`: number of sensors of each node.
     explicit SensorJudge(std::span<const std::size_t> sensors_of_nodes);
 
-    /// All that is compared with one image, at most one range a sensor. 0.3 ms for 34.
+    /// Evaluates all comparisons with one image, at most one range a sensor. 0.3 ms for 34.
     void judge(std::span<const Compared> compared);
-    /// What another test has found of a sensor counts as its contradicting.
+    /// Reports the result of another test: a sensor found there counts as contradicting.
     void set_far_off(std::uint16_t sensor, bool is_far_off) { sensors_[sensor].is_far_off = is_far_off; }
 
-    /// Why a sensor that contradicts may not be named, if so. Not while the camera or a joint may be what is
-    /// off: because an error of it explains what several sensors contradict, or this one and others a little;
-    /// or because more than two sensors contradict at once.
+    /// Why a contradicting sensor may not be reported; empty: it may. It may not while the camera or a joint
+    /// may be the cause: because its error explains the contradictions of several sensors, or to a small part
+    /// those of this and others, or because more than two sensors contradict at once.
     [[nodiscard]] std::optional<SensorDoubt> against_naming(std::uint16_t sensor,
                                                             const Eigen::Vector3d& p_camera,
                                                             double misplaced_max_m) const;
     [[nodiscard]] const PoseJudge& pose() const noexcept { return pose_; }
 
-    /// With neither fault nor doubt the sensor agrees: no fault that would have changed its ranges is left.
+    /// Without fault and doubt, the sensor agrees: every fault that would have changed its ranges is
+    /// excluded.
     struct Verdict {
         std::optional<SensorFault> fault;
         std::optional<std::uint8_t> exchanged_with;  ///< local index on its node
         std::optional<SensorDoubt> doubt = SensorDoubt::too_few_comparisons;
         std::bitset<kSensorFaults> not_excluded = (1U << kSensorFaults) - 1U;  ///< by SensorFault
-        std::uint64_t agreed = 0;    ///< comparisons with a surface that fit what the rig says
-        std::uint64_t compared = 0;  ///< and all of them
-        double evidence = 0.0;       ///< for the likeliest fault: log-likelihood ratio to a sound sensor
+        std::uint64_t agreed = 0;    ///< comparisons with a surface that fit the rig
+        std::uint64_t compared = 0;  ///< all comparisons with a surface
+        double evidence = 0.0;       ///< for the most likely fault: log-likelihood ratio to a healthy sensor
     };
     [[nodiscard]] const Verdict& verdict(std::uint16_t sensor) const { return sensors_[sensor].verdict; }
 
-    /// With so much evidence a fault is named.
+    /// Evidence from which a fault is reported.
     static constexpr double kNamedFrom = 12.0;
-    /// With so much against it, it is no more.
+    /// Evidence against a reported fault from which it is withdrawn.
     static constexpr double kTakenBackFrom = 10.0;
-    /// An exchange takes more: it is the best of as many guesses as the node has sensors.
+    /// An exchange needs more: it is the best of as many hypotheses as the node has sensors.
     static constexpr double kExchangedFrom = 16.0;
-    /// With so much it counts as contradicting.
+    /// Evidence from which a sensor counts as contradicting.
     static constexpr double kContradictsFrom = 8.0;
 
   private:
     static constexpr std::size_t kFaults = 3 + kTurns;
     enum class Look : std::uint8_t { nothing, agrees, is_short };
     struct Sensor {
-        std::size_t node_begin = 0;  ///< the node's sensors are numbered from here
+        std::size_t node_begin = 0;  ///< index of the node's first sensor
         std::array<FaultSum, kFaults> faults{};
         std::vector<FaultSum> exchanged;                      ///< by sensor of the node
-        const FaultSum* named = nullptr;                      ///< of those
-        HostTime now{};                                       ///< of what is weighed
-        Eigen::Vector3d p_camera = Eigen::Vector3d::UnitZ();  ///< where it ranged last
+        const FaultSum* named = nullptr;                      ///< the reported one of those
+        HostTime now{};                                       ///< time of the current comparison
+        Eigen::Vector3d p_camera = Eigen::Vector3d::UnitZ();  ///< where it last measured
         bool is_far_off = false;                              ///< by another test
-        double misfit_mean = 0.0;                             ///< of the newest ranges, to what the rig says
+        double misfit_mean = 0.0;                             ///< of the newest ranges, relative to the rig
         std::array<Look, 2> looks{};                          ///< of the two images before, the newest first
         Verdict verdict;
     };
-    /// Where a hypothesis has the range.
+    /// The range by a hypothesis.
     struct Expected {
         RangePrediction at;
-        bool has_lower_bound = false;  ///< else anything nearer is as likely
+        bool has_lower_bound = false;  ///< false: any shorter range is as likely
         double sigma_m = 0.0;
     };
 
@@ -128,7 +129,7 @@ class SensorJudge {
     void remember(const Compared& compared);
 
     std::vector<Sensor> sensors_;
-    std::vector<Look> looks_;  ///< of the image that is judged
+    std::vector<Look> looks_;  ///< of the current image
     ThicknessMemory thickness_;
     PoseJudge pose_;
 };

@@ -9,16 +9,17 @@
 namespace octoskin {
 namespace {
 
-/// So many deviations of camera and range together, and this much for poses that are a little off, are no
-/// contradiction.
+/// Differences within this many standard deviations of camera and range together, plus a tolerance for pose
+/// errors, are no contradiction.
 constexpr double kSigmas = 3.0;
 constexpr double kPoseErrorM = 0.03;
-/// The arm moves by centimetres meanwhile.
+/// The arm moves by centimetres in this time.
 constexpr Nanoseconds kSameTime{150'000'000};
-/// Where a sensor has moved or turned by so much since, it says something new.
+/// A sensor that has moved or turned by this much gives new evidence.
 constexpr double kMovedM = 0.015;
 constexpr double kTurnedCos = 0.99939;  // 2 degrees
-/// Of a sensor whose cone nobody knows: it sees 27 degrees; what it reports lies in the inner half as a rule.
+/// For a sensor of unknown optics: its cone has 27 degrees, and what it reports usually lies in the inner
+/// half.
 constexpr double kInnerHalfAngle = 6.75 * std::numbers::pi / 180.0;
 constexpr std::size_t kRays = 19;
 
@@ -45,14 +46,15 @@ bool has_moved(const Beam& beam, const Beam& before) {
            beam.direction_map.dot(before.direction_map) <= kTurnedCos;
 }
 
-/// What contradicts for a shorter time, or at one place only, may be a thing that the camera does not show.
+/// Contradictions over a shorter time, or at one place only, may come from an object that the camera does not
+/// show.
 constexpr Nanoseconds kContradictsForMin{8'000'000'000};
 constexpr double kElsewhereM = 0.12;
-/// Where the camera may have a place further off than this, depth edges are not where it shows them.
+/// If the camera may misplace a point by more than this, depth edges are not where the image shows them.
 constexpr double kMisplacedM = 0.06;
-/// The camera's filter takes about half of its noise.
+/// The camera's filter removes about half of its noise.
 constexpr double kFiltered = 0.5;
-/// So many ranges that fit, and a sensor speaks for the camera.
+/// Number of fitting ranges from which a sensor supports the camera.
 constexpr std::uint64_t kAgreeingFrom = 10;
 
 std::vector<std::size_t> sensors_of_nodes(const HostRig& rig) {
@@ -100,7 +102,7 @@ void SensorWitness::on_depth(SeenImages& images, const Eigen::Isometry3d& T_map_
     if (next_ < sensors_.size()) judge();
     std::swap(images_, images);
     T_map_camera_ = T_map_camera;
-    // Not always the newest: of a sensor with a rhythm of its own, every third image would see the same.
+    // Not always the newest: for a sensor with its own period, every third image would compare the same.
     const std::size_t wanted = image_count_++ % 3;
     for (Sensor& sensor : sensors_) {
         sensor.waiting.reset();
@@ -151,7 +153,8 @@ void SensorWitness::compare_next() {
     }
 }
 
-/// Both tests have to be without a doubt; the one of what is far off has none while as much agrees.
+/// Both tests must be without doubt. The test for large errors has none while its log-likelihood ratio is at
+/// most 0.
 std::optional<SensorDoubt> SensorWitness::doubt_of(const Sensor& sensor, const SensorJudge::Verdict& verdict,
                                                    std::optional<SensorDoubt> against_naming) const {
     if (sensor.evidence.contradicts()) return std::nullopt;
@@ -161,7 +164,7 @@ std::optional<SensorDoubt> SensorWitness::doubt_of(const Sensor& sensor, const S
     return is_untold ? std::optional(SensorDoubt::ambiguous) : std::nullopt;
 }
 
-/// Once for each image.
+/// Called once for each image.
 void SensorWitness::judge() {
     next_ = sensors_.size();
     judge_.judge(compared_);
@@ -171,7 +174,7 @@ void SensorWitness::judge() {
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
         const SensorJudge::Verdict& verdict = judge_.verdict(static_cast<std::uint16_t>(i));
         SensorEvidence& evidence = sensors_[i].evidence;
-        // Found, it counts for the others at once.
+        // A finding counts for the other sensors at once.
         judge_.set_far_off(static_cast<std::uint16_t>(i), sensors_[i].found_far_off);
         const auto against_naming =
             judge_.against_naming(static_cast<std::uint16_t>(i),
@@ -223,10 +226,10 @@ SensorWitness::Finding SensorWitness::compare(const Beam& beam, const BeamOptics
     return is_stopped ? Finding::behind_surface : Finding::nothing;
 }
 
-/// Wald's sequential test, again and again: each one that ends flags the sensor or clears it. One test flags
-/// a sensor that is contradicted in at most `contradicted_sound` of its comparisons, independently, with a
-/// probability of at most false_alarm / (1 - missed) (Wald 1945). Contradictions that flag a sensor are of
-/// some time and of more than one place.
+/// Wald's sequential test, repeated: each completed test flags the sensor or clears it. A test flags a sensor
+/// that is contradicted in at most `contradicted_sound` of its comparisons, independently, with a probability
+/// of at most false_alarm / (1 - missed) (Wald 1945). Contradictions that flag a sensor must span some time
+/// and more than one place.
 void SensorWitness::count(Sensor& sensor, const Beam& beam, Finding finding) const {
     SensorEvidence& evidence = sensor.evidence;
     const double sound = config_.contradicted_sound;

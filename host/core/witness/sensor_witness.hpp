@@ -1,6 +1,6 @@
-// Whether a range sensor contradicts the depth camera: two sensors exchanged at the harness, a pose in the
-// rig that is not the true one, ranges that are off, a sensor that is stuck. I2C and CAN see none of these;
-// the camera sees where things are, and where there is nothing.
+// Cross-check of the range sensors against the depth camera. Finds two sensors exchanged at the harness, a
+// wrong pose in the rig, ranges with an offset, and a stuck sensor. None of these shows on I2C or CAN, but
+// the camera shows surfaces and free space.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,37 +25,38 @@
 namespace octoskin {
 
 struct WitnessConfig {
-    double camera_sigma_m = 0.03;  ///< of a pixel's depth
-    bool is_filtered = true;       ///< the images are: what is left of it is about half
-    /// How many of the comparisons that say anything contradict: of a sound sensor at the most, of one that
-    /// is to be found at the least.
+    double camera_sigma_m = 0.03;  ///< standard deviation of a pixel's depth
+    bool is_filtered = true;       ///< the images are filtered, which leaves about half of it
+    /// Share of contradictions among the informative comparisons: at most, for a healthy sensor; at least,
+    /// for one that is to be found.
     double contradicted_sound = 0.02;
     double contradicted_faulty = 0.3;
-    /// Of one test: that it flags a sound sensor, that it passes a faulty one (Wald 1945).
+    /// Probabilities of one test: of flagging a healthy sensor, and of clearing a faulty one (Wald 1945).
     double false_alarm = 1e-6;
     double missed = 1e-3;
 };
 
 enum class WitnessVerdict : std::uint8_t { agrees, contradicts, cannot_tell };
 
-/// What the camera has said of a sensor so far.
+/// The camera's evidence about a sensor so far.
 struct SensorEvidence {
-    std::uint64_t agreed = 0;          ///< it reported a surface where the camera sees one
-    std::uint64_t in_free_space = 0;   ///< a surface where the camera sees through
-    std::uint64_t behind_surface = 0;  ///< free space through a surface that the camera sees
+    std::uint64_t agreed = 0;          ///< reported a surface where the camera sees one
+    std::uint64_t in_free_space = 0;   ///< reported a surface where the camera sees free space
+    std::uint64_t behind_surface = 0;  ///< reported free space through a surface that the camera sees
     double log_likelihood_ratio = 0.0;
-    bool is_far_off = false;  ///< the test of these has decided so, and none since has decided otherwise
-    /// What the tests for single faults have found (SensorJudge), and how many ranges they had to do with.
+    bool is_far_off = false;  ///< the test of these counts has flagged it, and none has cleared it since
+    /// Results of the tests for single faults (SensorJudge), and the number of ranges used.
     std::optional<SensorFault> fault = std::nullopt;
     std::optional<std::uint8_t> exchanged_with = std::nullopt;  ///< local index on its node
     std::uint64_t compared = 0;
     std::uint64_t fitted = 0;
-    double evidence = 0.0;  ///< for the likeliest fault: log-likelihood ratio to a sound sensor
+    double evidence = 0.0;  ///< for the most likely fault: log-likelihood ratio to a healthy sensor
 
-    /// Why it can neither be named nor be said to agree; empty with one of these.
+    /// Why it can neither be reported nor be said to agree; empty if one of the two applies.
     std::optional<SensorDoubt> doubt = SensorDoubt::too_few_comparisons;
     std::bitset<kSensorFaults> not_excluded =
-        (1U << kSensorFaults) - 1U;  ///< by SensorFault; one that agrees may have faults that do not show
+        /// by SensorFault; a sensor that agrees may have faults that do not show
+        (1U << kSensorFaults) - 1U;
 
     [[nodiscard]] bool contradicts() const noexcept { return is_far_off || fault.has_value(); }
     [[nodiscard]] WitnessVerdict verdict() const noexcept {
@@ -64,18 +65,18 @@ struct SensorEvidence {
     }
 };
 
-/// "camera: not where the rig has it ...", "joint panda_joint4: ...", "camera or joint panda_joint1: ..."
-/// with what to do, for a person. `joints`: the rig's, in its order.
+/// "camera: its pose in the rig or its depth scale is wrong: ...", "joint panda_joint4: ...", "camera or
+/// joint panda_joint1: ..." with the remedy, for people. `joints`: the rig's, in its order.
 [[nodiscard]] std::string describe(const PoseFault& fault, std::span<const std::string> joints);
 
-/// What the camera showed at one instant, all of its size. Their memory goes in and out.
+/// Images of one instant, all of the same size. Their memory is swapped in and out.
 struct SeenImages {
-    DepthImage everything;             ///< filtered, with the robot in it
+    DepthImage everything;             ///< filtered, with the robot
     DepthImage world;                  ///< without the robot
     std::vector<Certainty> certainty;  ///< by pixel
 };
 
-/// "contradicts the camera: ..." with what to do and the ranges that speak against it, for a person.
+/// "contradicts the camera: ..." with the remedy and the number of contradicting ranges, for people.
 [[nodiscard]] std::string describe(const SensorEvidence& evidence);
 /// "ranges_too_long", ...
 [[nodiscard]] const char* name(SensorFault fault);
@@ -89,31 +90,31 @@ class SensorWitness {
     /// The rig must have a camera.
     SensorWitness(const HostRig& rig, const WitnessConfig& config);
 
-    /// A beam, where its sensor was, and how that moves with each joint, map frame; the newest ones of each
-    /// sensor are kept. Compares one of those that wait: 0.05 to 0.2 ms where there is one, else 0.1 us.
+    /// A beam with its sensor's pose and motion with each joint, map frame. The newest ones of each sensor
+    /// are stored. Compares one waiting beam: 0.05 to 0.2 ms if there is one, otherwise 0.1 us.
     void on_beam(const Beam& beam, const Eigen::Isometry3d& T_map_sensor, const JointTwists& twists_map = {});
 
-    /// Images of the camera's size (asserted), seen from `T_map_camera`; what they are given for is some
-    /// images of before. Each sensor's newest beam waits to be compared with them, if the two are of about
-    /// the same time and the sensor has moved since it was last counted: what stands still says the same
-    /// thing over and over. What has not been compared with the image before never will be. About 0.1 ms.
+    /// Images of the camera's size (asserted), seen from `T_map_camera`; swapped for earlier images. Each
+    /// sensor's newest beam waits for comparison with them if both are of about the same time, and the sensor
+    /// has moved since it was last counted: a stationary sensor repeats the same evidence. Beams not yet
+    /// compared with the previous image are dropped. About 0.1 ms.
     void on_depth(SeenImages& images, const Eigen::Isometry3d& T_map_camera, HostTime captured);
 
-    /// Compares all that still waits: up to 7 ms for 34 sensors.
+    /// Compares all waiting beams: up to 7 ms for 34 sensors.
     void settle();
 
-    /// Time leapt: what waits to be compared is of another time. What was found out stays.
+    /// Time jump: drops waiting beams, which are from another time. Results stay.
     void forget_beams();
 
-    /// Of a sensor of the rig (asserted).
+    /// The evidence about a sensor of the rig (asserted).
     [[nodiscard]] const SensorEvidence& evidence(std::uint8_t node_id, std::uint8_t sensor) const;
 
-    /// How the camera, or a joint, is off, while that explains what several sensors contradict; then no
-    /// sensor is named.
+    /// The error of the camera or of a joint, while it explains the contradictions of several sensors; no
+    /// sensor is reported then.
     [[nodiscard]] const PoseJudge& pose() const noexcept { return judge_.pose(); }
 
-    /// Whether its readings are to be kept from the map: it contradicts the camera, and no fewer other
-    /// sensors agree with it. Else it may be the camera.
+    /// True if the sensor's readings are to be refused: it contradicts the camera, and at least as many
+    /// sensors agree with the camera as contradict it. Otherwise, the camera may be the cause.
     [[nodiscard]] bool is_to_be_refused(std::uint8_t node_id, std::uint8_t sensor) const;
 
   private:
@@ -132,10 +133,10 @@ class SensorWitness {
         std::array<std::optional<Placed>, 3> newest;  ///< the newest first
         std::optional<Placed> waiting;
         std::optional<Beam> counted;
-        std::optional<Contradiction> first_contradiction;              ///< in the test that is not ended
-        Eigen::Vector3d p_contradicted_map = Eigen::Vector3d::Zero();  ///< the newest one
-        bool contradicts_elsewhere = false;                            ///< than at that
-        bool found_far_off = false;  ///< by the test, whichever device may be off
+        std::optional<Contradiction> first_contradiction;              ///< in the current test
+        Eigen::Vector3d p_contradicted_map = Eigen::Vector3d::Zero();  ///< the newest contradiction
+        bool contradicts_elsewhere = false;  ///< at another place than the first contradiction
+        bool found_far_off = false;          ///< by the test, whichever device is the cause
         SensorEvidence evidence;
         bool contradicted = false;  ///< after the newest image
     };
@@ -154,14 +155,14 @@ class SensorWitness {
 
     WitnessConfig config_;
     CameraIntrinsics camera_;
-    double ray_slope_max_;  ///< beyond, the lens's polynomial means nothing
+    double ray_slope_max_;  ///< the lens's polynomial is invalid beyond it
     SensorTable<std::size_t> places_;
     std::vector<Sensor> sensors_;
     SensorJudge judge_;
     SeenImages images_;
     Eigen::Isometry3d T_map_camera_ = Eigen::Isometry3d::Identity();
     std::uint64_t image_count_ = 0;
-    std::size_t next_ = 0;  ///< to be compared; sensors_.size(): none waits
+    std::size_t next_ = 0;  ///< the next to compare; sensors_.size(): none waits
     std::vector<Compared> compared_;
     std::size_t contradicting_ = 0;
     std::size_t agreeing_ = 0;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kPlaces = 512;
 constexpr double kExtentM = 1.2;
-/// Others agree who are within this of each other.
+/// Sensors agree if their values differ by at most this.
 constexpr float kAgreementM = 0.04F;
 constexpr std::size_t kAgreeingMin = 2;
 constexpr std::uint16_t kCountMax = 8;
@@ -61,7 +61,7 @@ std::optional<ThicknessMemory::Known> ThicknessMemory::known_to_others(std::uint
     std::size_t count = 0;
     for (const Word& word : place.words) {
         if (word.count == 0 || word.sensor == sensor) continue;
-        std::size_t at = count++;  // in ascending order
+        std::size_t at = count++;  // insertion in ascending order
         for (; at > 0 && others[at - 1] > word.mean_m; --at) others[at] = others[at - 1];
         others[at] = word.mean_m;
     }
