@@ -44,8 +44,8 @@ bool is_busmaster(std::string_view begin) {
     return begin.starts_with("***BUSMASTER");
 }
 
-/// "1320745424.000 R11 7E8 ..." or "... CXX text": a time, and a record's kind, which a bus's number may be
-/// before.
+/// "1320745424.000 R11 7E8 ..." or "... CXX text": a time and the kind of record, which may follow the number
+/// of a bus.
 bool is_crtd(std::string_view begin) {
     const std::size_t blank = begin.find(' ');
     if (blank == std::string_view::npos || blank == 0) return false;
@@ -59,8 +59,8 @@ bool is_crtd(std::string_view begin) {
 constexpr std::string_view kLogConvert = "can_logconvert IN OUT";
 constexpr std::string_view kAwk = "awk";
 
-/// What an awk program does with a frame that it has found: at `t` seconds, the identifier `i` (extended:
-/// `x`) in as many digits as it has to have, the bytes of the fields from `b` to `e`.
+/// The part of an awk program that prints a frame: at `t` seconds, identifier `i` (extended: `x`) with its
+/// full number of digits, and as data the fields from `b` to `e`.
 constexpr std::string_view kPrintFrame =
     "n=length(i);i=x?substr(\"00000000\" i,n+1):substr(\"000\" i,n+1);d=\"\";for(k=b;k<=e;k++)d=d $k;"
     "printf(\"(%.6f) can0 %s#%s\\n\",t,i,d)}' IN > OUT";
@@ -98,7 +98,8 @@ const ForeignFormat* foreign_format_of(std::string_view begin) {
 std::string conversion(const ForeignFormat& format, std::string_view in, std::string_view out) {
     std::string command(format.command);
     if (!format.awk.empty()) command.append(" '").append(format.awk).append(kPrintFrame);
-    // Both are looked for before a name is put in, which may have either in it. OUT is the last.
+    // Both places are found before a name is inserted, because a name may contain either word. OUT is the
+    // last.
     constexpr std::string_view kIn = "IN";
     constexpr std::string_view kOut = "OUT";
     const std::size_t in_at = command.rfind(kIn);

@@ -1,4 +1,4 @@
-// Log files of other programs, recognised by how they begin, and what converts them.
+// Recognises log files of other programs by their beginning, and gives the command that converts them.
 #pragma once
 
 #include <optional>
@@ -9,19 +9,19 @@
 namespace octoskin::candump {
 
 struct ForeignFormat {
-    std::string_view name;  ///< what its users call it
-    /// Whether a file that begins so (its first kilobyte, as text) is one.
+    std::string_view name;  ///< the name that its users know
+    /// Whether a file that begins with this text (its first kilobyte) has this format.
     bool (*is_begun_by)(std::string_view begin);
-    std::string_view command;  ///< that makes a log of it: `IN` is the file, `OUT` what it writes
-    std::string_view awk;      ///< how the program for awk begins; empty: the command is another
+    std::string_view command;  ///< converts the file: `IN` is the file, `OUT` the result
+    std::string_view awk;      ///< the beginning of an awk program; empty: `command` is not for awk
 };
 
 [[nodiscard]] std::span<const ForeignFormat> foreign_formats() noexcept;
 
-/// The format of a file that begins so; null if it is none of them.
+/// The format of a file that begins with this text; null if it is none of the known ones.
 [[nodiscard]] const ForeignFormat* foreign_format_of(std::string_view begin);
 
-/// The whole command, for a shell, with these names in it.
+/// The complete shell command with these file names.
 [[nodiscard]] std::string conversion(const ForeignFormat& format, std::string_view in, std::string_view out);
 
 }  // namespace octoskin::candump

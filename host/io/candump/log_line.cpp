@@ -12,18 +12,18 @@
 namespace octoskin::candump {
 namespace {
 
-// linux/can.h: the flag of an error frame, and the masks of both identifier lengths.
+// From linux/can.h: the flag of an error frame, and the masks for both lengths of identifiers.
 constexpr std::uint32_t kErrorFlag = 0x2000'0000U;
 constexpr std::uint32_t kExtendedIdMax = 0x1FFF'FFFFU;
 constexpr std::uint32_t kStandardIdMax = 0x7FFU;
 constexpr unsigned kBitRateSwitchFlag = 1U;
 
-// The year 2262, where nanoseconds since 1970 leave 63 bits, has a second of 10 digits.
+// The year 2262, where nanoseconds since 1970 reach 63 bits, in seconds: 10 digits.
 constexpr std::int64_t kSecondsMax = 9'223'372'035;
 
 constexpr std::string_view kBlanks = " \t";
 
-/// Cuts blanks and the word behind them off; empty if there is none.
+/// Removes blanks and the word after them, and returns the word; empty if there is none.
 std::string_view take_word(std::string_view& rest) {
     rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
     const std::string_view word = rest.substr(0, rest.find_first_of(kBlanks));
@@ -31,10 +31,10 @@ std::string_view take_word(std::string_view& rest) {
     return word;
 }
 
-/// `candump -c` colours what it shows: ESC, '[', digits, 'm'.
+/// `candump -c` colours its output: ESC, '[', digits, 'm'.
 std::string without_colours(std::string_view line) {
     std::string plain;
-    while (!line.empty()) {  // what is before an ESC, and the ESC, less each time
+    while (!line.empty()) {  // each iteration removes the text up to an ESC, and the ESC
         const std::size_t escape = std::min(line.find('\x1B'), line.size());
         plain += line.substr(0, escape);
         line.remove_prefix(escape);
@@ -54,7 +54,7 @@ std::optional<Integer> parse_number(std::string_view digits, int base) {
     return value;
 }
 
-/// Of "2025-06-15 15:06:40", which is local time: where it was is not told, and only differences count.
+/// For "2025-06-15 15:06:40", which is local time of an unknown zone: only differences matter.
 std::optional<std::int64_t> parse_date(std::string_view text) {
     namespace ch = std::chrono;
     if (text.size() != 19 || text[4] != '-' || text[7] != '-' || text[10] != ' ' || text[13] != ':' ||
@@ -72,7 +72,7 @@ std::optional<std::int64_t> parse_date(std::string_view text) {
            *minute * 60 + *second;
 }
 
-/// Cuts "(1436509053.850870)" or "(2025-06-15 15:06:40.000220)" off, whole microseconds.
+/// Removes "(1436509053.850870)" or "(2025-06-15 15:06:40.000220)" and returns it in whole microseconds.
 std::optional<WallTime> take_stamp(std::string_view& rest) {
     constexpr std::size_t kDecimalsMin = 3;
     constexpr std::size_t kDecimalsMax = 9;
@@ -142,7 +142,7 @@ std::optional<LineFault> parse_remote(std::string_view length, wire::CanFrame& f
     return std::nullopt;
 }
 
-/// `candump -8` writes the raw length code of a classical frame of 8 bytes behind it: "_9" to "_F".
+/// `candump -8` appends the raw length code of a classical frame of 8 bytes: "_9" to "_F".
 std::string_view without_length_code(std::string_view body) {
     constexpr std::size_t kCode = 2;
     const bool has_code = body.size() > kCode && body[body.size() - kCode] == '_' &&
@@ -152,7 +152,7 @@ std::string_view without_length_code(std::string_view body) {
     return is_of_eight_bytes ? before : body;
 }
 
-/// `body`: what follows the identifier, from its '#' on.
+/// `body`: the text after the identifier, with its '#'.
 std::optional<LineFault> parse_body(std::string_view body, wire::CanFrame& frame) {
     body.remove_prefix(1);
     if (!body.starts_with('#')) body = without_length_code(body);
@@ -171,7 +171,7 @@ std::optional<LineFault> parse_body(std::string_view body, wire::CanFrame& frame
     return parse_bytes(body.substr(2), frame);
 }
 
-/// `word`: "044#2A", an identifier and its body in one.
+/// `word`: "044#2A", identifier and body without a blank.
 std::optional<LineFault> parse_compact(std::string_view word, std::size_t hash, std::string_view rest,
                                        wire::CanFrame& frame) {
     if (hash == 0 || !parse_identifier(word.substr(0, hash), frame)) return LineFault::identifier;
@@ -181,7 +181,8 @@ std::optional<LineFault> parse_compact(std::string_view word, std::size_t hash, 
     return parse_body(word.substr(hash), frame);
 }
 
-/// The length as it is shown: "[8]" of a classical frame, "{F}" of its raw code, "[08]" of CAN FD.
+/// The length in candump's screen format: "[8]" for a classical frame, "{F}" for its raw code, "[08]" for CAN
+/// FD.
 std::optional<std::size_t> parse_shown_length(std::string_view word, bool& is_fd) {
     constexpr std::size_t kClassical = 3;
     if (word.size() < kClassical) return std::nullopt;
@@ -194,7 +195,7 @@ std::optional<std::size_t> parse_shown_length(std::string_view word, bool& is_fd
     return word.front() == '[' && word.back() == ']' ? parse_number<std::size_t>(digits, 10) : std::nullopt;
 }
 
-/// What `candump` shows on a screen: "  044   [5]  2A 36 6C 2B BA", and behind it what -a or an error adds.
+/// candump's screen format: " 044 [5] 2A 36 6C 2B BA", possibly followed by the text of -a or of an error.
 std::optional<LineFault> parse_shown(std::string_view identifier, std::string_view rest,
                                      wire::CanFrame& frame) {
     if (!parse_identifier(identifier, frame)) return LineFault::identifier;
@@ -219,7 +220,7 @@ std::optional<LineFault> parse_shown(std::string_view identifier, std::string_vi
     return is_known ? std::nullopt : std::optional(LineFault::data);
 }
 
-/// Of `candump -x`: "RX" or "TX", and for each of bit rate switch and error state a letter or '-'. True if
+/// From `candump -x`: "RX" or "TX", then a letter or '-' each for bit rate switch and error state. True if
 /// the frame had a bit rate switch.
 bool take_shown_flags(std::string_view& word, std::string_view& rest) {
     if (word != "RX" && word != "TX") return false;

@@ -1,4 +1,4 @@
-// Reads a candump log line by line. Lines that are no frames are counted under a name, never fatal.
+// Reads a candump log line by line. Lines without a frame are counted by their fault; they are never fatal.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +15,33 @@
 
 namespace octoskin::candump {
 
-/// The file itself fails: "can.log: cannot open: No such file or directory".
+/// The file itself cannot be read: "can.log: cannot open: No such file or directory".
 struct LogError {
     std::filesystem::path file;
     std::string what;
     [[nodiscard]] std::string message() const { return file.string() + ": " + what; }
 };
 
-/// Holds one line at a time, whatever the file's size. About 2 million lines a second. Text may be UTF-8 or
-/// UTF-16; times that are differences (`candump -t d`) are added up.
+/// Holds one line in memory. Speed: about 2 million lines a second. Text may be UTF-8 or UTF-16. Times that
+/// are differences (`candump -t d`) are added up.
 class LogReader {
   public:
-    /// Reads the first few thousand lines to see what times count from.
+    /// Reads the first few thousand lines to find the reference of the times.
     [[nodiscard]] static Result<LogReader, LogError> open(const FilePlace& file);
 
-    /// The next line that is a frame; empty at the end of the file, and then for ever. An error means that
-    /// the file could not be read on: what came before it stays valid.
+    /// The next line with a frame; empty at the end of the file and at every later call. An error means that
+    /// reading failed; earlier entries stay valid.
     [[nodiscard]] Result<std::optional<LogEntry>, LogError> next();
 
-    /// Of lines.
+    /// Counters of the lines.
     [[nodiscard]] const Account<LineFault>& account() const noexcept { return account_; }
-    /// The 1-based number of the first line with this fault; 0 if there was none.
+    /// The number, from 1, of the first line with this fault; 0 if there is none.
     [[nodiscard]] std::uint64_t first_line(LineFault fault) const noexcept {
         return account_.rejected(fault) == 0 ? 0 : static_cast<std::uint64_t>(account_.first_place(fault));
     }
 
-    /// Of a file that was read to its end: that it has lines and none of them is a frame, what the first of
-    /// them lacks, and the way out: of another program's log the command that converts it.
+    /// For a file that was read to its end and has lines, but no frame: the fault of the first line, and the
+    /// remedy. For a log of another program that is the command that converts it.
     [[nodiscard]] std::optional<LogError> foreign_file() const;
     [[nodiscard]] StampKind stamps() const noexcept { return stamps_; }
 
@@ -59,11 +59,11 @@ class LogReader {
 
     std::filesystem::path file_;
     LineStream lines_;
-    std::string begin_;  ///< of the file, for what format it is
+    std::string begin_;  ///< of the file, to recognise its format
     StampKind stamps_;
-    WallTime newest_;  ///< of differences, what they add up to
+    WallTime newest_;  ///< sum of the differences so far
     std::optional<FirstFault> first_fault_;
-    Account<LineFault> account_;  ///< a place is the number of a line
+    Account<LineFault> account_;  ///< counters; the places are line numbers
 };
 
 }  // namespace octoskin::candump

@@ -13,7 +13,7 @@ namespace octoskin::candump {
 
 class LogSource final : public CanSource {
   public:
-    /// `interface`: the only one whose frames are given out; empty: all of them.
+    /// `interface`: only frames of this one are returned; empty: all.
     explicit LogSource(LogReader reader, std::string interface = "")
         : reader_(std::move(reader)), interface_(std::move(interface)) {}
 
@@ -30,11 +30,11 @@ class LogSource final : public CanSource {
         }
     }
 
-    /// For its account of lines.
+    /// For its line counters.
     [[nodiscard]] const LogReader& reader() const noexcept { return reader_; }
-    /// Of the frame that was given out last.
+    /// The interface of the last returned frame.
     [[nodiscard]] const std::string& newest_interface() const noexcept { return newest_interface_; }
-    /// Lines that were frames of another interface.
+    /// Number of frames of other interfaces.
     [[nodiscard]] std::uint64_t other_interface() const noexcept { return other_interface_; }
 
   private:

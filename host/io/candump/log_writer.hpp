@@ -1,4 +1,4 @@
-// Writes a candump log that candump's own companion tools read.
+// Writes a candump log that candump's companion programs can read.
 #pragma once
 
 #include <filesystem>
@@ -14,15 +14,16 @@ namespace octoskin::candump {
 
 class LogWriter {
   public:
-    /// Makes `file` anew, in place of one that is there. `interface`: the name on every line;
-    /// an error that says so, if it is none (wire::is_interface_name).
+    /// Creates `file` and replaces an existing one. `interface`: the name on every line; an error if it is
+    /// not valid (wire::is_interface_name).
     [[nodiscard]] static Result<LogWriter, LogError> create(const FilePlace& file,
                                                             std::string interface = "can0");
 
-    /// Appends one line. Buffered: a full disk may show only in `close()`. Asserts as `format_line()` does.
+    /// Appends one line. Buffered: a full disk may be reported only by `close()`. Asserts as `format_line()`
+    /// does.
     [[nodiscard]] Status<LogError> write(WallTime stamp, const wire::CanFrame& frame);
 
-    /// Flushes and closes. Without it the log may be incomplete and nobody knows.
+    /// Flushes and closes. Without this call a write error may remain undetected.
     [[nodiscard]] Status<LogError> close();
 
   private:

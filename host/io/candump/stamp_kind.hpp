@@ -1,4 +1,4 @@
-// What the times of a log count from: candump writes them in four ways, of which two look alike.
+// The reference of a log's times: candump writes them in four ways, two of which look alike.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@ namespace octoskin::candump {
 
 enum class StampKind : std::uint8_t {
     absolute,    ///< since 1970 (`-t a`, `-t A`, `-L`), or since the first frame (`-t z`)
-    difference,  ///< since the frame before (`-t d`)
+    difference,  ///< since the previous frame (`-t d`)
 };
 
-/// Tells them apart by the times of a log's first frames. Differences begin with 0, as times since the first
-/// frame do, but do not add up: on a bus with more than one message they go back in one frame of twenty at
-/// least.
+/// Distinguishes them by the times of a log's first frames. Differences begin with 0, like times since the
+/// first frame, but do not grow: on a bus with more than one message at least one frame of twenty has a
+/// smaller time than the one before.
 class StampKindFinder {
   public:
     static constexpr std::uint64_t kFramesEnough = 4096;
@@ -35,7 +35,7 @@ class StampKindFinder {
   private:
     bool begins_with_zero_ = true;  ///< until the first frame
     std::uint64_t frames_ = 0;
-    std::uint64_t back_ = 0;  ///< frames whose time is before that of the one above
+    std::uint64_t back_ = 0;  ///< frames with an earlier time than the previous line
     WallTime newest_;
 };
 

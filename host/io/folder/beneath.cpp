@@ -21,7 +21,7 @@ bool is_link(int folder, const char* name) {
     return ::fstatat(folder, name, &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(status.st_mode);
 }
 
-/// One component. O_NOFOLLOW alone would open a link itself where O_PATH is asked for.
+/// Opens one component. With O_PATH, O_NOFOLLOW alone would open a link itself.
 Result<Descriptor, FolderError> open_component(int folder, const std::string& name, const fs::path& shown,
                                                int flags, unsigned mode) {
     Descriptor opened(::openat(folder, name.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, mode));
@@ -37,7 +37,7 @@ Result<Descriptor, FolderError> open_component(int folder, const std::string& na
     return opened;
 }
 
-/// Component by component, each in the one that was opened before it.
+/// Opens component after component, each relative to the previous one.
 Result<Descriptor, FolderError> walk(const FolderBase& base, const std::string& name, int flags,
                                      unsigned mode) {
     Descriptor folder;
@@ -93,13 +93,13 @@ Result<std::string, FolderError> name_beneath(const fs::path& shown, const fs::p
 Result<Descriptor, FolderError> open_beneath(const FolderBase& base, const std::string& name, int flags,
                                              unsigned mode) {
     open_how how{};
-    // Not O_NOFOLLOW: with O_PATH it would open a link itself in place of refusing it.
+    // Not O_NOFOLLOW: with O_PATH it would open a link itself instead of refusing it.
     how.flags = static_cast<decltype(how.flags)>(flags | O_CLOEXEC);
     how.mode = (flags & O_CREAT) != 0 ? mode : 0;
     how.resolve = RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS | RESOLVE_NO_MAGICLINKS;
     Descriptor opened(base.openat2(base.descriptor, name.c_str(), how));
     if (opened) return opened;
-    // Whatever went wrong, the walk says which component is at fault; it keeps the same rules.
+    // On any error the walk, which applies the same rules, finds the component at fault.
     return walk(base, name, flags, mode);
 }
 

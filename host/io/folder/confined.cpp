@@ -12,7 +12,7 @@ std::optional<FilePlace> in_recording(const fs::path& file) {
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     for (const char* const mark : {"can.log", "meta.yaml"}) {
         std::error_code error;
-        // A link in its place marks it as well.
+        // A link of this name counts, too.
         if (!fs::exists(fs::symlink_status(folder / mark, error))) continue;
         return FilePlace(NamedFolder(folder), file.filename());
     }

@@ -1,14 +1,14 @@
-// Files of a recording, however they are named.
+// Restricts access to the files of a recording, independent of their names.
 #pragma once
 
 #include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
-/// The place of `typed` below its folder if that is a recording's, with a can.log or a meta.yaml in it: a
-/// recording of somebody else then chooses no file outside of it, by a link or by a name, also where its rig,
-/// robot or world is named by itself. A link that leads to such a file is followed first. Any other place as
-/// it is.
+/// If the folder of `typed` is a recording (it contains can.log or meta.yaml): the place of `typed` below
+/// that folder. A recording from another person can then not select a file outside of it, by a link or by a
+/// name, even if its rig, robot or world is named directly. A link that leads to such a file is followed
+/// first. Any other place is returned unchanged.
 [[nodiscard]] FilePlace confined_to_recording(const FilePlace& typed);
 
 }  // namespace octoskin

@@ -1,4 +1,4 @@
-// An open file of the operating system's, closed on every way out.
+// An open file descriptor, closed by its destructor.
 #pragma once
 
 #include <unistd.h>

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 struct NamedFolder::State {
     fs::path shown;
-    FilePlace place;  ///< as it is opened, if it is not open yet
+    FilePlace place;  ///< the place to open, if it is not open yet
     std::mutex mutex;
     std::optional<OpenFolder> opened;
 };
@@ -55,7 +55,7 @@ EntryKind FilePlace::kind() const {
             return EntryKind::file;
         case fs::file_type::directory:
             return EntryKind::folder;
-        case fs::file_type::none:  // it cannot be looked at: a name too long is as absent as any
+        case fs::file_type::none:  // it cannot be examined: a name that is too long counts as absent
             return error == std::errc::permission_denied ? EntryKind::other : EntryKind::absent;
         case fs::file_type::symlink:
         case fs::file_type::block:
@@ -80,7 +80,8 @@ Result<OpenFile, FolderError> FilePlace::open() const {
 
 FilePlace FilePlace::beside(const fs::path& other) const {
     FilePlace place(*this);
-    // An absolute one replaces the whole: a typed file may name it, and a folder's file cannot open it.
+    // An absolute `other` replaces the whole path: allowed beside a typed file; below a folder it cannot be
+    // opened.
     place.name_ = name_.parent_path() / other;
     return place;
 }
@@ -119,8 +120,7 @@ Result<OpenFile, FolderError> FilePlace::create_new(unsigned mode) const {
 }
 
 Result<OpenFile, FolderError> FilePlace::create_anew() const {
-    if (!folder_ &&
-        kind() == EntryKind::other) {  // a device or a pipe takes what is written, if it was typed
+    if (!folder_ && kind() == EntryKind::other) {  // a typed device or pipe is written to directly
         Descriptor opened(::open(name_.c_str(), O_WRONLY | O_CLOEXEC));
         if (!opened) return unexpected(folder_error_of(errno, name_));
         return OpenFile(std::move(opened), name_);

@@ -1,4 +1,4 @@
-// Where a file or folder is: a path that a user typed, or a name below a folder that a user named.
+// The place of a file or folder: a path typed by the user, or a name below a folder that the user named.
 #pragma once
 
 #include <filesystem>
@@ -16,18 +16,18 @@ namespace octoskin {
 
 class FilePlace;
 
-/// A folder that a user named, opened when it is first needed, and once: what is found below it is of one
-/// folder, whatever becomes of its name. Copies share it; threads may.
+/// A folder named by the user. It is opened once, when first needed, so that all files below it come from the
+/// same folder even if its name changes meanwhile. Copies share it, also between threads.
 class NamedFolder {
   public:
     NamedFolder(std::filesystem::path typed);
     explicit NamedFolder(OpenFolder opened);
-    /// A folder in a named one.
+    /// A folder inside a named one.
     explicit NamedFolder(FilePlace place);
 
-    /// As the user named it: for messages and for provenance, never to be opened.
+    /// The path as the user named it: for messages and provenance, never for opening.
     [[nodiscard]] const std::filesystem::path& shown() const noexcept;
-    /// Errors: as OpenFolder::open; the next call tries again then.
+    /// Errors: as OpenFolder::open; the next call then tries again.
     [[nodiscard]] Result<OpenFolder, FolderError> open() const;
 
   private:
@@ -35,8 +35,8 @@ class NamedFolder {
     std::shared_ptr<State> state_;
 };
 
-/// What reads or writes one file takes this in place of a path: the rules of OpenFolder then hold wherever
-/// the file is. A path that a user typed converts to it by itself; links in it are followed.
+/// Functions that read or write one file take this type in place of a path, so that the rules of OpenFolder
+/// apply to files below a folder. A path typed by the user converts implicitly; links in it are followed.
 class FilePlace {
   public:
     FilePlace() = default;  ///< no file
@@ -49,39 +49,39 @@ class FilePlace {
         : FilePlace(NamedFolder(std::move(folder)), std::move(name)) {}
 
     [[nodiscard]] bool empty() const noexcept { return name_.empty(); }
-    /// As the user knows it: for messages and for provenance, never to be opened.
+    /// The path as the user knows it: for messages and provenance, never for opening.
     [[nodiscard]] std::filesystem::path shown() const { return folder_ ? folder_->shown() / name_ : name_; }
     [[nodiscard]] std::string filename() const { return name_.filename().string(); }
-    /// Where it is below a named folder; null: a path that was typed.
+    /// The named folder; null for a typed path.
     [[nodiscard]] const NamedFolder* folder() const noexcept { return folder_ ? &*folder_ : nullptr; }
-    /// Below that folder; or as it was typed.
+    /// The name below that folder, or the typed path.
     [[nodiscard]] const std::filesystem::path& name() const noexcept { return name_; }
 
-    /// Of a typed path, what its links lead to.
+    /// For a typed path: the kind of the target of its links.
     [[nodiscard]] EntryKind kind() const;
     [[nodiscard]] bool is_file() const { return kind() == EntryKind::file; }
-    /// Anything at all, a link below a folder included.
+    /// True if anything exists there, also a link below a folder.
     [[nodiscard]] bool is_there() const { return kind() != EntryKind::absent; }
-    /// For reading, if it is an ordinary file. Errors: as OpenFolder::open_file.
+    /// Opens a regular file for reading. Errors: as OpenFolder::open_file.
     [[nodiscard]] Result<OpenFile, FolderError> open() const;
-    /// What `other`, a file's name, leads to when this file speaks of it: relative to this file. Below a
-    /// named folder it stays there, or cannot be opened (outside).
+    /// The place of `other`, a file name in the text of this file, relative to this file. Below a named
+    /// folder it stays inside, or cannot be opened (outside).
     [[nodiscard]] FilePlace beside(const std::filesystem::path& other) const;
 
-    /// If it is a folder: for reading. Errors: as OpenFolder::open.
+    /// Opens a folder for reading. Errors: as OpenFolder::open.
     [[nodiscard]] Result<OpenFolder, FolderError> open_folder() const;
-    /// A folder to write to, made if nothing is there: of a typed path with its parents. Errors: as
-    /// OpenFolder::open, and link.
+    /// Opens a folder for writing and creates it if it does not exist, for a typed path with its parents.
+    /// Errors: as OpenFolder::open, and link.
     [[nodiscard]] Result<MadeFolder, FolderError> make_folder() const;
 
-    /// Its folder, to write to. Errors: as OpenFolder::open.
+    /// The folder of this place, for writing. Errors: as OpenFolder::open.
     [[nodiscard]] Result<OpenFolder, FolderError> parent_to_write() const;
 
-    /// A new file to write to, in place of the file or link that is there, which is removed: a link is not
-    /// followed, and of a file with several names the others stay as they are. Errors: is_there (a folder, a
-    /// device; a typed one takes what is written); as parent_to_write.
+    /// A new file for writing. It replaces a file or link of that name, which is removed: a link is not
+    /// followed, and other hard links stay unchanged. Errors: is_there (a folder or a device; a typed device
+    /// is written to); as parent_to_write.
     [[nodiscard]] Result<OpenFile, FolderError> create_anew() const;
-    /// A new file; refuses whatever is there.
+    /// A new file; an error if the name exists.
     [[nodiscard]] Result<OpenFile, FolderError> create_new(unsigned mode = 0666) const;
 
     bool operator==(const FilePlace& other) const { return shown() == other.shown(); }

@@ -1,4 +1,4 @@
-// Why a file or folder that a user named, or one below it, is not used.
+// Why a file or folder named by the user, or one below it, is refused.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +8,24 @@
 namespace octoskin {
 
 enum class FolderFault : std::uint8_t {
-    absent,         ///< nothing is there
-    link,           ///< a symbolic link below the folder that was named
-    outside,        ///< a name that leads out of the folder ("..", an absolute one), or is none
-    foreign_owner,  ///< to be written to, and belongs to somebody else
-    not_a_file,     ///< a folder, pipe, device or socket in a file's place
-    not_a_folder,   ///< in a folder's place
-    is_there,       ///< in the place of something new
-    not_permitted,  ///< may not be read, written or looked for
-    system,         ///< anything else: error_number says what
+    absent,         ///< it does not exist
+    link,           ///< a symbolic link below the named folder
+    outside,        ///< a name that leads out of the folder ("..", an absolute one), or is not valid
+    foreign_owner,  ///< it would be written to, and belongs to another user
+    not_a_file,     ///< a folder, pipe, device or socket in place of a file
+    not_a_folder,   ///< something else in place of a folder
+    is_there,       ///< the name of a new file exists already
+    not_permitted,  ///< it may not be read, written or searched
+    system,         ///< any other error: see error_number
 };
 
 struct FolderError {
     FolderFault fault = FolderFault::system;
-    std::filesystem::path path;  ///< what is at fault: the link itself, the folder of somebody else
+    std::filesystem::path path;  ///< the entry at fault: the link itself, the folder of another user
     int error_number = 0;        ///< errno
-    std::string what = {};       ///< of not_a_file: "a named pipe"; of foreign_owner: whose it is
+    std::string what = {};       ///< for not_a_file: "a named pipe"; for foreign_owner: the owner
 
-    /// "rec/maps: is a symbolic link; octoskin follows none below the folder that you name: ...".
+    /// "rec/maps: is a symbolic link; links are not followed below the named folder: ...".
     [[nodiscard]] std::string message() const;
     /// The message without the path.
     [[nodiscard]] std::string reason() const;

@@ -1,4 +1,4 @@
-// An ordinary file that has been opened: what is read is this file, whatever becomes of its name.
+// An open regular file: this file is read, even if its name changes meanwhile.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +21,15 @@ class OpenFile {
     [[nodiscard]] int descriptor() const noexcept { return descriptor_.get(); }
     /// The caller closes it.
     [[nodiscard]] int release() noexcept { return descriptor_.release(); }
-    /// As the user named it: for messages, never to be opened.
+    /// The path as the user named it: for messages, never for opening.
     [[nodiscard]] const std::filesystem::path& shown() const noexcept { return shown_; }
-    /// For what wants a path: leads to this very file as long as this is open, in this process.
+    /// A path for libraries: it leads to this file while this object is open, in this process.
     [[nodiscard]] std::filesystem::path path_for_libraries() const;
-    /// The same for a process that this one starts and outlives.
+    /// The same for a child process that does not outlive this one.
     [[nodiscard]] std::filesystem::path path_for_helpers() const;
 
-    /// Its bytes, `bytes_max` + 1 at most: more than bytes_max are too many. Error: the system's.
+    /// The file's content, at most `bytes_max` + 1 bytes; a longer result means that the file is too large.
+    /// Error: of the system.
     [[nodiscard]] Result<std::string, FolderError> read(std::size_t bytes_max) const;
 
   private:
@@ -36,13 +37,13 @@ class OpenFile {
     std::filesystem::path shown_;
 };
 
-/// Opens for reading what O_PATH has opened, if it is an ordinary file: to open a device or a pipe may
-/// already do something, or wait for ever. Error: not_a_file, naming what it is, a file of over 1 GiB that is
-/// nearly all holes among them; the system's.
+/// Opens for reading what `path` (O_PATH) refers to, if it is a regular file. Opening a device or a pipe may
+/// have an effect, or block forever. Errors: not_a_file with its kind, also for a file over 1 GiB that
+/// consists almost only of holes; those of the system.
 [[nodiscard]] Result<OpenFile, FolderError> open_ordinary(const Descriptor& path,
                                                           const std::filesystem::path& shown);
 
-/// "a named pipe", "a directory", ...; empty: an ordinary file. `mode` as in stat.
+/// "a named pipe", "a directory", ...; empty for a regular file. `mode` as in stat.
 [[nodiscard]] std::string other_kind_of(unsigned mode);
 
 /// "/proc/self/fd/N".

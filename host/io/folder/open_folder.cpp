@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFolderFlags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
-/// No folder of ours is as deep.
+/// Octoskin's own folders are less deep.
 constexpr int kDepthMax = 32;
 
 Unexpected<FolderError> errno_error(int error_number, const fs::path& path) {
@@ -41,11 +41,11 @@ std::string name_of_user(uid_t user) {
     return fmt::format("uid {}", user);
 }
 
-/// Names, in order; the descriptor is read to its end.
+/// The sorted names; reads the descriptor to its end.
 Result<std::vector<std::string>, FolderError> names_in(Descriptor folder, const fs::path& shown) {
     DIR* const stream = ::fdopendir(folder.get());
     if (stream == nullptr) return errno_error(errno, shown);
-    static_cast<void>(folder.release());  // the stream's from now on
+    static_cast<void>(folder.release());  // owned by the stream from here on
     std::vector<std::string> names;
     errno = 0;
     for (const dirent* entry = ::readdir(stream); entry != nullptr; entry = ::readdir(stream)) {
@@ -149,7 +149,7 @@ EntryKind OpenFolder::kind_of(const fs::path& name) const {
 }
 
 Result<std::vector<std::string>, FolderError> OpenFolder::names() const {
-    // Opened anew: a second reader of one descriptor would go on where the first one ended.
+    // Opened again: a second reader of the same descriptor would continue where the first one ended.
     Descriptor again(::openat(base_->descriptor, ".", kFolderFlags));
     if (!again) return errno_error(errno, shown());
     return names_in(std::move(again), shown());
@@ -181,7 +181,7 @@ Result<OpenFolder::Spot, FolderError> OpenFolder::spot(const fs::path& name) con
         if (!same) return errno_error(errno, shown());
         return Spot{std::move(same), *plain, shown(*plain)};
     }
-    const auto within = open_folder(plain->substr(0, slash));  // which looks at its owner
+    const auto within = open_folder(plain->substr(0, slash));  // it checks the owner
     if (!within) return unexpected(within.error());
     Descriptor same(::fcntl(within->descriptor(), F_DUPFD_CLOEXEC, 0));
     if (!same) return errno_error(errno, shown());
@@ -254,7 +254,7 @@ Status<FolderError> OpenFolder::flush(const fs::path& name) const {
 
 Result<MadeFolder, FolderError> make_open_folder(const fs::path& typed, Parents parents) {
     std::error_code error;
-    // What is there is opened as it is: mkdir would not follow a link that was typed.
+    // An existing folder is opened: mkdir would not follow a typed link.
     const bool is_there = fs::exists(typed, error);
     bool is_new = false;
     if (!is_there && !error) {

@@ -1,4 +1,4 @@
-// A folder that a user named, opened once: all that is below it is found beneath that descriptor.
+// A folder named by the user, opened once: everything below it is reached through that descriptor.
 #pragma once
 
 #include <cstdint>
@@ -17,59 +17,59 @@ namespace octoskin {
 enum class FolderAccess : std::uint8_t { read, write };
 enum class EntryKind : std::uint8_t { absent, file, folder, link, other };
 
-/// Links in the path that was typed are followed; below it none is. Names are relative to the folder and may
-/// go through folders in it ("maps/fused.ot"). A folder that is written to belongs to the caller or to root;
-/// root writes into any. Copies share the descriptor. Verbs that change something assert access to write.
+/// Links in the typed path are followed; below the folder none is. Names are relative to the folder and may
+/// contain subfolders ("maps/fused.ot"). A folder that is written to must belong to the caller or to root;
+/// root may write into any. Copies share the descriptor. Functions that change something assert write access.
 class OpenFolder {
   public:
-    /// Errors: absent, not_a_folder, not_permitted, foreign_owner (to write), the system's.
+    /// Errors: absent, not_a_folder, not_permitted, foreign_owner (for writing), those of the system.
     [[nodiscard]] static Result<OpenFolder, FolderError> open(const std::filesystem::path& typed,
                                                               FolderAccess access,
                                                               OpenAt2 openat2 = system_openat2);
 
-    /// The same folder, to write to. Errors: foreign_owner, the system's.
+    /// The same folder for writing. Errors: foreign_owner, those of the system.
     [[nodiscard]] Result<OpenFolder, FolderError> to_write() const;
 
-    /// As the user named it: for messages, never to be opened.
+    /// The path as the user named it: for messages, never for opening.
     [[nodiscard]] const std::filesystem::path& shown() const noexcept { return base_->shown; }
     [[nodiscard]] std::filesystem::path shown(const std::filesystem::path& name) const {
         return base_->shown / name;
     }
     [[nodiscard]] int descriptor() const noexcept { return base_->descriptor; }
     [[nodiscard]] FolderAccess access() const noexcept { return access_; }
-    /// For what wants a path: leads to this very folder as long as this is open, in this process.
+    /// A path for libraries: it leads to this folder while this object is open, in this process.
     [[nodiscard]] std::filesystem::path path_for_libraries() const;
-    /// Whether the path that was typed still leads here: the folder may have been removed or replaced.
+    /// Whether the typed path still leads to this folder: it may have been removed or replaced.
     [[nodiscard]] bool is_still_there() const;
 
-    /// What is at `name`; a link anywhere in it is `link`. A name that leads out, or may not be looked at, is
-    /// `other`.
+    /// The kind of the entry at `name`; `link` if any component is a link. A name that leads out of the
+    /// folder, or may not be examined, is `other`.
     [[nodiscard]] EntryKind kind_of(const std::filesystem::path& name) const;
-    /// Names of what is in the folder, in order, but for "." and "..".
+    /// The sorted names in the folder, without "." and "..".
     [[nodiscard]] Result<std::vector<std::string>, FolderError> names() const;
     /// For reading. Errors: not_a_file, link, outside, absent, not_permitted.
     [[nodiscard]] Result<OpenFile, FolderError> open_file(const std::filesystem::path& name) const;
-    /// With the same access, and the same rule about its owner.
+    /// With the same access, and the same rule about the owner.
     [[nodiscard]] Result<OpenFolder, FolderError> open_folder(const std::filesystem::path& name) const;
 
-    /// A new, empty file to write to. Errors: is_there, whatever it is that is there.
+    /// A new, empty file for writing. Error: is_there, if the name exists in any form.
     [[nodiscard]] Result<OpenFile, FolderError> create_new(const std::filesystem::path& name,
                                                            unsigned mode = 0666) const;
     /// A new folder. Error: is_there.
     [[nodiscard]] Status<FolderError> make_folder(const std::filesystem::path& name) const;
-    /// To another name in this folder, in place of a file that is there; a link is moved, not followed.
+    /// Renames within this folder and replaces an existing file; a link is moved, not followed.
     [[nodiscard]] Status<FolderError> move(const std::filesystem::path& from,
                                            const std::filesystem::path& to) const;
-    /// A second name for the same file. Error: is_there; the system's, where there are no hard links.
+    /// Makes a hard link. Errors: is_there; those of the system, also where hard links are not supported.
     [[nodiscard]] Status<FolderError> link(const std::filesystem::path& from,
                                            const std::filesystem::path& to) const;
-    /// A file, or the link itself; done if nothing is there.
+    /// Removes a file, or a link itself; no error if it does not exist.
     [[nodiscard]] Status<FolderError> remove(const std::filesystem::path& name) const;
-    /// The same with all that is in it; a link in it is removed, not followed.
+    /// Removes recursively; a link is removed, not followed.
     [[nodiscard]] Status<FolderError> remove_all(const std::filesystem::path& name) const;
-    /// An empty folder. Error: not empty, and the like.
+    /// Removes an empty folder. Error: it is not empty, or another one of the system.
     [[nodiscard]] Status<FolderError> remove_empty(const std::filesystem::path& name) const;
-    /// This folder, or the file of this name, to the disk.
+    /// Flushes this folder, or the file of this name, to the disk.
     [[nodiscard]] Status<FolderError> flush() const;
     [[nodiscard]] Status<FolderError> flush(const std::filesystem::path& name) const;
 
@@ -81,7 +81,7 @@ class OpenFolder {
     [[nodiscard]] static Result<OpenFolder, FolderError> checked(Descriptor descriptor,
                                                                  std::filesystem::path shown,
                                                                  FolderAccess access, OpenAt2 openat2);
-    /// An open folder, and a name in it without a slash.
+    /// An open folder and a name in it without a slash.
     struct Spot {
         Descriptor folder;
         std::string leaf;
@@ -93,7 +93,7 @@ class OpenFolder {
     FolderAccess access_;
 };
 
-/// A folder that is to be written to, and whether it was made for that.
+/// A folder for writing, and whether it was created for that.
 struct MadeFolder {
     OpenFolder folder;
     bool is_new = false;
@@ -101,7 +101,7 @@ struct MadeFolder {
 
 enum class Parents : std::uint8_t { must_be_there, are_made };
 
-/// Opens a folder to write to, making it if nothing is there. Errors: as OpenFolder::open.
+/// Opens a folder for writing and creates it if it does not exist. Errors: as OpenFolder::open.
 [[nodiscard]] Result<MadeFolder, FolderError> make_open_folder(const std::filesystem::path& typed,
                                                                Parents parents = Parents::are_made);
 

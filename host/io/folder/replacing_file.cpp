@@ -10,7 +10,7 @@
 namespace octoskin {
 namespace {
 
-/// Where a file is made before it takes its place.
+/// The temporary name of a file before it is put into place.
 std::string beside(const std::string& name) {
     return "." + name + ".octoskin-part";
 }
@@ -30,14 +30,15 @@ Status<FolderError> check_places(const OpenFolder& folder, const std::string& na
     return Done{};
 }
 
-/// A path that is a folder itself names no file.
+/// Refuses a path that names a folder.
 Status<FolderError> check_name(const FilePlace& file) {
     const std::string name = file.filename();
     if (!name.empty() && name != "." && name != "..") return Done{};
     return unexpected(FolderError{FolderFault::is_there, file.shown(), EISDIR});
 }
 
-/// The mode of a file of ours. Another user's would choose who may write to the new one.
+/// Copies the mode of the caller's own old file. The mode of another user's file would determine who may
+/// write to the new one.
 void keep_mode(const OpenFolder& folder, const std::string& name, int descriptor) {
     struct stat old {};
     constexpr mode_t kPermissions = 0777;
@@ -62,7 +63,7 @@ Result<ReplacingFile, FolderError> ReplacingFile::begin(const FilePlace& file) {
     if (!folder) return unexpected(folder.error());
     const std::string name = file.filename();
     if (const auto checked = check_places(*folder, name); !checked) return unexpected(checked.error());
-    // A killed process's, or a trap: it goes, and what it may lead to stays as it is.
+    // A remainder of a killed process, or a trap: it is removed; the target of a link stays unchanged.
     if (const auto removed = folder->remove(beside(name)); !removed) return unexpected(removed.error());
     auto created = folder->create_new(beside(name));
     if (!created) return unexpected(created.error());
@@ -78,7 +79,7 @@ ReplacingFile::~ReplacingFile() {
 }
 
 Status<FolderError> ReplacingFile::commit() {
-    // A late write error may show only here (network file systems).
+    // Network file systems may report a write error only at close.
     if (::close(file_->release()) != 0) {
         const int error = errno;
         static_cast<void>(folder_.remove(beside(name_)));

@@ -1,5 +1,5 @@
-// A file that takes the place of another one when it is whole: it is written under another name beside it and
-// then renamed, so that no link is written through and no half of a file is ever seen.
+// A file that replaces another one when it is complete. It is written under a temporary name beside it and
+// then renamed, so that links are not followed and an incomplete file is never visible.
 #pragma once
 
 #include <optional>
@@ -12,21 +12,21 @@ namespace octoskin {
 
 class ReplacingFile {
   public:
-    /// That `file` can be made: its folder is the caller's or root's and may be written, and in the place of
-    /// the file nothing, an ordinary file or a link lies. Changes nothing. Errors: is_there (something else
-    /// is in that place, or in that of the file beside it); as FilePlace::parent_to_write; not_permitted.
+    /// Checks that `file` can be created: its folder belongs to the caller or root and is writable, and at
+    /// the name of the file there is nothing, a regular file or a link. Changes nothing. Errors: is_there
+    /// (something else at that name, or at the temporary name); as FilePlace::parent_to_write; not_permitted.
     [[nodiscard]] static Status<FolderError> check(const FilePlace& file);
-    /// A new, empty file beside `file`, with the mode of an ordinary file of the caller's that is to be
-    /// replaced. Errors: as check().
+    /// Creates a new, empty temporary file beside `file`. If `file` is a regular file of the caller's, it
+    /// gets the same mode. Errors: as check().
     [[nodiscard]] static Result<ReplacingFile, FolderError> begin(const FilePlace& file);
     ReplacingFile(ReplacingFile&& other) noexcept = default;
     ReplacingFile& operator=(ReplacingFile&&) = delete;
-    /// Removes what did not come into its place.
+    /// Removes the temporary file if it was not committed.
     ~ReplacingFile();
 
     [[nodiscard]] int descriptor() const noexcept { return file_->descriptor(); }
-    /// Closes it and puts it into its place. A link there is replaced, not followed; of a file with several
-    /// names the others stay as they are. Errors: those of close(2) and rename(2).
+    /// Closes the file and renames it into place. A link there is replaced, not followed; other hard links of
+    /// the old file stay unchanged. Errors: those of close(2) and rename(2).
     [[nodiscard]] Status<FolderError> commit();
 
   private:
@@ -34,7 +34,7 @@ class ReplacingFile {
 
     OpenFolder folder_;
     std::string name_;
-    std::optional<OpenFile> file_;  ///< none once it is in its place
+    std::optional<OpenFile> file_;  ///< empty after commit()
 };
 
 }  // namespace octoskin

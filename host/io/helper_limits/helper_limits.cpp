@@ -12,14 +12,14 @@
 namespace octoskin {
 namespace {
 
-// The sanitizers reserve terabytes of addresses, which no limit would let them.
+// Sanitizers reserve terabytes of address space, which a limit would prevent.
 #ifdef OCTOSKIN_SANITIZED
 constexpr bool kLimitsMemory = false;
 #else
 constexpr bool kLimitsMemory = true;
 #endif
 
-int exit_without_memory = 0;  // a new-handler has no argument
+int exit_without_memory = 0;  // global, because a new-handler has no argument
 
 void limit(int resource, rlim_t most) {
     const rlimit both{most, most};
@@ -42,7 +42,7 @@ void limit_processor_seconds(std::uint64_t seconds) {
     ::setrlimit(RLIMIT_CPU, &processor);
 }
 
-// A second between the two limits: that the soft one ended it shows, and says why.
+// The hard limit is one second above the soft one: the signal of the soft one shows the reason.
 void bound_processor_seconds(std::uint64_t seconds) {
     rlimit limit{};
     ::getrlimit(RLIMIT_CPU, &limit);

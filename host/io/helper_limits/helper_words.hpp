@@ -1,4 +1,4 @@
-// What a helper says on its standard error, which a foreign file may have it say.
+// Handles a helper's standard error, whose text an untrusted file may control.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace octoskin {
 
-/// Its lines as a terminal may see them: control characters are shown by their numbers, and each line begins
-/// with "HELPER: ", so that none is taken for one of ours. Empty lines are left out.
+/// The lines in a form safe for a terminal: control characters are shown as numbers, and each line begins
+/// with "HELPER: ", so that it cannot be mistaken for a message of this program. Empty lines are removed.
 [[nodiscard]] std::string helper_lines(std::string_view helper, std::string_view words);
 
-/// Puts on our standard error what a pipe without waiting holds, up to 64 KiB.
+/// Copies the content of a non-blocking pipe, up to 64 KiB, to this program's standard error.
 void show_helper_words(std::string_view helper, int descriptor);
 
 }  // namespace octoskin

@@ -12,8 +12,8 @@
 namespace octoskin {
 namespace {
 
-/// A domain of its own, in which no file may be changed: a process reaches none that is outside of its
-/// domain.
+/// Enters a Landlock domain in which no file may be changed: a process cannot inspect processes outside of
+/// its domain.
 void enter_own_domain() {
     landlock_ruleset_attr attributes{};
     attributes.handled_access_fs =
@@ -28,7 +28,7 @@ void enter_own_domain() {
     ::close(ruleset);
 }
 
-/// Of root's rights the one that its files are read by.
+/// Of root's rights, keeps only the one to read all files.
 void keep_reading_alone() {
     __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
     std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> sets{};

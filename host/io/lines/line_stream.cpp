@@ -23,7 +23,7 @@ int LineStream::byte() {
     return static_cast<unsigned char>(block_[taken_++]);
 }
 
-/// Of a file's beginning, which is in the block.
+/// Examines the beginning of the file, which is in the block.
 void LineStream::find_encoding() {
     encoding_ = Encoding::utf_8;
     if (!fill()) return;

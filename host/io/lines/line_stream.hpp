@@ -1,4 +1,4 @@
-// Lines of a text file, in UTF-8 or UTF-16, with or without a byte order mark.
+// Lines of a text file in UTF-8 or UTF-16, with or without a byte order mark.
 #pragma once
 
 #include <cstdint>
@@ -9,29 +9,29 @@
 
 namespace octoskin {
 
-/// Holds one line and one block of the file, whatever the file's size. UTF-16 is found by its byte order
-/// mark, or by a zero in one of the first two bytes; of its characters those outside of ASCII become '?'.
+/// Holds one line and one block of the file in memory. UTF-16 is detected by its byte order mark, or by a
+/// zero in one of the first two bytes; its characters outside ASCII become '?'.
 class LineStream {
   public:
     enum class End : std::uint8_t {
         line_feed,
-        end_of_file,   ///< there is a line, and the file ends within it
-        nothing_left,  ///< there is none
+        end_of_file,   ///< the file ends within this line
+        nothing_left,  ///< there is no further line
     };
 
-    /// `bytes_max`: of a line; what is behind them is left out.
+    /// `bytes_max`: of a line; the rest of a longer line is dropped.
     LineStream(std::ifstream stream, std::size_t bytes_max)
         : stream_(std::move(stream)), bytes_max_(bytes_max) {}
 
-    /// The next line, and how it ended. O(bytes of the line).
+    /// Reads the next line and returns how it ended. O(bytes of the line).
     End next();
 
-    /// Without its line feed; a carriage return stays.
+    /// Without its line feed; a carriage return is kept.
     [[nodiscard]] const std::string& line() const noexcept { return line_; }
     [[nodiscard]] bool is_cut() const noexcept { return is_cut_; }
-    /// Of `line`, from 1.
+    /// The number of `line`, from 1.
     [[nodiscard]] std::uint64_t number() const noexcept { return number_; }
-    /// The file could not be read on.
+    /// True if reading the file failed.
     [[nodiscard]] bool has_failed() const { return stream_.bad(); }
 
   private:
@@ -46,7 +46,7 @@ class LineStream {
     std::ifstream stream_;
     std::size_t bytes_max_;
     std::vector<char> block_;
-    std::size_t taken_ = 0;  ///< of block_
+    std::size_t taken_ = 0;  ///< bytes of block_ already used
     Encoding encoding_ = Encoding::unknown;
     std::string line_;
     bool is_cut_ = false;

@@ -1,4 +1,4 @@
-// A file's bytes piece by piece, for files that are not worth the memory of all of them at once.
+// A file's bytes piece by piece, so that they need not be in memory all at once.
 #pragma once
 
 #include <functional>
@@ -6,9 +6,10 @@
 
 namespace octoskin {
 
-/// Takes the next bytes, in order. False: they could not be kept, and no more need come.
+/// Takes the next bytes, in order. False: it failed, and no more bytes are needed.
 using ByteSink = std::function<bool(std::string_view bytes)>;
-/// Gives all of its bytes to a sink, or as many as that takes. Pieces are worth a system call each.
+/// Passes all its bytes to a sink, until that returns false. A piece is large enough for a system call of its
+/// own.
 using ByteSource = std::function<void(const ByteSink& sink)>;
 
 }  // namespace octoskin

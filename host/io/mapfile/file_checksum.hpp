@@ -1,4 +1,4 @@
-// The checksum of what lies on a disk.
+// The checksum of files on a disk.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace octoskin {
 
-/// As crc32() of common/wire, by zlib: megabytes of a map are no matter of a sixteen-entry table. Continues
-/// from the checksum of the bytes before; 0 is that of none.
+/// The same CRC-32 as crc32() of common/wire, computed by zlib: a table of sixteen entries is too slow for
+/// megabytes. Continues from `before`, the checksum of the preceding bytes; 0 is that of none.
 [[nodiscard]] std::uint32_t file_checksum(std::string_view bytes, std::uint32_t before = 0) noexcept;
 
 }  // namespace octoskin

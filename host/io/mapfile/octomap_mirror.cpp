@@ -16,7 +16,7 @@
 namespace octoskin {
 namespace {
 
-/// A cube's, in Morton order.
+/// The voxels of a cube in Morton order.
 using Voxels = std::span<const float>;
 
 bool are_unknown(Voxels voxels) {
@@ -25,13 +25,13 @@ bool are_unknown(Voxels voxels) {
 bool are_one_value(Voxels voxels) {
     return std::ranges::all_of(voxels, [&](float log_odds) { return log_odds == voxels[0]; });
 }
-/// Bit for bit: an unknown voxel, too, is what it was.
+/// Compares bits: unknown voxels are NaN.
 bool are_unchanged(Voxels now, Voxels before) {
     const auto bytes = std::as_bytes(now);
     return std::memcmp(bytes.data(), std::as_bytes(before).data(), bytes.size()) == 0;
 }
 
-/// A brick's voxels in one piece, written out if they are alike.
+/// A brick's 512 voxels as an array, expanded if they are all equal.
 class BrickVoxels {
   public:
     explicit BrickVoxels(const BrickView& brick) : values_(brick.values) {
@@ -44,16 +44,16 @@ class BrickVoxels {
     BrickValues alike_;
 };
 
-/// Puts bricks into a tree, in Morton order. The nodes on the way down to the last brick stay open, neither
-/// pruned nor removed, until a brick comes that is not below them: each is gone through once, however many
-/// bricks below it are put. OctoMap counts the nodes.
+/// Inserts bricks into a tree in Morton order. The nodes on the path to the last brick stay open, neither
+/// pruned nor removed, until a brick comes that is not below them. Each node is thus visited once, however
+/// many bricks below it are inserted. OctoMap itself counts the nodes.
 class BrickInsertion {
   public:
     explicit BrickInsertion(octomap::OcTree& tree) : tree_(tree) {}
 
-    /// The tree shows `before` of the brick, and then `now`.
+    /// The tree contains `before` for the brick, and afterwards `now`.
     void put(MortonCode brick, const BrickView& now, const BrickView& before);
-    /// Nothing may be put any more.
+    /// After this call nothing may be inserted.
     void finish();
 
   private:
@@ -67,15 +67,15 @@ class BrickInsertion {
     void make_leaf(octomap::OcTreeNode* node);
     void drop_children(octomap::OcTreeNode* node);
 
-    /// Which child of its parent is the node of this height above the brick?
+    /// Which child of its parent the node at this height above the brick is.
     [[nodiscard]] unsigned child_at(unsigned height) const {
         return static_cast<unsigned>(brick_ >> (3 * height)) & 7U;
     }
 
     octomap::OcTree& tree_;
     std::array<octomap::OcTreeNode*, kOctreeDepth + 1> open_{};  ///< by height
-    unsigned lowest_ = kOctreeDepth;                             ///< height of the lowest that is open
-    MortonCode brick_ = 0;                                       ///< the last
+    unsigned lowest_ = kOctreeDepth;                             ///< height of the lowest open node
+    MortonCode brick_ = 0;                                       ///< the last inserted one
 };
 
 void BrickInsertion::put(MortonCode brick, const BrickView& now, const BrickView& before) {
@@ -100,7 +100,7 @@ void BrickInsertion::finish() {
 
 void BrickInsertion::open_root() {
     if (tree_.getRoot() == nullptr) {
-        // A root and nothing else: no public function of OctoMap makes one but its reader.
+        // Makes a root without children: of OctoMap's public functions only its reader can.
         std::istringstream root(std::string(sizeof(float) + 1, '\0'));
         tree_.readData(root);
     }
@@ -129,7 +129,7 @@ void BrickInsertion::close_lowest() {
     }
 }
 
-/// Makes what is below a place what a pruned tree has there. Recurses as deep as a brick.
+/// Makes the nodes below a place what a pruned tree has there. Recursion depth: the levels of a brick.
 void BrickInsertion::put_cube(octomap::OcTreeNode* parent, unsigned child, Voxels now, Voxels before) {
     const bool is_new = !tree_.nodeChildExists(parent, child);
     if (are_unknown(now)) {
@@ -162,8 +162,8 @@ void BrickInsertion::make_leaf(octomap::OcTreeNode* node) {
     if (tree_.nodeHasChildren(node)) drop_children(node);
 }
 
-/// OctoMap leaves a node whose children were deleted its array of them, and asserts when that node is
-/// deleted; only pruning frees it, of eight equal leaves. Recurses as deep as what is below the node.
+/// After its children are deleted, a node in OctoMap keeps the array for them, and its deletion then asserts;
+/// only pruning eight equal leaves frees the array. Recursion depth: the levels below the node.
 void BrickInsertion::drop_children(octomap::OcTreeNode* node) {
     for (unsigned i = 0; i < 8; ++i) {
         octomap::OcTreeNode* const child =
@@ -194,7 +194,7 @@ std::size_t OctomapMirror::update(const FusedMap& now) {
         });
         insertion.finish();
     } catch (...) {
-        // Half of a change may be in the tree: neither map would tell what is to be done about it.
+        // The tree may contain half of a change, and neither map shows which half: start again.
         tree_.clear();
         shown_ = FusedMap(now.config());
         throw;

@@ -1,4 +1,4 @@
-// The map as an octomap::OcTree that follows it, for code that asks for one again and again.
+// An octomap::OcTree that is kept up to date with a map, for code that needs one repeatedly.
 #pragma once
 
 #include <octomap/OcTree.h>
@@ -9,24 +9,24 @@
 
 namespace octoskin {
 
-/// Holds a copy of the map that its tree shows, which costs what any copy does: while the map goes on, each
-/// brick that it writes is there twice. To show a map that another thread writes, give update() a copy of it.
-/// The tree may be read by several threads, but by none while it is updated.
+/// Holds a copy of the map that its tree shows. The copy costs what any copy costs: each brick that the map
+/// then changes exists twice. For a map that another thread writes, give update() a copy. Several threads may
+/// read the tree, but not during an update.
 class OctomapMirror {
   public:
-    /// Shows a map with nothing in it.
+    /// Begins with an empty map.
     explicit OctomapMirror(const MapConfig& config);
 
-    /// Makes the tree what to_octomap(now) would give: the same nodes, pruned, inner ones as likely as their
-    /// likeliest child, the same threshold and clamps. `now` may be any map of the same resolution
-    /// (asserted), an older one or one that was loaded, too. Returns how many bricks it looked at: all that
-    /// were written since the last update; of a map that has nothing in common with the last, all of both.
-    /// O(those bricks), and the tree's nodes in which a voxel changed; nodes that are neither changed nor
-    /// above a change stay where they are. Throws std::bad_alloc if OctoMap gets no memory: then the tree is
-    /// empty, and the next update fills it.
+    /// Makes the tree equal to to_octomap(now): the same pruned nodes, inner nodes with the maximum of their
+    /// children, the same threshold and clamps. `now` may be any map of the same resolution (asserted), also
+    /// an older or a loaded one.
+    /// Returns the number of examined bricks: all that were written since the last update; for an unrelated
+    /// map, all bricks of both. O(those bricks, and the tree's nodes with a changed voxel); nodes that
+    /// neither change nor are above a change stay at their address.
+    /// Throws std::bad_alloc if OctoMap gets no memory: then the tree is empty, and the next update fills it.
     std::size_t update(const FusedMap& now);
 
-    /// The same object always; the next update may delete any of its nodes.
+    /// Always the same object; the next update may delete any of its nodes.
     [[nodiscard]] const octomap::OcTree& tree() const noexcept { return tree_; }
 
   private:

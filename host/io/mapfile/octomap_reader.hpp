@@ -1,5 +1,6 @@
-// Checks and reads the bytes of a .ot or .bt file. What OctoMap's own reader takes is taken, but the input
-// may be hostile: that reader also accepts truncated files and NaN, and overflows the stack on a deep chain.
+// Checks and reads the bytes of an .ot or .bt file. It accepts what OctoMap's own reader accepts, except for
+// hostile input: that reader also accepts truncated files and NaN, and overflows the stack on a deep chain of
+// nodes.
 #pragma once
 
 #include <cstdint>
@@ -13,46 +14,45 @@
 namespace octoskin {
 
 enum class MapFault : std::uint8_t {
-    not_a_map,             ///< the first line is neither OctoMap's for .ot nor for .bt
-    header_malformed,      ///< id, res or data missing, size no number; octoskin's, and not as it was saved
-    wrong_tree_type,       ///< a .ot that is no tree of occupancies
-    resolution_not_valid,  ///< not a number between 1e-6 and 1e6
+    not_a_map,             ///< the first line is not OctoMap's for .ot or .bt
+    header_malformed,      ///< id, res or data missing, size not a number; or octoskin's own, and changed
+    wrong_tree_type,       ///< an .ot that is not an occupancy tree
+    resolution_not_valid,  ///< not a number from 1e-6 to 1e6
     too_many_nodes,        ///< more than the limit
-    truncated,             ///< the data end before the tree does
-    trailing_bytes,        ///< octoskin saved it, and the tree ends before the data do
-    node_count_differs,    ///< the tree has more or fewer nodes than the header says; if octoskin did not
-                           ///< save it, only where the tree does not end with the data either
+    truncated,             ///< the data end before the tree
+    trailing_bytes,        ///< octoskin saved it, and the tree ends before the data
+    node_count_differs,    ///< the number of nodes is not that of the header; for a file of another program
+                           ///< only if the tree does not end with the data either
     too_deep,              ///< a node below level 16
-    inner_node_empty,      ///< a node said to have children has none
+    inner_node_empty,      ///< a node marked as having children has none
     log_odds_not_finite,   ///< NaN or infinity in a node
     log_odds_outside_clamps,  ///< beyond the clamps given
     no_room,                  ///< the voxels need more than `MapConfig::memory_max_mib`
 };
 
-/// What is wrong, and where: at which byte and with which value.
+/// The fault with its place (byte) and value.
 struct MapReadError {
     MapFault fault{};
     std::string what;
 };
 
 struct MapReadLimits {
-    /// Clamps, threshold and memory of the map to be made; its resolution comes from the file, and so does
-    /// the threshold where the file says it. A program that left OctoMap's defaults alone clamps at 3.5110
-    /// rather than 3.5.
+    /// Clamps, threshold and memory limit of the new map. The resolution comes from the file, and so does the
+    /// threshold if the file contains it. A program with OctoMap's default clamps at 3.5110, not 3.5.
     MapConfig map;
     std::uint64_t nodes_max = 50'000'000;
 };
 
-/// A map, and what its file is beside that.
+/// A map with facts about its file.
 struct LoadedMap {
     FusedMap map;
-    std::vector<std::string> warnings;  ///< how the file differs from one that OctoMap writes
+    std::vector<std::string> warnings;  ///< how the file differs from OctoMap's own form
     bool is_octoskins = false;          ///< octoskin saved it
-    bool has_lost_colours = false;      ///< the file has a colour for each voxel; the map has none
+    bool has_lost_colours = false;      ///< the file has colours for its voxels; the map has none
 };
 
-/// The map that the bytes hold, .ot or .bt by their first line. Everything is checked before a voxel is made.
-/// Leaves alone count: an inner node's value must be sane but is not used. O(bytes + voxels).
+/// Decodes the bytes of an .ot or .bt, distinguished by the first line. Everything is checked before a voxel
+/// is made. Only leaves count: an inner node's value must be valid but is not used. O(bytes + voxels).
 [[nodiscard]] Result<LoadedMap, MapReadError> decode_octomap(std::string_view bytes,
                                                              const MapReadLimits& limits);
 

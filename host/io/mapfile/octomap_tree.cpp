@@ -19,7 +19,7 @@ std::unique_ptr<octomap::OcTree> to_octomap(const FusedMap& map) {
     auto tree = std::make_unique<octomap::OcTree>(map.resolution_m());
     set_limits(*tree, map.config());
     if (map.known_voxels() == 0) return tree;
-    // Through OctoMap's own reader: no public function of it makes inner nodes.
+    // Through OctoMap's own reader: its public functions cannot make inner nodes.
     const std::string bytes = encode_ot(map);
     std::istringstream nodes(bytes.substr(bytes.find("\ndata\n") + 6));
     tree->readData(nodes);

@@ -25,7 +25,7 @@ constexpr std::uint32_t which_exist(std::uint32_t children) {
     return (bits | (bits >> 4U)) & 0x00FFU;
 }
 
-/// Log-odds, and which children there are.
+/// A node's log-odds, and a bit for each child.
 struct OtNode {
     static constexpr std::size_t kBytes = 5;
     static bool is_written(const OctreeNode&) { return true; }
@@ -35,7 +35,7 @@ struct OtNode {
     }
 };
 
-/// Of inner nodes alone, what each child is.
+/// For inner nodes only: two bits for each child.
 struct BtNode {
     static constexpr std::size_t kBytes = 2;
     static bool is_written(const OctreeNode& node) { return node.state == NodeState::inner; }

@@ -26,7 +26,7 @@ OctreeNode parent_of_voxels(const float* voxels, float log_odds_occupied) {
     OctreeNode node{kLowest, 0, NodeState::inner};
     for (unsigned child = 0; child < 8; ++child) {
         const float log_odds = voxels[child];
-        is_one_value &= log_odds == voxels[0];  // an unknown voxel, a NaN, equals none
+        is_one_value &= log_odds == voxels[0];  // an unknown voxel, a NaN, is equal to none
         node.log_odds = log_odds > node.log_odds ? log_odds : node.log_odds;
         node.children |= as_child(leaf_state(log_odds, log_odds_occupied), child);
     }
@@ -34,7 +34,7 @@ OctreeNode parent_of_voxels(const float* voxels, float log_odds_occupied) {
     return is_one_value ? OctreeNode{voxels[0], 0, leaf_state(voxels[0], log_odds_occupied)} : node;
 }
 
-/// The node above eight places, each with a node or none.
+/// The node above eight children, of which some may be missing.
 OctreeNode parent_of(std::span<const OctreeNode, 8> children) {
     bool is_one_leaf = true;
     OctreeNode node{kLowest, 0, NodeState::inner};
@@ -49,7 +49,7 @@ OctreeNode parent_of(std::span<const OctreeNode, 8> children) {
     return is_one_leaf ? children[0] : node;
 }
 
-/// An octree's lowest three levels, of one brick.
+/// The lowest three levels of an octree, in one brick.
 class BrickNodes {
   public:
     BrickNodes(const MapBrick& brick, const MapConfig& config, LeafValues values)
@@ -70,7 +70,7 @@ class BrickNodes {
 
     [[nodiscard]] const OctreeNode& root() const noexcept { return root_; }
 
-    /// How many nodes there are; the root must be one.
+    /// The number of nodes; the root must exist.
     [[nodiscard]] std::uint64_t size() const {
         const auto children_of = [](const OctreeNode& node) {
             const unsigned bits = node.children;
@@ -121,8 +121,8 @@ PrunedOctree::PrunedOctree(const FusedMap& map, LeafValues values)
     size_ += upper_.size();
 }
 
-/// Appends the node of 2^height voxels' edge that holds the bricks from `begin` to `end`, at least one, and
-/// what is below it. Recurses as deep as the tree, 13 at most.
+/// Appends the node with an edge of 2^height voxels that contains the bricks from `begin` to `end` (at least
+/// one), and everything below it. Recursion depth: that of the tree, at most 13.
 OctreeNode PrunedOctree::append(std::size_t begin, std::size_t end, unsigned height) {
     if (height == kBrickHeight) {
         append_brick(begin);
@@ -153,7 +153,7 @@ OctreeNode PrunedOctree::append(std::size_t begin, std::size_t end, unsigned hei
 void PrunedOctree::append_brick(std::size_t at) {
     const BrickNodes tree(bricks_[at], config_, values_);
     const bool is_inner = tree.root().state == NodeState::inner;
-    size_ += is_inner ? tree.size() - 1 : 0;  // its root is among the upper ones
+    size_ += is_inner ? tree.size() - 1 : 0;  // its root is among the upper nodes
     upper_.push_back({tree.root(), is_inner ? static_cast<std::uint32_t>(at) : kNoBrick});
 }
 

@@ -1,4 +1,4 @@
-// A map as the pruned octree that OctoMap would hold: the form in which it goes to files.
+// A map as the pruned octree of OctoMap, the form in which it is saved to files.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace octoskin {
 /// Levels below the root.
 inline constexpr unsigned kOctreeDepth = 16;
 
-/// What an octree has in a place, numbered as in a .bt.
+/// The content of a place in an octree, numbered as in a .bt.
 enum class NodeState : std::uint8_t { none, free_leaf, occupied_leaf, inner };
 
 struct OctreeNode {
-    float log_odds = 0.0F;       ///< of an inner node: the largest of its children's
+    float log_odds = 0.0F;       ///< for an inner node: the maximum of its children
     std::uint16_t children = 0;  ///< bits 2 i and 2 i + 1: child i's state (x lowest, then y, then z)
     NodeState state = NodeState::none;
     friend bool operator==(const OctreeNode&, const OctreeNode&) = default;
@@ -25,28 +25,28 @@ struct OctreeNode {
 
 enum class LeafValues : std::uint8_t {
     exact,
-    max_likelihood,  ///< the upper clamp for occupied, the lower for free: all that a .bt keeps
+    max_likelihood,  ///< the upper clamp for occupied, the lower one for free: all that a .bt stores
 };
 
-/// Eight leaves of one value are one leaf of their parent, on every level. Equal maps give equal nodes.
-/// The levels below a brick of the map are worked out whenever they are asked for, so that it takes memory
-/// for each brick (30 bytes if bricks come together, 170 for one that is alone), and none for each voxel.
+/// Eight equal leaves are replaced by one leaf of their parent, on every level. Equal maps give equal nodes.
+/// The levels below a brick of the map are computed whenever they are needed. Memory: 30 bytes for a brick
+/// among others, 170 for an isolated one; none for each voxel.
 class PrunedOctree {
   public:
-    /// The map must stay as it is for as long as this is used. O(voxels).
+    /// The map must not change while this object is used. O(voxels).
     PrunedOctree(const FusedMap& map, LeafValues values);
 
-    /// How many nodes there are; 0 for an empty map.
+    /// The number of nodes; 0 for an empty map.
     [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
-    /// Hands out the nodes depth first, each before its children, some thousand at a time, until `put` says
-    /// false; the answer is the last of `put`. O(voxels).
+    /// Passes on the nodes depth first, each before its children, some thousand at a time, until `put`
+    /// returns false. Returns the last result of `put`. O(voxels).
     bool for_each(const std::function<bool(std::span<const OctreeNode> nodes)>& put) const;
 
   private:
-    /// A node above the bricks, or a brick's uppermost.
+    /// A node above the bricks, or the root of a brick.
     struct UpperNode {
         OctreeNode node;
-        std::uint32_t brick = 0;  ///< which one, if the node is an inner one of a brick
+        std::uint32_t brick = 0;  ///< which brick, if the node is an inner node of one
     };
     static constexpr std::uint32_t kNoBrick = 0xFFFF'FFFF;
 

@@ -15,8 +15,8 @@
 namespace octoskin {
 namespace {
 
-/// One of a cube's six sides. Faces in a row along `run` are merged: horizontal rows, so that a row has one
-/// height and so one colour.
+/// One of a cube's six sides. Neighbouring faces along `run` are merged into one: rows are horizontal, so
+/// that each has one height and one colour.
 struct Side {
     int normal;  ///< axis
     int sign;
@@ -71,7 +71,7 @@ bool is_occupied(const FusedMap& map, const Cell& cell) {
                           static_cast<std::uint16_t>(cell[2])}) == Occupancy::occupied;
 }
 
-/// The cells whose side is not covered by a neighbour, row after row, in order within each row.
+/// The cells whose side is not covered by a neighbour, row by row, ordered within each row.
 std::vector<Cell> exposed_cells(const FusedMap& map, const std::vector<Cell>& cells, const Side& side) {
     const auto axis = [](int index) { return static_cast<std::size_t>(index); };
     std::vector<Cell> exposed;
@@ -88,7 +88,7 @@ std::vector<Cell> exposed_cells(const FusedMap& map, const std::vector<Cell>& ce
     return exposed;
 }
 
-/// The rectangle over `count` cells from `first` on, counter-clockwise seen from outside.
+/// The rectangle over `count` cells from `first`, counter-clockwise as seen from outside.
 std::array<Eigen::Vector3f, 4> corners_of(const FusedMap& map, const Cell& first, int count,
                                           const Side& side) {
     Eigen::Vector3d low(first[0], first[1], first[2]);

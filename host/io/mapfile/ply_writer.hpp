@@ -1,4 +1,4 @@
-// The occupied voxels as coloured cubes that any mesh viewer shows.
+// The occupied voxels as coloured cubes for mesh viewers.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 namespace octoskin {
 
 /// Binary little-endian PLY, metres, map frame: the cubes' outer faces, neighbours in a row merged, coloured
-/// by height (dark blue low, yellow high) and shaded by side. Equal maps give equal bytes.
+/// by height (dark blue: low, yellow: high) and shaded by side. Equal maps give equal bytes.
 [[nodiscard]] std::string encode_ply(const FusedMap& map);
 
 }  // namespace octoskin

@@ -1,4 +1,4 @@
-// All bytes of a file, within a limit.
+// All bytes of a file, up to a limit.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ struct WholeFileError {
     bool is_too_large = false;
 };
 
-/// Refuses what is no regular file, what is larger than `bytes_max`, and what becomes shorter meanwhile; what
-/// is added meanwhile is left out. Throws std::bad_alloc.
+/// Refuses a file that is not regular, is larger than `bytes_max`, or becomes shorter meanwhile; bytes added
+/// meanwhile are ignored. Throws std::bad_alloc.
 [[nodiscard]] Result<std::string, WholeFileError> read_whole_file(const FilePlace& file,
                                                                   std::uint64_t bytes_max);
 

@@ -8,7 +8,7 @@
 namespace octoskin::openni2 {
 namespace {
 
-/// The number at the begin of `text`, which is taken off together with `behind` it.
+/// The number at the beginning of `text`, which is removed together with `behind`, the text after it.
 template <class Number>
 bool take_number(std::string_view& text, std::string_view behind, Number& number) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

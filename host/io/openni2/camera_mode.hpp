@@ -1,4 +1,4 @@
-// In which of its modes a camera is wanted.
+// The requested mode of a camera.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ struct CameraMode {
     friend bool operator==(const CameraMode&, const CameraMode&) = default;
 };
 
-/// "640x480@29.97", as the camera's helper takes it.
+/// "640x480@29.97", the form in which the camera's helper takes it.
 [[nodiscard]] std::string to_text(const CameraMode& mode);
-/// Empty for anything else. Any bytes are safe.
+/// Parses the text form; empty for anything else. Safe for any bytes.
 [[nodiscard]] std::optional<CameraMode> parse_camera_mode(std::string_view text);
 
 }  // namespace octoskin::openni2

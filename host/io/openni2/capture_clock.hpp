@@ -1,4 +1,4 @@
-// A camera stamps its frames by a clock of its own. When was that on the host's?
+// Converts the time stamps of a camera, which has a clock of its own, to the host's clock.
 #pragma once
 
 #include <algorithm>
@@ -8,28 +8,28 @@
 
 namespace octoskin::openni2 {
 
-/// The frame that came quickest tells best: delays only ever add. The least difference between arrival and
-/// stamp within the last one to two windows is taken for the clocks' offset, so that their drift (100 ppm) is
-/// followed. What the camera and its driver always take is not seen, and counts as part of the offset.
-///
-/// No single frame is believed: the first may have been the slowest. The offset is known once kAgreeing
-/// frames came within kAgreement of the least, or a whole window has passed: on a machine so busy that hardly
-/// two frames take alike the least of a window is as good as there is. The error is what the quickest frame
-/// of the newest one to two windows took, and at most 1 ms of drift.
+/// The frame with the smallest delay gives the best estimate: delays only add. The smallest difference
+/// between arrival and time stamp within the last one to two windows is taken as the offset of the clocks, so
+/// that their drift (100 ppm) is followed. A constant delay of the camera and its driver is not visible and
+/// counts as part of the offset.
+/// A single frame is not sufficient: the first may have been the slowest. The offset is known after kAgreeing
+/// frames within kAgreement of the smallest, or after a whole window: on a machine so busy that frames hardly
+/// agree, the minimum of a window is the best available. The error is the delay of the fastest frame of the
+/// last one to two windows, and at most 1 ms of drift.
 class CaptureClock {
   public:
     static constexpr std::int64_t kWindowUs = 5'000'000;
-    /// A stamp this far off what the offset says is late, or of another count.
+    /// A time stamp this far from the expected one is late, or from a restarted count.
     static constexpr std::int64_t kJumpUs = 500'000;
-    /// Late for so long without one that is not: it will not pass by itself.
+    /// If all frames are late for this long, the delay will not disappear by itself.
     static constexpr std::int64_t kLateMaxUs = 5'000'000;
     static constexpr int kAgreeing = 5;
     static constexpr std::int64_t kAgreementUs = 20'000;
 
-    /// When a frame of this stamp was captured that arrived at `arrived_us`, both in microseconds; the
-    /// answer on the clock of the arrivals, and not after it. Empty while the offset is not known: at first,
-    /// and when the stamps begin anew (they went back, or ahead of all delay); and for a frame that came over
-    /// kJumpUs late.
+    /// The capture time, on the clock of the arrivals and not after the arrival, of a frame with this time
+    /// stamp that arrived at `arrived_us`; both in microseconds. Empty while the offset is unknown: at first,
+    /// and after a restart of the count (the time stamps went back, or ahead by more than any delay); also
+    /// for a frame that arrived over kJumpUs late.
     [[nodiscard]] std::optional<std::int64_t> captured_us(std::int64_t stamp_us,
                                                           std::int64_t arrived_us) noexcept {
         const std::int64_t offset = arrived_us - stamp_us;
@@ -51,9 +51,8 @@ class CaptureClock {
         return agreeing_ < kAgreeing ? std::nullopt : std::optional(stamp_us + least());
     }
 
-    /// Nothing but late frames for kLateMaxUs: the camera set its clock back, or what is shown waits
-    /// somewhere on its way. Which of them cannot be told from here; a camera that is opened anew has
-    /// neither.
+    /// All frames were late for kLateMaxUs: the camera set its clock back, or its frames wait in some buffer.
+    /// The two cannot be distinguished here; opening the camera again ends both.
     [[nodiscard]] bool is_lost() const noexcept { return late_us_ >= kLateMaxUs; }
 
   private:
@@ -75,12 +74,12 @@ class CaptureClock {
 
     std::int64_t least_before_ = kNone;
     std::int64_t least_now_ = kNone;
-    std::int64_t begun_us_ = 0;  ///< arrival of the first frame of this count
+    std::int64_t begun_us_ = 0;  ///< arrival of the first frame since the count started
     std::int64_t window_start_us_ = std::numeric_limits<std::int64_t>::min() / 2;
     std::int64_t stamp_newest_us_ = std::numeric_limits<std::int64_t>::min();
-    std::int64_t last_timely_us_ = 0;  ///< arrival of the newest frame that was not late
-    std::int64_t late_us_ = 0;         ///< since then, if the newest one was
-    int agreeing_ = 0;                 ///< frames that told the least offset, or nearly; at most kAgreeing
+    std::int64_t last_timely_us_ = 0;  ///< arrival of the latest frame that was not late
+    std::int64_t late_us_ = 0;         ///< time since then, if the latest frame was late
+    int agreeing_ = 0;                 ///< frames with the smallest offset, or nearly; at most kAgreeing
 };
 
 }  // namespace octoskin::openni2

@@ -19,8 +19,9 @@ DepthEpoch read_checked(const FilePlace& file) {
     const rig::Value document = rig::load_document(file);
     const rig::Table table(document, "", {"schema", "first_frame_us", "frames"});
     static_cast<void>(table.choice<bool>("schema", {{kSchema, true}}));
-    constexpr std::int64_t kUsMax = std::int64_t{1} << 48U;                         // what FOLLOW_UP can say
-    constexpr std::int64_t kFramesMax = std::numeric_limits<std::uint32_t>::max();  // an .oni numbers them so
+    constexpr std::int64_t kUsMax = std::int64_t{1} << 48U;  // the range of FOLLOW_UP
+    constexpr std::int64_t kFramesMax =
+        std::numeric_limits<std::uint32_t>::max();  // the largest frame number of an .oni
     const auto first_us = table.integer<std::int64_t>("first_frame_us", {0, kUsMax});
     return DepthEpoch{HostTime{first_us * 1000}, table.integer<std::uint64_t>("frames", {0, kFramesMax})};
 }

@@ -1,5 +1,5 @@
-// The sidecar of a recording's depth.oni: OpenNI2 rebases time stamps to 0 at the first frame, so the
-// absolute time of that frame is kept beside it.
+// The sidecar of a recording's depth.oni. OpenNI2 starts time stamps at 0 with the first frame, so the
+// absolute time of that frame is stored in this file.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace octoskin::openni2 {
 
 struct DepthEpoch {
     HostTime first_frame;      ///< whole microseconds on the host's monotonic clock
-    std::uint64_t frames = 0;  ///< how many the recording must have
+    std::uint64_t frames = 0;  ///< number of frames that the recording must have
 };
 
 [[nodiscard]] Status<DepthSourceError> write_epoch(const FilePlace& file, const DepthEpoch& epoch);

@@ -1,4 +1,4 @@
-// Words of OpenNI2 and of helpers on one line, for a log and a status.
+// Puts texts of OpenNI2 and of helpers on one line, for logs and the status.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace octoskin::openni2 {
 
-/// Each run of blanks, tabs, line ends and other control characters as one blank, none at either end, and no
-/// colon at the end behind which nothing comes.
+/// Replaces each sequence of blanks, tabs, line ends and other control characters by one blank, and removes
+/// blanks at both ends and a colon at the end.
 [[nodiscard]] inline std::string one_line(std::string_view words) {
     std::string line;
     for (const char c : words) {

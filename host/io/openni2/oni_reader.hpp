@@ -1,5 +1,5 @@
-// Depth frames out of a recording. OpenNI2 runs in a helper process, so a damaged file can end nothing but
-// that.
+// Reads depth frames from a recording. OpenNI2 runs in a helper process, so that a damaged file can end only
+// that process.
 #pragma once
 
 #include <filesystem>
@@ -18,23 +18,24 @@ namespace octoskin::openni2 {
 class OniReader final : public DepthSource {
   public:
     /// Opens `oni` with its sidecar `epoch`. Errors name the file: missing, not a recording, cut off.
-    /// `helper`: the program to use instead of the installed octoskin-oni-read.
+    /// `helper`: a program to use instead of the installed octoskin-oni-read.
     [[nodiscard]] static Result<OniReader, DepthSourceError> open(
         const FilePlace& oni, const FilePlace& epoch,
         std::optional<std::filesystem::path> helper = std::nullopt);
 
-    /// Opens one that stands alone: its first frame is at the host time 0, and how many there are is not
-    /// known.
+    /// Opens an .oni without a sidecar: its first frame is at host time 0, and the number of frames is
+    /// unknown.
     [[nodiscard]] static Result<OniReader, DepthSourceError> open_alone(
         const FilePlace& oni, std::optional<std::filesystem::path> helper = std::nullopt);
 
-    /// Waits at most 15 s for a frame. A recording with fewer frames than its sidecar says ends with an error
-    /// after the last whole frame; one that was cut off ends there, and loss() says so. After an error there
-    /// is only that error.
+    /// Waits at most 15 s for a frame. A recording with fewer frames than its sidecar states ends with an
+    /// error after the last complete frame. One that was cut off ends there without an error, and loss()
+    /// describes it. After an error every call returns that error.
     [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override;
 
     [[nodiscard]] FrameSize frame_size() const noexcept { return header_.size; }
-    /// After the end: what of a recording that was cut off could be had, for a person. Empty if it is whole.
+    /// After the end, for the user: how much of a recording that was cut off was usable. Empty if it is
+    /// complete.
     [[nodiscard]] std::optional<std::string> loss() const;
 
   private:
@@ -46,7 +47,7 @@ class OniReader final : public DepthSource {
 
     std::filesystem::path file_;
     HostTime first_frame_{};
-    std::optional<std::uint64_t> frames_told_;  ///< by the sidecar
+    std::optional<std::uint64_t> frames_told_;  ///< from the sidecar
     HelperProcess helper_;
     StreamHeader header_;
     std::uint64_t frames_read_ = 0;

@@ -1,4 +1,4 @@
-// Depth frames into a recording, by OpenNI2's own recorder in a helper process.
+// Writes depth frames into a recording, with OpenNI2's recorder in a helper process.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +21,16 @@ inline constexpr std::uint16_t kDepthMaxMm = 32767;
 
 class OniWriter {
   public:
-    /// Creates `oni` and, on `close`, its sidecar `epoch`; former ones are removed. Errors: a helper that is
-    /// not there, pictures of more than 1600 x 1200 pixels. `helper`: the program to use instead of the
-    /// installed octoskin-oni-write.
+    /// Creates `oni` and, on `close`, its sidecar `epoch`; existing ones are removed. Errors: a missing
+    /// helper, images of more than 1600 x 1200 pixels. `helper`: a program to use instead of the installed
+    /// octoskin-oni-write.
     [[nodiscard]] static Result<OniWriter, DepthSourceError> create(
         const FilePlace& oni, const FilePlace& epoch, FrameSize size,
         std::optional<std::filesystem::path> helper = std::nullopt);
-    /// Frames in the order of their time. Asserts the size.
+    /// Frames must come in the order of their times. Asserts the size.
     [[nodiscard]] Status<DepthSourceError> write(HostTime captured, std::span<const std::uint16_t> depth_mm);
-    /// Waits for the recorder (3 ms for each of up to the last 600 frames of 512 x 424, fewer larger ones)
-    /// and writes the sidecar. Without it the recording is not complete. The bytes of the .oni depend on the
+    /// Waits for the recorder (3 ms for each of up to the last 600 frames of 512 x 424, fewer if larger) and
+    /// writes the sidecar. Without this call the recording is incomplete. The bytes of the .oni depend on the
     /// frames only.
     [[nodiscard]] Status<DepthSourceError> close();
 

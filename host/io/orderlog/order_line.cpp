@@ -12,10 +12,11 @@ namespace octoskin::orderlog {
 namespace {
 
 constexpr std::string_view kSchema = "octoskin-order/2";
-constexpr std::string_view kSchemaBefore = "octoskin-order/1";  ///< begins with first.ot alone
+constexpr std::string_view kSchemaBefore = "octoskin-order/1";  ///< begins with first.ot only
 constexpr std::string_view kNone = "-";
 
-/// Takes words off a line, one blank between two; is_sound stays false once one was not as asked for.
+/// Takes words from a line, separated by one blank; is_sound stays false after the first word that is not as
+/// requested.
 class Words {
   public:
     explicit Words(std::string_view line) : rest_(line) {}
@@ -37,7 +38,7 @@ class Words {
         return to_crc(word);
     }
     std::uint32_t crc() { return to_crc(next()); }
-    /// All words were as asked for, and there is no other.
+    /// All words were as requested, and none is left.
     [[nodiscard]] bool is_sound() const { return is_sound_ && is_over_; }
 
   private:
@@ -74,7 +75,7 @@ class Words {
     bool is_sound_ = true;
 };
 
-/// As late as a clock of nanoseconds may be without its sums overflowing: 146 years.
+/// The latest time of a clock in nanoseconds whose sums cannot overflow: 146 years.
 constexpr std::int64_t kTimeMax = std::numeric_limits<std::int64_t>::max() / 2;
 constexpr std::int64_t kWaitMax = kTimeMax / 1'000'000'000;
 

@@ -4,16 +4,17 @@
 //     J 71000000000 0.1 -0.2 0 0 0 0 0        joint sample: taken at (ns), radians, one for each of `joints`
 //     R 2 3 0 71003000000 0.734 0.021         reading: node, sensor, zone, captured at (ns), range and sigma
 //                                             in metres; range "-": no target
-//     D 12 71010000000                        depth frame: its place in depth.oni, from 0, captured at (ns);
-//                                             "-": it is not there
-//     W 12                                    the map, which was saved, waits for its first measurement: so
-//                                             many seconds have passed by now
-//     # anything                              for people
+//     D 12 71010000000                        depth frame: its index in depth.oni, from 0, captured at (ns);
+//                                             "-": the image is not recorded
+//     W 12                                    a saved map waits for its first measurement; seconds that
+//                                             have passed
+//     # anything                              a comment
 //     end commits 3 lost_can 0 lost_commits 0 lost_depth 0 last 1a2b3c4d          the last line
 //
-// Times are on the clock that SYNC tells. Numbers are the shortest decimals that give the same double again.
-// CRC-32 (zlib's) of: the mapping in full, first.ot, first.snapshot (`state`) and last.ot; `rig` is the rig's
-// hash; "-": an empty map. Version 1 has neither `state` nor W: what it begins with is first.ot alone.
+// Times are on the clock of SYNC. Numbers are the shortest decimals that give the same double again.
+// CRC-32 (zlib's): `mapping` of the whole mapping text, `first` of first.ot, `state` of first.snapshot,
+// `last` of last.ot; "-": an empty map. `rig` is the rig's hash. Version 1 has neither `state` nor W: it
+// begins with first.ot only.
 #pragma once
 
 #include <cstddef>
@@ -32,31 +33,31 @@ struct Header {
     std::uint32_t mapping_crc32 = 0;
     std::size_t joints = 0;                         ///< 1..7
     std::optional<std::uint32_t> first_map;         ///< CRC-32 of first.ot; empty: the map was empty
-    std::optional<std::uint32_t> first_state = {};  ///< CRC-32 of first.snapshot; empty: of version 1
+    std::optional<std::uint32_t> first_state = {};  ///< CRC-32 of first.snapshot; empty: version 1
     friend bool operator==(const Header&, const Header&) = default;
 };
 
-/// How a recording ended.
+/// The end of a recording.
 struct Trailer {
-    std::uint64_t commits = 0;  ///< all lines of J, R and D that there should be
+    std::uint64_t commits = 0;  ///< number of lines J, R and D that the file should have
     std::uint64_t lost_can = 0;
     std::uint64_t lost_commits = 0;
     std::uint64_t lost_depth = 0;
     std::optional<std::uint32_t> last_map;  ///< CRC-32 of last.ot; empty: the map was empty
-    /// Nothing that the map was made of is missing. Lost frames of the bus change no voxel.
+    /// True if nothing of the map's input is missing. Lost frames of the bus change no voxel.
     [[nodiscard]] bool is_complete() const noexcept { return lost_commits + lost_depth == 0; }
     friend bool operator==(const Trailer&, const Trailer&) = default;
 };
 
-/// Each with its line feed. A header without `first_state` is one of version 1.
+/// Each with its line feed. A header without `first_state` is of version 1.
 [[nodiscard]] std::string format_header(const Header& header);
 [[nodiscard]] std::string format_commit(const Commit& commit, std::size_t joints);
 [[nodiscard]] std::string format_trailer(const Trailer& trailer);
 
-/// The longest that any of them is, and far more.
+/// Well above the longest line of any kind.
 inline constexpr std::size_t kLineBytesMax = 1024;
 
-/// A line without its line feed. Any bytes are safe; empty if it is none.
+/// `line` has no line feed. Empty if it is not such a line. Safe for any bytes.
 [[nodiscard]] std::optional<Header> parse_header(std::string_view line);
 [[nodiscard]] std::optional<Commit> parse_commit(std::string_view line, std::size_t joints);
 [[nodiscard]] std::optional<Trailer> parse_trailer(std::string_view line);

@@ -1,4 +1,4 @@
-// Reads order.log, line by line, as the source of an ordered replay.
+// Reads order.log line by line, as the source of an ordered replay.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +17,23 @@ namespace octoskin::orderlog {
 
 class OrderReader final : public CommitSource {
   public:
-    /// Errors name the file: missing, or not begun as an order.log of this version.
+    /// Errors name the file: it is missing, or does not begin like an order.log of this version.
     [[nodiscard]] static Result<OrderReader, CommitSourceError> open(const FilePlace& file);
 
-    /// An error names file and line: no commit, a line behind the end, or fewer commits than its end says. A
-    /// file without an end, as a daemon leaves it that was killed, ends with its last whole line.
+    /// An error names file and line: not a commit, a line after the end, or fewer commits than the end
+    /// states. A file without an end, from a daemon that was killed, ends with its last complete line.
     [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> next() override;
 
     [[nodiscard]] const Header& header() const noexcept { return header_; }
     /// After the end; empty if the recording was cut off.
     [[nodiscard]] const std::optional<Trailer>& trailer() const noexcept { return trailer_; }
-    /// Of the newest commit, from 1.
+    /// Of the latest commit, from 1.
     [[nodiscard]] std::uint64_t line_number() const noexcept { return line_number_; }
 
   private:
     OrderReader(std::filesystem::path file, std::ifstream stream)
         : file_(std::move(file)), stream_(std::move(stream)) {}
-    /// False at the end of the file, or in the middle of its last line.
+    /// False at the end of the file, or at an incomplete last line.
     [[nodiscard]] bool read_line();
     [[nodiscard]] Unexpected<CommitSourceError> failure(const std::string& what) const;
     [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> end(const Trailer& trailer);

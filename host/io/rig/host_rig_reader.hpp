@@ -1,4 +1,4 @@
-// The rig file as the host core wants it.
+// Converts the rig file to the types of the host core.
 #pragma once
 
 #include <string>
@@ -11,20 +11,20 @@
 
 namespace octoskin {
 
-/// The rig in the host's terms, and the robot it stands on.
+/// The rig in the host's types, and its robot.
 struct HostSetup {
     HostRig rig;
     RobotModel robot;  ///< from rig.base_link; joint vectors in the order of rig.joints.joints
-    /// What is allowed and hardly meant, a sentence each, for whoever started the program.
+    /// Valid but probably unintended settings, one sentence each, for the user.
     std::vector<std::string> warnings;
-    /// What is as it may be, and worth a look, likewise.
+    /// Valid settings that the user may want to check, likewise.
     std::vector<std::string> notes = {};
 };
 
 [[nodiscard]] HostCamera host_camera(const rig::Camera& camera);
 
-/// Takes over what the host core needs and reads the robot's body and kinematics from `rig.urdf`. Errors:
-/// those of the URDF, and a body capsule on a link that does not hang below the rig's base link.
+/// Converts what the host core needs, and reads the robot's body and kinematics from `rig.urdf`. Errors:
+/// those of the URDF, and a body capsule on a link that is not below the rig's base link.
 [[nodiscard]] Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig);
 
 }  // namespace octoskin

@@ -19,8 +19,8 @@ BeamOptics beam_optics(const rig::Sensor& sensor, const Roi& zone) {
     const double width = zone.width * rig::kSpadPitch_rad;
     const double height = zone.height * rig::kSpadPitch_rad;
     constexpr double kBlurEnd = 1.5;
-    const double variance =
-        (width * width + height * height) / 24.0 + blur * blur;  // a uniform's is w^2 / 12
+    const double variance = (width * width + height * height) / 24.0 +
+                            blur * blur;  // the variance of a uniform distribution is w^2 / 12
     return {std::min(half_angle, 0.5 * std::hypot(width, height) + kBlurEnd * blur),
             1.0 / std::sqrt(1.0 / variance + 1.0 / (sigma * sigma)),
             2U * zone.width * zone.height <= kArraySide * kArraySide};

@@ -1,4 +1,4 @@
-// What a zone of a sensor sees of the cone that the rig gives it.
+// The part of a sensor's cone that a zone sees.
 #pragma once
 
 #include "common/config/node_config.hpp"
@@ -7,9 +7,9 @@
 
 namespace octoskin {
 
-/// The cone as a zone sees it; an ideal ray if the sensor has none. The whole array sees all of it. A smaller
-/// zone sees its own SPADs' part, blurred by the lens: to where the blur has all but ended, and about as a
-/// Gaussian of the same variance.
+/// The cone of a zone; an ideal ray if the rig gives the sensor no cone. The whole array sees all of the
+/// cone. A smaller zone sees the part of its own SPADs, blurred by the lens: up to where the blur nearly
+/// ends, and approximately as a Gaussian of the same variance.
 [[nodiscard]] BeamOptics beam_optics(const rig::Sensor& sensor, const Roi& zone);
 
 }  // namespace octoskin

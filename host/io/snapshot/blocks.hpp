@@ -1,5 +1,4 @@
-// A file of blocks, each with its kind, its number, its length and a checksum of all of these and of its
-// bytes.
+// A file of blocks. Each has its kind, number and length, and a checksum of these and of its bytes.
 #pragma once
 
 #include <cstddef>
@@ -13,25 +12,26 @@
 
 namespace octoskin::snapshot {
 
-/// What the file begins with: 16 bytes, the last of which is the version.
+/// The beginning of the file: 16 bytes, the last of which is the version.
 inline constexpr std::string_view kMagic = "octoskin-state/2";
-/// Of a block's bytes. A record of a brick has 2.1 kB at most, one of a zone's readings far less than this.
+/// Limit of a block's bytes. The record of a brick has at most 2.1 kB, that of a zone's readings far less
+/// than this limit.
 inline constexpr std::size_t kPayloadMax = std::size_t{16} << 20U;
 
-/// In the order in which they come in a file.
+/// In their order in a file.
 enum class BlockKind : std::uint8_t { head, log_odds, prior, misses, hits, ages, confirmed, seen, done };
 inline constexpr std::size_t kBlockKinds = 9;
 /// Four characters.
 [[nodiscard]] std::string_view tag_of(BlockKind kind) noexcept;
 
-/// Records to blocks to a sink.
+/// Collects records into blocks and passes these to a sink.
 class BlockWriter {
   public:
-    /// Begins the file.
+    /// Writes the beginning of the file.
     explicit BlockWriter(const ByteSink& sink) : sink_(sink) { is_taken_ = sink_(kMagic); }
 
-    /// Appends a record, which put(writer, is_first) writes, to a block of its kind; whether it is the
-    /// block's first. Throws std::bad_alloc.
+    /// Appends a record, written by put(writer, is_first), to a block of its kind; `is_first`: the record is
+    /// the first of its block. Throws std::bad_alloc.
     template <class Put>
     void add(BlockKind kind, const Put& put) {
         constexpr std::size_t kFull = std::size_t{64} << 10U;
@@ -41,7 +41,7 @@ class BlockWriter {
         ByteWriter writer(payload_);
         put(writer, payload_.empty());
     }
-    /// After the last record.
+    /// Must be called after the last record.
     void finish() { end_block(); }
 
   private:
@@ -57,17 +57,17 @@ class BlockWriter {
 struct Block {
     BlockKind kind = BlockKind::head;
     std::string_view payload;
-    std::size_t at = 0;  ///< which byte of the file it begins with
+    std::size_t at = 0;  ///< position of its first byte in the file
 };
 
-/// Blocks of a file's bytes, each checked before it is given.
+/// Reads blocks from a file's bytes; each is checked before it is returned.
 class BlockReader {
   public:
     explicit BlockReader(std::string_view bytes) noexcept : bytes_(bytes), at_(kMagic.size()) {}
 
-    /// Whether they begin as a file of this version; then `next` may be asked.
+    /// Whether the bytes begin like a file of this version; only then may `next` be called.
     [[nodiscard]] bool has_magic() const noexcept { return bytes_.starts_with(kMagic); }
-    /// The next one; empty where there is no whole and undamaged one, or a kind that cannot come there.
+    /// The next block; empty if there is no complete, undamaged block of a kind that is valid at this place.
     [[nodiscard]] std::optional<Block> next() noexcept;
     [[nodiscard]] bool is_over() const noexcept { return at_ == bytes_.size(); }
     [[nodiscard]] std::size_t at() const noexcept { return at_; }

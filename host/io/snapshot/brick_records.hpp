@@ -1,10 +1,9 @@
-// A tree's bricks as they are kept: one value for all of its voxels, or one for each, equal ones in runs.
+// The stored form of a tree's bricks: one value for all voxels, or one for each, with runs of equal values:
 //
-//     how many bricks further than the one before, in Morton order; in a block's first record than brick 0
+//     distance from the previous brick, in Morton order; in a block's first record: from brick 0
 //     0, value                      all voxels are alike
-//     1, runs until 512 voxels      0..127: as many values and one more follow;
-//                                   128..255: so many less 126 voxels, from 2 to 129, of the value that
-//                                   follows
+//     1, runs until 512 voxels      n in 0..127: n + 1 values follow;
+//                                   n in 128..255: n - 126 voxels (2 to 129) of the value that follows
 #pragma once
 
 #include <algorithm>
@@ -19,15 +18,15 @@
 
 namespace octoskin::snapshot {
 
-inline constexpr std::size_t kLoneMax = 128;   ///< values that follow one length
+inline constexpr std::size_t kLoneMax = 128;   ///< values after one length byte
 inline constexpr std::size_t kAlikeMax = 129;  ///< voxels of one value
 inline constexpr std::uint8_t kAlikeFrom = 128;
 
-/// Values as bits: a NaN is equal to itself.
+/// Values as bits: a NaN is then equal to itself.
 template <class Value>
 using BrickBits = std::array<BitsOf<Value>, kBrickVoxels>;
 
-/// From `first` on so many are equal, kAlikeMax at most.
+/// The number of equal values from `first` on, at most kAlikeMax.
 template <class Bits>
 [[nodiscard]] std::size_t alike_from(const Bits& bits, std::size_t first) noexcept {
     const std::size_t last = std::min(first + kAlikeMax, bits.size());
@@ -69,7 +68,7 @@ void get_values(ByteReader& reader, BrickValuesOf<Value>& values) {
     }
 }
 
-/// All bricks of a tree. Throws std::bad_alloc.
+/// Writes all bricks of a tree. Throws std::bad_alloc.
 template <class Value>
 void put_bricks(BlockWriter& blocks, BlockKind kind, const BrickTreeOf<Value>& tree) {
     std::uint64_t before = 0;
@@ -84,18 +83,18 @@ void put_bricks(BlockWriter& blocks, BlockKind kind, const BrickTreeOf<Value>& t
     });
 }
 
-/// What became of a block of bricks.
+/// The result of reading a block of bricks.
 enum class BricksRead : std::uint8_t { all, malformed, no_room };
 
-/// Takes bricks into a tree, block by block, in ascending order.
+/// Reads bricks into a tree, block by block, in ascending order.
 template <class Value>
 class BrickTaker {
   public:
-    /// `bytes_max`: of the heap that the tree may come to take, if each voxel had a value of its own.
+    /// `bytes_max`: limit of the tree's heap memory, computed as if each voxel had a value of its own.
     BrickTaker(BrickTreeOf<Value>& tree, std::size_t bytes_max) noexcept
         : tree_(tree), bytes_max_(bytes_max) {}
 
-    /// `is_possible(value)`: of a voxel. Throws std::bad_alloc.
+    /// `is_possible(value)`: whether a voxel may have this value. Throws std::bad_alloc.
     template <class IsPossible>
     [[nodiscard]] BricksRead take(std::string_view payload, const IsPossible& is_possible) {
         ByteReader reader(payload);

@@ -1,4 +1,4 @@
-// Figures to bytes and back, little-endian whatever the processor.
+// Numbers to bytes and back, little-endian on every processor.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace octoskin::snapshot {
 
-/// The unsigned integer with as many bits.
+/// The unsigned integer with the same number of bits.
 template <class Value>
 using BitsOf = std::conditional_t<
     sizeof(Value) == 1, std::uint8_t,
@@ -22,7 +22,7 @@ class ByteWriter {
   public:
     explicit ByteWriter(std::string& bytes) noexcept : bytes_(bytes) {}
 
-    /// An integer or a float, bit by bit. Throws std::bad_alloc, as all of these.
+    /// An integer or a float, bit by bit. Throws std::bad_alloc, like the functions below.
     template <class Value>
     void put(Value value) {
         const auto bits = std::bit_cast<BitsOf<Value>>(value);
@@ -32,7 +32,7 @@ class ByteWriter {
         bytes_.append(text, sizeof(Value));
     }
     void put_flag(bool is_set) { put(static_cast<std::uint8_t>(is_set ? 1 : 0)); }
-    /// Seven bits a byte, the lowest first; the last has no top bit.
+    /// Seven bits in each byte, the lowest first; the last byte has no top bit.
     void put_count(std::uint64_t count) {
         for (; count >= 0x80U; count >>= 7U) put(static_cast<std::uint8_t>(count | 0x80U));
         put(static_cast<std::uint8_t>(count));
@@ -42,7 +42,7 @@ class ByteWriter {
     std::string& bytes_;
 };
 
-/// Takes from the beginning of a text. What is not there is 0, and from then on it is not sound.
+/// Takes values from the beginning of a text. Missing ones are 0, and from then on is_sound is false.
 class ByteReader {
   public:
     explicit ByteReader(std::string_view bytes) noexcept : rest_(bytes) {}
@@ -74,7 +74,7 @@ class ByteReader {
         fail();
         return 0;
     }
-    /// Says that what was read cannot be.
+    /// Marks the input as invalid.
     void fail() noexcept {
         is_sound_ = false;
         rest_ = {};

@@ -36,7 +36,7 @@ void get_matrix(ByteReader& reader, Matrix& matrix) {
     for (Eigen::Index i = 0; i < matrix.size(); ++i) *(matrix.data() + i) = reader.get<double>();
 }
 
-/// But for its source, which the record has.
+/// Without its source, which the record contains.
 void put_beam(ByteWriter& writer, const Beam& beam) {
     writer.put(beam.captured.ns);
     put_matrix(writer, beam.p_map_sensor);
@@ -52,7 +52,7 @@ void put_beam(ByteWriter& writer, const Beam& beam) {
 }
 
 bool is_possible(const Beam& beam) {
-    // So that the difference of two of them is a time, too.
+    // The difference of two times must also be a valid time.
     constexpr std::int64_t kTimeMax = std::int64_t{1} << 61U;
     return beam.captured.ns >= -kTimeMax && beam.captured.ns <= kTimeMax && !fault_of(beam) &&
            std::isfinite(beam.sigma_m) && beam.sigma_m >= 0.0 && is_within_limits(beam);
@@ -110,12 +110,12 @@ void get_zone(ByteReader& reader, const BeamSource& source, std::size_t readings
     }
 }
 
-/// Which zones ConfirmedRanges keeps something of: all of a sensor that it took a reading of.
+/// Zones with a state in ConfirmedRanges: all of a sensor with at least one reading.
 bool has_confirming(const SensorHistory& sensor) {
     return sensor.readings > 0;
 }
 
-/// Whether `source` comes after all before it, which it then does for the next one.
+/// Whether `source` comes after all previous ones; if so, it becomes the newest.
 bool is_further(std::optional<BeamSource>& newest, const BeamSource& source) {
     const bool is = !newest || *newest < source;
     newest = source;
@@ -152,7 +152,8 @@ void put_readings(BlockWriter& blocks, const SensorHistories& histories) {
 }
 
 bool ReadingsTaker::take_confirmed(std::string_view payload, const StationaryModel& model) {
-    // A sensor's number comes with each of its zones; as large as none can count to is none.
+    // A sensor's number of readings is stored with each of its zones; a count so large that it cannot occur
+    // is invalid.
     constexpr std::uint64_t kReadingsMax = std::uint64_t{1} << 62U;
     ByteReader reader(payload);
     while (!reader.is_over()) {

@@ -1,4 +1,4 @@
-// What range sensors read, zone by zone, as records.
+// The readings of range sensors, zone by zone, as records.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace octoskin::snapshot {
 /// Throws std::bad_alloc.
 void put_readings(BlockWriter& blocks, const SensorHistories& histories);
 
-/// Takes what blocks of BlockKind::confirmed and BlockKind::seen hold, each kind in its order. False: it
-/// cannot be. Throws std::bad_alloc.
+/// Reads the content of blocks of BlockKind::confirmed and BlockKind::seen, each kind in its order. False:
+/// the content is invalid. Throws std::bad_alloc.
 class ReadingsTaker {
   public:
     explicit ReadingsTaker(SensorHistories& histories) : histories_(histories) {}
@@ -30,7 +30,7 @@ class ReadingsTaker {
     std::optional<BeamSource> newest_seen_;
 };
 
-/// How many zones have a record of each kind.
+/// Number of zones with a record of each kind.
 struct ZoneCounts {
     std::uint64_t confirmed = 0;
     std::uint64_t seen = 0;

@@ -28,9 +28,9 @@ Bytes after(Bytes bytes, std::size_t count) {
     return bytes.subspan(std::min(bytes.size(), count));
 }
 
-/// What the first attribute of this type holds; empty if there is none.
+/// The content of the first attribute of this type; empty if there is none.
 Bytes attribute(Bytes attributes, unsigned type) {
-    while (true) {  // each round takes one attribute off
+    while (true) {  // each iteration removes one attribute
         const auto header = read<rtattr>(attributes);
         if (!header || header->rta_len < sizeof(rtattr) || header->rta_len > attributes.size()) return {};
         if ((header->rta_type & NLA_TYPE_MASK) == type)
@@ -77,7 +77,7 @@ std::optional<InterfaceState> read_interface_state(const std::string& interface)
     if (request.link.ifi_index == 0) return std::nullopt;
     const int descriptor = ::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE);
     if (descriptor < 0) return std::nullopt;
-    // The kernel answers before `send` returns.
+    // The kernel has answered when `send` returns.
     std::array<std::byte, 16'384> answer{};
     const bool is_asked = ::send(descriptor, &request, sizeof(request), 0) == ssize_t{sizeof(request)};
     const ssize_t count = is_asked ? ::recv(descriptor, answer.data(), answer.size(), 0) : -1;

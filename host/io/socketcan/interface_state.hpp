@@ -1,6 +1,6 @@
-// How an interface and its CAN controller stand, asked of the kernel (rtnetlink): error frames tell of
-// changes only, and not every adapter tells of every change; a socket tells that its interface went down, and
-// not that it is up again.
+// The state of an interface and its CAN controller, requested from the kernel (rtnetlink). Error frames
+// report changes only, and some adapters do not report all of them. A socket reports that its interface went
+// down, but not that it is up again.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace octoskin::socketcan {
 
-/// As <linux/can/netlink.h> has them.
+/// The values of <linux/can/netlink.h>.
 enum class ControllerState : std::uint8_t {
     error_active,
     error_warning,
@@ -22,16 +22,16 @@ enum class ControllerState : std::uint8_t {
 };
 
 struct InterfaceState {
-    bool is_up = false;                         ///< somebody brought it up (IFF_UP)
-    std::optional<ControllerState> controller;  ///< empty: it has none, as a virtual one
+    bool is_up = false;                         ///< set up (IFF_UP)
+    std::optional<ControllerState> controller;  ///< empty: it has none, like a virtual interface
     friend bool operator==(const InterfaceState&, const InterfaceState&) = default;
 };
 
-/// Empty if the kernel does not say: no such interface, or netlink is not permitted here. One call of the
-/// kernel, which waits only for whoever sets up an interface at that moment.
+/// Empty if the kernel gives no answer: no such interface, or netlink is not permitted. One system call; it
+/// waits only while another program configures an interface.
 [[nodiscard]] std::optional<InterfaceState> read_interface_state(const std::string& interface);
 
-/// The same out of the kernel's answer to RTM_GETLINK. Any bytes are safe.
+/// The same from the kernel's answer to RTM_GETLINK. Safe for any bytes.
 [[nodiscard]] std::optional<InterfaceState> interface_state_of(std::span<const std::byte> answer);
 
 }  // namespace octoskin::socketcan

@@ -7,7 +7,7 @@ namespace octoskin::socketcan {
 std::vector<IdFilter> our_filters(const HostRig& rig) {
     constexpr std::uint32_t kNodeBits = 63;
     std::vector<IdFilter> filters;
-    filters.push_back({wire::kHostId, kNodeBits});  // SYNC, FOLLOW_UP and MARK of whichever host sends them
+    filters.push_back({wire::kHostId, kNodeBits});  // SYNC, FOLLOW_UP and MARK of any host
     for (const HostNode& node : rig.nodes) filters.push_back({node.node_id, kNodeBits});
     filters.push_back({rig.joints.node_id, kNodeBits});
     filters.push_back({wire::can_id(wire::FrameType::heartbeat, 0), wire::kStandardIdMax & ~kNodeBits});

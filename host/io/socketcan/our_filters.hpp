@@ -1,5 +1,5 @@
-// Which identifiers a host lets the kernel pass: those of its own rig, and every node's heartbeat, so that a
-// node of another rig is named. Whatever else floods the bus never wakes it.
+// The identifiers that the kernel passes to a host: those of its own rig, and the heartbeats of all nodes, so
+// that a node of another rig can be reported. Other traffic never wakes the host.
 #pragma once
 
 #include <vector>

@@ -11,7 +11,7 @@
 namespace octoskin::socketcan {
 namespace {
 
-/// Of Linux 6.16, which the headers here need not know.
+/// Since Linux 6.16; older headers do not define it.
 constexpr int kPassRights = 83;
 #ifdef SO_PASSRIGHTS
 static_assert(kPassRights == SO_PASSRIGHTS);
@@ -34,7 +34,7 @@ bool has_descriptors_beside(int socket) {
 }
 
 ssize_t receive_text(int connection, std::span<char> bytes) {
-    // No look before whether it has descriptors beside it: of a byte that is out of band none can tell.
+    // Does not look for descriptors first: for an out-of-band byte that is impossible.
     const ShortWaits none_long;
     return ::recv(connection, bytes.data(), bytes.size(), MSG_DONTWAIT);
 }

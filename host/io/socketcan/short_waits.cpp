@@ -8,7 +8,7 @@
 namespace octoskin::socketcan {
 namespace {
 
-/// Comes again and again: the first may come before the call begins to wait.
+/// The signal repeats: the first may come before the call begins to wait.
 constexpr long kPeriodNs = 1'000'000;
 
 sigset_t just_ours() {
@@ -25,7 +25,7 @@ bool take_signal() {
     return ::sigaction(ShortWaits::signal(), &nothing, nullptr) == 0;
 }
 
-/// Of one thread, as long as that lives.
+/// Belongs to one thread, for that thread's lifetime.
 class Timer {
   public:
     Timer() {
@@ -33,7 +33,7 @@ class Timer {
         sigevent event{};
         event.sigev_notify = SIGEV_THREAD_ID;
         event.sigev_signo = ShortWaits::signal();
-        event._sigev_un._tid = ::gettid();  // glibc has no other name for it
+        event._sigev_un._tid = ::gettid();  // glibc has no other name for this field
         is_made_ = has_signal && ::timer_create(CLOCK_MONOTONIC, &event, &timer_) == 0;
     }
     ~Timer() {
@@ -53,7 +53,7 @@ class Timer {
 };
 
 thread_local const Timer timer_of_thread;
-/// As the thread had it before.
+/// The thread's previous signal mask.
 thread_local sigset_t mask_before;
 
 }  // namespace
@@ -63,7 +63,7 @@ int ShortWaits::signal() noexcept {
 }
 
 ShortWaits::ShortWaits() {
-    timer_of_thread.set(kPeriodNs);  // which takes the signal, if it is the first of all
+    timer_of_thread.set(kPeriodNs);  // installs the signal's handler at the first call
     const sigset_t ours = just_ours();
     pthread_sigmask(SIG_UNBLOCK, &ours, &mask_before);
 }

@@ -1,13 +1,14 @@
-// System calls that may have to wait for what another program sent along: a connection that lingers, above
-// all.
+// Limits the wait of system calls that may have to wait for something that another program has sent, mainly a
+// lingering connection.
 #pragma once
 
 namespace octoskin::socketcan {
 
-/// While one lives, a wait within a system call of this thread that a signal can end is ended within some
-/// milliseconds: the kernel looks for signals where it waits for a connection that lingers. To live around as
-/// few calls as can be, as others of them may end early, too (EINTR). One at a time in a thread. Without room
-/// for a timer (`ulimit -i`) a wait is as long as it is. Two system calls to begin with, two to end with.
+/// During the lifetime of this object, an interruptible wait in a system call of this thread ends within some
+/// milliseconds: the kernel checks for signals while it waits for a lingering connection. Use it around as
+/// few calls as possible, because other calls may end early, too (EINTR). One at a time in a thread. If no
+/// timer is available (`ulimit -i`), waits are not limited. Cost: two system calls at the beginning, two at
+/// the end.
 class ShortWaits {
   public:
     ShortWaits();
@@ -15,7 +16,8 @@ class ShortWaits {
     ShortWaits(const ShortWaits&) = delete;
     ShortWaits& operator=(const ShortWaits&) = delete;
 
-    /// Does nothing else in this process. Blocked in a thread, it does nothing there outside of a ShortWaits.
+    /// The signal has no other use in this process. If a thread blocks it, it has no effect outside of a
+    /// ShortWaits.
     [[nodiscard]] static int signal() noexcept;
 };
 

@@ -28,7 +28,7 @@ StampedDatagram::Sender sender_of(const cmsghdr* part) {
     return {credentials.pid, credentials.uid};
 }
 
-/// `length`: as recvmsg(2) tells it. An abstract address begins with a zero byte and needs no end.
+/// `length`: from recvmsg(2). An abstract address begins with a zero byte and has no terminator.
 std::string name_of(const sockaddr_un& address, socklen_t length) {
     if (length <= offsetof(sockaddr_un, sun_path)) return {};
     std::string name(address.sun_path, length - offsetof(sockaddr_un, sun_path));

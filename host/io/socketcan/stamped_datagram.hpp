@@ -1,4 +1,4 @@
-// One datagram with what the kernel says beside it: when it came, and how many it had no room for.
+// One datagram with the kernel's additional data: its arrival time, and the number of dropped ones.
 #pragma once
 
 #include <sys/socket.h>
@@ -16,12 +16,11 @@
 namespace octoskin::socketcan {
 
 struct StampedDatagram {
-    ssize_t count = 0;  ///< as of recvmsg(2); negative: errno says why
+    ssize_t count = 0;  ///< result of recvmsg(2); negative: see errno
     int flags = 0;      ///< MSG_...
     std::optional<WallTime> stamp;
     std::optional<std::uint32_t> dropped;  ///< SO_RXQ_OVFL: since the socket was opened, modulo 2^32
-    /// SCM_CREDENTIALS, if they are wanted: what the kernel vouches for. 0: a process that it cannot name
-    /// here.
+    /// SCM_CREDENTIALS, if requested; verified by the kernel. 0: a process that has no number here.
     struct Sender {
         pid_t pid = 0;
         uid_t uid = 0;
@@ -29,20 +28,20 @@ struct StampedDatagram {
     std::optional<Sender> sender;
 };
 
-/// What the kernel says beside a datagram of its own accord has just this room. What a sender puts beside it
-/// finds none: descriptors are dropped, and MSG_CTRUNC says so.
+/// Exactly the room for the kernel's own data of a datagram. There is none for what a sender adds:
+/// descriptors are dropped, which MSG_CTRUNC shows.
 inline constexpr std::size_t kRoomBeside = CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(ucred));
 
-/// From now on datagrams are stamped, if the kernel does that for this kind of socket.
+/// From now on datagrams have time stamps, if the kernel supports that for this kind of socket.
 bool want_stamps(int descriptor);
 
-/// From now on datagrams of a Unix socket tell the process that sent them.
+/// From now on datagrams of a Unix socket contain the process that sent them.
 bool want_senders(int descriptor);
 
-/// Takes one datagram, if one is here, and no descriptor beside it: that is dropped, which can take as long
-/// as passed_descriptors.hpp says. Else never waits. A Unix socket is to want stamps and senders. `address`:
-/// of a Unix socket, what the sender's is bound to, its own characters where they are printable and '?'
-/// elsewhere; empty: to nothing. May be null.
+/// Takes one datagram, if there is one. Descriptors in it are dropped, which can take as long as
+/// passed_descriptors.hpp states; otherwise it never waits. A Unix socket must be set up for time stamps and
+/// senders. `address`: for a Unix socket, the address of the sender's socket, with '?' for unprintable
+/// characters; empty if it has none. May be null.
 [[nodiscard]] StampedDatagram receive_stamped(int descriptor, std::span<std::byte> bytes,
                                               std::string* address = nullptr);
 

@@ -1,4 +1,4 @@
-// The cameras of published data sets, and the one that a data set has a file of.
+// The cameras of published data sets, and the calibration file of a data set.
 #pragma once
 
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace octoskin::tum {
 
-/// The first is what the TUM RGB-D benchmark says to use for all its depth images, which the driver has
-/// registered to the colour camera and taken the distortion out of; freiburg1 to 3 are calibrations of its
-/// three colour cameras.
+/// The first is the camera that the TUM RGB-D benchmark recommends for all its depth images: the driver has
+/// registered these to the colour camera and undistorted them. freiburg1 to 3 are calibrations of the
+/// benchmark's three colour cameras.
 inline constexpr std::array<std::string_view, 6> kDataSetCameras{"kinect",    "freiburg1", "freiburg2",
                                                                  "freiburg3", "icl_nuim",  "seven_scenes"};
 
 /// One of kDataSetCameras; empty for any other name.
 [[nodiscard]] std::optional<CameraIntrinsics> data_set_camera(std::string_view name);
 
-/// Of `calibration`: the four numbers fx fy cx cy, or a 3 x 3 matrix; pixel centres have whole numbers in
-/// both. Size: that of `image`. Errors name the file.
+/// Reads `calibration`: the four numbers fx fy cx cy, or a 3 x 3 matrix; in both, pixel centres are whole
+/// numbers. The size is that of `image`. Errors name the file.
 [[nodiscard]] Result<CameraIntrinsics, DepthSourceError> calibrated_camera(const FilePlace& calibration,
                                                                            const FilePlace& image);
 

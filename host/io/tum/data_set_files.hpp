@@ -1,4 +1,4 @@
-// Which files of a folder are a data set's: the layouts in which people publish depth images with poses.
+// Finds the files of a data set in a folder, in the layouts in which depth images with poses are published.
 #pragma once
 
 #include <cstdint>
@@ -15,40 +15,40 @@
 
 namespace octoskin::tum {
 
-/// Which way the y axis of camera and map points in a trajectory: the optical frame's downwards; or upwards,
-/// with which both are left-handed.
+/// The direction of the y axis of camera and map in a trajectory: down, as in the optical frame; or up, where
+/// both frames are left-handed.
 enum class CameraAxes : std::uint8_t { y_down, y_up };
 
-/// What is as the data set's publisher has it, if neither a rig nor an option says otherwise.
+/// The publisher's conventions, used if neither a rig nor an option overrides them.
 struct DataSetLayout {
     std::string_view name;
-    std::string_view poses;   ///< the trajectory's name, or how it ends after a '*'
+    std::string_view poses;   ///< the trajectory's name, or the end of it after a '*'
     std::string_view camera;  ///< one of kDataSetCameras
     rig::DataSetDepth depth;
     CameraAxes axes = CameraAxes::y_down;
 };
 
-/// "frame-000012.depth.png": 30 of them are a second, as no time is told.
+/// "frame-000012.depth.png". These data sets contain no times: 30 frames a second are assumed.
 struct NumberedFrame {
     HostTime captured;
     std::string image;
     std::string pose;
-    bool has_pose = false;  ///< the file of its pose is there
+    bool has_pose = false;  ///< its pose file exists
 };
 
 struct DataSetFiles {
     const DataSetLayout* layout = nullptr;
-    std::string images;                 ///< the list of them; empty: `frames`
+    std::string images;                 ///< the list of images; empty: `frames`
     std::string poses;                  ///< the trajectory; empty: `frames`
     std::string calibration;            ///< empty: none
-    std::vector<NumberedFrame> frames;  ///< in order of their numbers
+    std::vector<NumberedFrame> frames;  ///< ordered by number
 };
 
-/// What the folder lists its depth images by, as a user would call it: a list's name, or "frame-*.depth.png".
-/// Empty: it is no data set.
+/// The list of the folder's depth images, as the user knows it: a list's name, or "frame-*.depth.png". Empty:
+/// the folder is not a data set.
 [[nodiscard]] std::optional<std::string> depth_images_of(const NamedFolder& folder);
 
-/// The files of a folder that has depth images. An error says what is missing, or there twice.
+/// The files of a folder that has depth images. An error names what is missing or ambiguous.
 [[nodiscard]] Result<DataSetFiles, DepthSourceError> find_data_set(const NamedFolder& folder);
 
 }  // namespace octoskin::tum

@@ -13,11 +13,11 @@ namespace octoskin::tum {
 struct DepthPng {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::vector<std::uint16_t> values;  ///< row-major, as they are in the file: no gamma is applied
+    std::vector<std::uint16_t> values;  ///< row-major, as stored in the file: no gamma correction is applied
 };
 
-/// Errors say what is wrong, without the name: not to be opened, no PNG, cut off or damaged, not grey with 16
-/// bits, over 4096 x 4096. About 4 ms for 640 x 480.
+/// Errors contain the fault without the file's name: cannot be opened, not a PNG, cut off or damaged, not
+/// grey with 16 bits, over 4096 x 4096. About 4 ms for 640 x 480.
 [[nodiscard]] Result<DepthPng, std::string> read_depth_png(const FilePlace& file);
 
 }  // namespace octoskin::tum

@@ -1,5 +1,5 @@
-// Whether the values of a data set's images are what the rig takes them for. Millimetres read as 5000 a metre
-// make a map five times too small.
+// Checks whether the scale of a data set's images is plausible. Millimetres read at 5000 a metre make a map
+// five times too small.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace octoskin::tum {
 
-/// How often each value of a pixel was read.
+/// A histogram of pixel values.
 class PixelValues {
   public:
     PixelValues() : counts_(kValues, 0) {}
 
-    /// One image. About 0.5 ms for 640 x 480.
+    /// Adds one image. About 0.5 ms for 640 x 480.
     void add(std::span<const std::uint16_t> values) noexcept {
         for (const std::uint16_t value : values) ++counts_[value];
     }
@@ -29,10 +29,10 @@ class PixelValues {
     std::vector<std::uint64_t> counts_;
 };
 
-/// What speaks against `scale`, with the key that mends it: most pixels are nearer than `depth_min_m`; or, of
-/// an image that is read in the layout's own 5000 a metre, most values are no multiple of 5, which those of a
-/// camera that measures millimetres are, or no pixel to speak of is as far as a metre. Empty if nothing does.
-/// It is a doubt: a close-up looks alike.
+/// The evidence against `scale`, with the key that corrects it; empty if there is none. Evidence is that most
+/// pixels are nearer than `depth_min_m`. For images at the layout's own 5000 a metre it is also that most
+/// values are not multiples of 5 (those of a camera that measures millimetres are), or that hardly any pixel
+/// is as far as a metre. It is not a proof: a close-up looks the same.
 [[nodiscard]] std::optional<std::string> doubt_units(const PixelValues& values,
                                                      const rig::DataSetDepth& scale, double depth_min_m);
 

@@ -18,8 +18,8 @@ Eigen::Isometry3d between(const PoseLine& before, const PoseLine& after, HostTim
     return T_map_camera;
 }
 
-/// Camera and map of a left-handed data set have y upwards. With y turned round in both, a motion is one of
-/// right-handed frames.
+/// In a left-handed data set the y axes of camera and map point up. Inverting y in both makes the motion one
+/// of right-handed frames.
 Eigen::Isometry3d with_y_down(const Eigen::Isometry3d& T_map_camera) {
     const Eigen::DiagonalMatrix<double, 3> turn(1.0, -1.0, 1.0);
     Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();

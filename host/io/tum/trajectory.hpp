@@ -1,4 +1,4 @@
-// Where the camera was: the poses of a data set, and those between them.
+// The poses of a data set's camera, and interpolation between them.
 #pragma once
 
 #include <cstdint>
@@ -15,37 +15,37 @@
 
 namespace octoskin::tum {
 
-/// What became of the lines, or of the files of one pose each.
+/// Counts of the lines, or of the pose files.
 struct PoseCounts {
     std::uint64_t in = 0;
     std::uint64_t used = 0;
-    std::uint64_t no_pose = 0;   ///< that say that none is known then, or are not there
-    std::uint64_t repeated = 0;  ///< left out, as one above has their time
+    std::uint64_t no_pose = 0;   ///< marked as unknown, or missing files
+    std::uint64_t repeated = 0;  ///< dropped, because a previous one has the same time
     BadLines bad;
-    std::uint64_t unordered = 0;               ///< of all: earlier than the one above; they are put in order
+    std::uint64_t unordered = 0;  ///< of all: with a time before the previous one; they are sorted
     std::optional<DepthSourceError> disorder;  ///< the first of them
 };
 
-/// A pose so near to an instant is that of it. Programs that keep seconds of today as a double move them by
-/// 0.2 us; a camera at 1 m/s covers 1 um meanwhile.
+/// A pose within this time of an instant is used without interpolation. Programs that store present-day
+/// seconds as a double shift them by 0.2 us; a camera at 1 m/s moves 1 um in this time.
 inline constexpr Nanoseconds kSameInstant{1'000};
 
 class Trajectory {
   public:
-    /// `gap_max`: between poses farther apart there is none. Errors name the file, and the line if not one
+    /// `gap_max`: no interpolation between poses farther apart. Errors name the file, and the line if no line
     /// has a pose.
     [[nodiscard]] static Result<Trajectory, DepthSourceError> read(const FilePlace& file, Nanoseconds gap_max,
                                                                    CameraAxes axes = CameraAxes::y_down);
-    /// One file of a pose each, as `frames` name them, at the times of their images.
+    /// The pose files named in `frames`, one each, at the times of their images.
     [[nodiscard]] static Trajectory read_frames(const NamedFolder& folder,
                                                 const std::vector<NumberedFrame>& frames,
                                                 Nanoseconds gap_max);
 
-    /// T_map_camera: position linear, orientation along the shorter arc. Empty before the first pose, after
-    /// the last, where the poses about `instant` are over `gap_max` apart, and where one of them says that
-    /// none is known. O(log poses).
+    /// T_map_camera: linear in position, orientation along the shorter arc. Empty before the first pose,
+    /// after the last, if the poses around `instant` are more than `gap_max` apart, or if one of them is
+    /// marked as unknown. O(log poses).
     [[nodiscard]] std::optional<Eigen::Isometry3d> at(HostTime instant) const;
-    /// How far the poses about `instant` are apart; empty before the first and after the last.
+    /// The distance between the poses around `instant`; empty before the first and after the last.
     [[nodiscard]] std::optional<Nanoseconds> gap_about(HostTime instant) const;
     [[nodiscard]] Nanoseconds gap_max() const noexcept { return gap_max_; }
 
@@ -54,7 +54,7 @@ class Trajectory {
   private:
     explicit Trajectory(Nanoseconds gap_max) : gap_max_(gap_max) {}
     [[nodiscard]] std::vector<PoseLine>::const_iterator from(HostTime instant) const;
-    /// Within kSameInstant, the nearest; null if there is none.
+    /// The nearest one within kSameInstant; null if there is none.
     [[nodiscard]] const PoseLine* beside(HostTime instant) const;
     void put_in_order();
 

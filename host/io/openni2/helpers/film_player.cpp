@@ -1,7 +1,7 @@
-// octoskin-film FILE.oni: a recording in a camera's place, its frames at their own speed, again and again, to
-// standard output (frame_pipe.hpp), each with the time at which it is shown. octoskin-camera becomes this
-// program when it is given a file: the drivers of cameras need too much of the system for a process that
-// reads a foreign file, so here there are none.
+// octoskin-film FILE.oni: plays a recording in place of a camera. It writes the frames at their own speed, in
+// an endless loop, to standard output (frame_pipe.hpp), each with the time at which it is shown.
+// octoskin-camera becomes this program when it gets a file. Drivers of cameras need many system calls, which
+// a process that reads an untrusted file must not have; this process has no camera drivers.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -16,10 +16,10 @@ namespace {
 
 constexpr const char* kProgram = "octoskin-film";
 
-/// A film has no clock of its own, and its stamps tell how long to wait between two frames, no more: what
-/// OpenNI2 shows late on a busy machine makes all that follows as late, and each round begins when it does.
-/// So a frame is of the moment at which it is shown. It is here by then, or as soon as this thread has its
-/// turn: a period later at most, or the next frame would be here in its place.
+/// A recording has no clock of its own. Its time stamps give only the pause between two frames: if OpenNI2
+/// shows one late on a busy machine, all later ones are as late, and each loop begins after the previous one.
+/// So the capture time of a frame is the moment at which it is shown. The frame is received then, or when
+/// this thread next runs, at most one period later: otherwise the next frame would have replaced it.
 Result<std::int64_t, std::string> shown_at(std::int64_t arrived_us) {
     return arrived_us;
 }
@@ -33,7 +33,7 @@ int play(DepthStream& depth, const std::filesystem::path& film, int descriptor) 
     playback->setRepeatEnabled(true);
     playback->setSpeed(1.0F);
     if (!depth.start()) return 1;
-    // One would be shown without a pause, for nothing tells how long it is to last.
+    // A single frame would be repeated without a pause, because its duration is unknown.
     if (depth.frame_count() < 2) return depth.complain("it has fewer than two frames");
     return stream_frames(depth, descriptor, shown_at);
 }

@@ -7,7 +7,8 @@
 namespace octoskin::openni2 {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{5'000};  // a daemon that takes no frames for so long is stuck
+constexpr std::chrono::milliseconds kPatience{
+    5'000};  // a daemon that accepts no frame for this long is stuck
 
 std::int64_t monotonic_us() {
     return std::chrono::duration_cast<std::chrono::microseconds>(
@@ -20,7 +21,7 @@ std::int64_t monotonic_us() {
 int stream_frames(DepthStream& depth, int descriptor, const CaptureTime& capture_time) {
     FramePipe output(descriptor, kPatience);
     if (!output.write_header({.size = depth.size(), .rate_mhz = depth.rate_mhz()})) return 1;
-    while (true) {  // until the device or the reader is gone
+    while (true) {  // until the device or the reader disappears
         if (!depth.wait_for_frame()) return depth.complain("no more frames");
         const auto captured_us = capture_time(monotonic_us());
         if (!captured_us) {

@@ -1,4 +1,4 @@
-// The frames of a device to the program that asked for them.
+// Sends the frames of a device to the program that started this helper.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace octoskin::openni2 {
 
-/// When the newest frame was captured, of one that arrived at `arrived_us`; both on the host's monotonic
-/// clock, microseconds. The error: why no more frames are worth having; empty: this one's time is not known.
+/// The capture time of the latest frame, which arrived at `arrived_us`; both on the host's monotonic clock,
+/// microseconds. Empty: the time of this frame is unknown. Error: why further frames cannot be used.
 using CaptureTime = std::function<Result<std::int64_t, std::string>(std::int64_t arrived_us)>;
 
-/// Writes frames of `depth`, which has started, to `descriptor` (frame_pipe.hpp) until there are no more, or
-/// the reader is gone or takes none for 5 s. The exit code, which is never 0.
+/// Writes frames of `depth`, which must be started, to `descriptor` (frame_pipe.hpp), until there are no
+/// more, or the reader has closed or accepts none for 5 s. Returns an exit code, which is never 0.
 [[nodiscard]] int stream_frames(DepthStream& depth, int descriptor, const CaptureTime& capture_time);
 
 }  // namespace octoskin::openni2

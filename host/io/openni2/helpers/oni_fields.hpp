@@ -1,4 +1,4 @@
-// The fields of a record of an .oni file, one after the other.
+// Reads the fields of an .oni record one after another.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class OniFields {
   public:
     explicit OniFields(std::span<const std::uint8_t> bytes) : left_(bytes) {}
 
-    /// Empty if there are fewer bytes.
+    /// Empty if there are not enough bytes.
     template <class T>
     [[nodiscard]] std::optional<T> take() {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -31,8 +31,8 @@ class OniFields {
         left_ = left_.subspan(count);
         return bytes;
     }
-    /// A length and so many characters: printable ASCII, for OpenNI2 takes others for places before a table,
-    /// and a NUL at the end; empty otherwise.
+    /// A length and so many characters: printable ASCII (OpenNI2 uses other values as indices before a table)
+    /// with a NUL at the end; empty otherwise.
     [[nodiscard]] std::optional<std::string_view> take_text() {
         const auto length = take<std::uint32_t>();
         const auto bytes = length ? take_bytes(*length) : std::nullopt;

@@ -8,14 +8,13 @@
 namespace octoskin::openni2 {
 
 struct OniOutline {
-    bool has_begun = false;    ///< the record that says that frames follow is there
-    std::uint32_t frames = 0;  ///< whole ones, of all streams
-    std::optional<std::uintmax_t>
-        length;  ///< where the last record ends; empty in a file that was not finished
+    bool has_begun = false;                ///< the record that announces frames exists
+    std::uint32_t frames = 0;              ///< complete ones, of all streams
+    std::optional<std::uintmax_t> length;  ///< end of the last record; empty for a file that was not finished
 };
 
-/// O(records) small reads. Stops where the file or its sense does; a file that is not there has nothing in
-/// it.
+/// O(records) small reads. Stops at the end of the file or at the first invalid record; a missing file counts
+/// as empty.
 [[nodiscard]] OniOutline outline_of(const std::filesystem::path& oni);
 
 }  // namespace octoskin::openni2

@@ -1,4 +1,4 @@
-// OpenNI2's recorder on the virtual camera, made dependable.
+// A reliable wrapper for OpenNI2's recorder on the virtual camera.
 #pragma once
 
 #include <OpenNI.h>
@@ -13,19 +13,19 @@
 namespace octoskin::openni2 {
 
 /// OpenNI2's recorder writes in a thread of its own. It ignores frames until that thread has begun the file,
-/// tells nobody when it cannot write, and spins while it has nothing to do. So a frame counts only once the
-/// file has grown by it, and the recorder is started when frames are there. Every function returns what went
-/// wrong, empty if nothing.
+/// does not report write errors, and busy-waits without work. So a frame counts only when the file has grown
+/// by it, and the recorder is started only when frames are available. Every function returns the error, or an
+/// empty text.
 class OniRecorder {
   public:
     OniRecorder(std::filesystem::path file, FrameSize size) : file_(std::move(file)), size_(size) {}
 
-    /// OpenNI2 and the virtual camera.
+    /// Starts OpenNI2 and the virtual camera.
     [[nodiscard]] std::string open();
     /// Starts the file anew, with its first frame if there is one.
     [[nodiscard]] std::string begin(const PipedFrame* first);
     [[nodiscard]] std::string record(const PipedFrame& frame);
-    /// Ends the file and sees that all frames are in it.
+    /// Ends the file and checks that it contains all frames.
     [[nodiscard]] std::string finish();
 
   private:

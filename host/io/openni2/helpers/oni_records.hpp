@@ -1,4 +1,4 @@
-// The records of an .oni file one after the other, read without OpenNI2, which opens no file that has no end.
+// Reads the records of an .oni file in order without OpenNI2, which cannot open a file without an end.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace octoskin::openni2 {
 
-// As OpenNI2 2.2 writes them (Source/Core/OniDataRecords.h): a file header, then records, each with a packed
-// header whose `fields_size` counts itself. Little-endian, as all its machines are.
+// The format of OpenNI2 2.2 (Source/Core/OniDataRecords.h): a file header, then records, each with a packed
+// header whose `fields_size` includes the header itself. Little-endian, like all platforms of OpenNI2.
 inline constexpr std::uintmax_t kOniFileHeaderSize = 24;
 inline constexpr std::uint32_t kOniRecordHeaderSize = 28;
 inline constexpr std::uint32_t kOniFrameFieldsSize = kOniRecordHeaderSize + 12;  // a time stamp and a number
@@ -32,15 +32,15 @@ enum class OniRecordType : std::uint32_t {
 };
 
 struct OniRecord {
-    OniRecordType type{};  ///< others than those named are there, too
+    OniRecordType type{};  ///< values other than the named ones occur
     std::uint32_t node = 0;
     std::uint32_t fields_size = 0;
     std::uintmax_t position = 0;  ///< of its first byte
     std::uintmax_t end = 0;       ///< of the byte after its last
 
     [[nodiscard]] std::uintmax_t payload_size() const noexcept { return end - position - fields_size; }
-    /// Whether the player has room for it: it reads the fields into a buffer for the largest payload and a
-    /// frame's fields.
+    /// Whether the record fits the player's buffers: the buffer for fields has room for the largest payload
+    /// and a frame's fields.
     [[nodiscard]] bool fits() const noexcept {
         return fields_size - kOniRecordHeaderSize <= kOniFieldsMax && payload_size() <= kOniPayloadMax;
     }
@@ -48,14 +48,14 @@ struct OniRecord {
 
 class OniRecords {
   public:
-    /// A file that is not there has no records.
+    /// A missing file has no records.
     explicit OniRecords(const std::filesystem::path& oni);
 
-    /// The next whole record; empty where the file or its sense ends. One small read.
+    /// The next complete record; empty at the end of the file or at an invalid record. One small read.
     [[nodiscard]] std::optional<OniRecord> next();
-    /// Where next() looks.
+    /// The position at which next() reads.
     [[nodiscard]] std::uintmax_t position() const noexcept { return position_; }
-    /// The file, to read in: next() finds its way by itself.
+    /// The file, for reading; next() restores its own position.
     [[nodiscard]] std::ifstream& file() noexcept { return file_; }
 
   private:

@@ -20,7 +20,7 @@ struct IndexedFrame {
     std::uint64_t position = 0;
 };
 
-/// A stream of the recording ("node" in the file).
+/// A stream of the recording (a "node" in the file).
 struct Stream {
     OniRecord added;
     std::vector<IndexedFrame> frames;
@@ -29,7 +29,7 @@ struct Stream {
 struct Contents {
     std::map<std::uint32_t, Stream> streams;
     std::uint32_t frames = 0;
-    std::uintmax_t length = 0;  ///< where the last whole frame ends
+    std::uintmax_t length = 0;  ///< end of the last complete frame
 };
 
 std::uint64_t timestamp_of(std::ifstream& file, const OniRecord& record) {
@@ -47,25 +47,25 @@ Contents contents_of(const std::filesystem::path& oni) {
         if (!record->fits()) break;
         if (record->type == OniRecordType::node_removed || record->type == OniRecordType::end) break;
         if (record->type == OniRecordType::node_added) {
-            // Once each, with room for the totals: here, too, the file's sense ends.
+            // Once for each stream, with room for the totals; otherwise the rest of the file is not valid.
             const bool is_new = contents.streams.try_emplace(record->node, Stream{*record, {}}).second;
             if (!is_new || record->fields_size < kNodeAddedFieldsMin) break;
         }
         if (record->type != OniRecordType::new_data) continue;
         const auto stream = contents.streams.find(record->node);
-        // A frame of no stream: here the file's sense ends.
+        // A frame without a stream: the rest of the file is not valid.
         if (record->fields_size < kOniFrameFieldsSize || stream == contents.streams.end()) break;
         stream->second.frames.push_back({timestamp_of(records.file(), *record), record->position});
         ++contents.frames;
         contents.length = record->end;
     }
-    // What was added behind the last frame is not copied.
+    // Streams added after the last frame are not copied.
     std::erase_if(contents.streams,
                   [&](const auto& entry) { return entry.second.added.position >= contents.length; });
     return contents;
 }
 
-/// Appends to a file and overwrites in it; the first failure stays.
+/// Appends to a file and overwrites parts of it; the first error is kept.
 class Writer {
   public:
     explicit Writer(const std::filesystem::path& file)
@@ -105,17 +105,17 @@ class Writer {
     std::fstream file_;
 };
 
-/// Returns where the table is.
+/// Returns the position of the table.
 std::uint64_t put_end_of(Writer& out, std::uint32_t node, const Stream& stream) {
     constexpr std::uint32_t kEntrySize = 20;
     out.put_header(OniRecordType::node_removed, node, 0, stream.added.position);
     const std::uint64_t table = out.position();
-    // Entry 0 is of no frame: they are counted from 1.
+    // Entry 0 is unused: frames are numbered from 1.
     const auto entries = static_cast<std::uint32_t>(stream.frames.size() + 1);
     out.put_header(OniRecordType::seek_table, node, entries * kEntrySize, 0);
     const auto put_entry = [&out](const IndexedFrame& frame) {
         out.put(frame.timestamp_us);
-        out.put(std::uint32_t{0});  // which of several configurations; only who seeks asks for it
+        out.put(std::uint32_t{0});  // the configuration's number, which only seeking needs
         out.put(frame.position);
     };
     put_entry({});
@@ -123,7 +123,7 @@ std::uint64_t put_end_of(Writer& out, std::uint32_t node, const Stream& stream) 
     return table;
 }
 
-/// The last fields of a stream's first record, which the recorder leaves open until the end.
+/// The last fields of a stream's first record, which the recorder fills in only at the end.
 void put_totals(Writer& out, const Stream& stream, std::uint64_t table) {
     constexpr std::uint32_t kTotalsSize = 28;
     out.go_to(stream.added.position + stream.added.fields_size - kTotalsSize);

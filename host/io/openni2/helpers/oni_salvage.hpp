@@ -1,4 +1,5 @@
-// The whole frames of an .oni file that was cut off, given the end that OpenNI2 wants before it opens a file.
+// Recovers the complete frames of an .oni file that was cut off, by adding the end that OpenNI2 requires to
+// open a file.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +8,15 @@
 
 namespace octoskin::openni2 {
 
-/// Of the whole frames: the copy may lie in memory.
+/// Size limit of the complete frames: the copy may be in memory.
 inline constexpr std::uintmax_t kSalvageMax = std::uintmax_t{4} << 30U;
 
-/// Writes to `copy` what `oni` has up to its last whole frame, then what its recorder would have written at
-/// its end: for each stream a removal, a seek table and its place and the number of frames in the stream's
-/// first record; then the end. Returns the frames in it, of all streams; empty if there is none, the streams
-/// are more than a device has, the frames are more than kSalvageMax, or the copy cannot be written. Ends at
-/// what OpenNI2 has no room for. O(size).
+/// Writes to `copy` the content of `oni` up to its last complete frame, then the end that its recorder would
+/// have written: for each stream a removal record and a seek table, then the end record. Each stream's first
+/// record gets the position of its table and its number of frames.
+/// Returns the number of frames in it, of all streams. Empty if there are none, there are more streams than a
+/// device has, the frames exceed kSalvageMax, or the copy cannot be written. Stops at a record that exceeds
+/// OpenNI2's buffers. O(size).
 [[nodiscard]] std::optional<std::uint32_t> salvage(const std::filesystem::path& oni,
                                                    const std::filesystem::path& copy);
 

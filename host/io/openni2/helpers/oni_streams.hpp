@@ -1,4 +1,4 @@
-// The streams of an .oni file as its records tell of them, each held against what OpenNI2's player expects.
+// The streams of an .oni file, built from its records, each checked against what OpenNI2's player expects.
 #pragma once
 
 #include <array>
@@ -15,18 +15,18 @@
 namespace octoskin::openni2 {
 
 using OniBytes = std::span<const std::uint8_t>;
-using OniVerdict = Status<std::string>;  ///< else what is wrong, for a person
+using OniVerdict = Status<std::string>;  ///< the error is the fault, for the user
 
 class OniStreams {
   public:
     struct Header {
-        std::uint32_t streams = 0;        ///< as many numbers of streams as the player has room for
-        std::uint64_t timestamp_max = 0;  ///< of all frames, as the file header has it
+        std::uint32_t streams = 0;        ///< the player has room for this many stream numbers
+        std::uint64_t timestamp_max = 0;  ///< of all frames, from the file header
     };
     explicit OniStreams(Header header) : header_(header) {}
 
-    /// The next record with its fields and its payload. A file that has its end has no fault if all of them
-    /// had none and at_end() has none either. Asserts nothing: any bytes are safe.
+    /// The next record with its fields and its payload. A file with an end is sound if no record has a fault
+    /// and at_end() has none. No assertions: safe for any bytes.
     [[nodiscard]] OniVerdict take(const OniRecord& record, OniBytes fields, OniBytes payload);
     [[nodiscard]] OniVerdict at_end() const;
 
@@ -39,10 +39,10 @@ class OniStreams {
         std::uint32_t codec = 0;
         std::uint32_t frames_announced = 0;
         std::uint64_t table_announced = 0;  ///< 0: there is none
-        std::uint64_t table = 0;            ///< where it is
+        std::uint64_t table = 0;            ///< its position
         std::optional<std::array<std::uint32_t, 2>> size;
         std::optional<std::uint64_t> frame_bytes;
-        std::vector<std::uint64_t> frames;  ///< where they are
+        std::vector<std::uint64_t> frames;  ///< their positions
     };
 
     OniVerdict take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload);
@@ -56,7 +56,7 @@ class OniStreams {
     static OniVerdict take_table(Stream& stream, const OniRecord& record, OniBytes payload);
 
     Header header_;
-    bool has_begun_ = false;  ///< the data of any stream: the player has opened the file
+    bool has_begun_ = false;  ///< data of any stream have begun: the player has opened the file
     std::map<std::uint32_t, Stream> streams_;
 };
 

@@ -1,5 +1,5 @@
-// octoskin-oni-write FILE [NAME]: depth frames from standard input (frame_pipe.hpp) into a recording by
-// OpenNI2's recorder. NAME is what messages call the file.
+// octoskin-oni-write FILE [NAME]: writes depth frames from standard input (frame_pipe.hpp) into a recording,
+// with OpenNI2's recorder. NAME is the file's name in messages.
 #include <unistd.h>
 
 #include <csignal>
@@ -20,10 +20,10 @@
 namespace octoskin::openni2 {
 namespace {
 
-/// Whoever records may think as long as it likes; if it is gone, so is this process.
+/// The recording program may pause as long as it wants; when it ends, this process ends, too.
 constexpr std::chrono::milliseconds kPatience{24 * 3'600'000};
-/// Frames wait in memory, because the recorder takes a whole processor while it waits for one. A minute of
-/// 512 x 424 at 10 Hz; a longer recording goes on frame by frame.
+/// Frames wait in memory, because the recorder occupies a whole processor while it waits for one. This is a
+/// minute of 512 x 424 at 10 Hz; a longer recording continues frame by frame.
 constexpr std::size_t kWaitingMax = std::size_t{256} << 20U;
 
 /// Frames from standard input, read ahead.
@@ -42,7 +42,7 @@ class Frames {
         waiting_.pop_front();
         return frame;
     }
-    /// What was wrong with the input; empty if it had its regular end.
+    /// The fault of the input; empty if it had its regular end.
     [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
 
   private:
@@ -60,7 +60,7 @@ class Frames {
     std::string fault_;
 };
 
-/// What went wrong; empty if the recording is whole.
+/// Returns the error; empty if the recording is complete.
 std::string record(const std::filesystem::path& file) {
     const auto header = FramePipe(STDIN_FILENO, kPatience).read_header();
     if (!header) return std::string("standard input: ") + name(header.error());
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
             stderr);
         return 2;
     }
-    // The frames of a daemon that was killed are here, and nowhere else: they go to the file yet.
+    // After the daemon was killed, its last frames exist only here: they are still written to the file.
     octoskin::limit_this_process({.memory_mib = octoskin::openni2::kHelperMemoryMib,
                                   .exit_without_memory = octoskin::openni2::kOutOfMemory,
                                   .orphan = octoskin::Orphan::goes_on});
@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "octoskin-oni-write: %s\n",
                      octoskin::printable(std::string(argv[argc - 1]) + ": " + what).c_str());
     }
-    // No clean-up: the file is closed, and OpenNI2's shutdown sometimes waits 3 s for a thread that it forgot
-    // to end.
+    // No clean-up: the file is closed, and OpenNI2's shutdown sometimes waits 3 s for a thread that it failed
+    // to stop.
     std::_Exit(what.empty() ? 0 : 1);
 }

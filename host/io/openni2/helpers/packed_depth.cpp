@@ -3,11 +3,11 @@
 namespace octoskin::openni2 {
 namespace {
 
-// As OpenNI2 2.2 unpacks (Source/Drivers/OniFile/Formats/XnStreamCompression.cpp).
-constexpr unsigned kRepeat = 0xE0;    // and above: this number of pairs of the last value
-constexpr unsigned kLong = 0xFF;      // a value of its own follows
+// The encoding that OpenNI2 2.2 unpacks (Source/Drivers/OniFile/Formats/XnStreamCompression.cpp).
+constexpr unsigned kRepeat = 0xE0;    // and above: `code - kRepeat` pairs of the last value
+constexpr unsigned kLong = 0xFF;      // a large difference or a full value follows
 constexpr unsigned kLongBehind = 15;  // in the lower half of a byte: the same
-constexpr unsigned kNone = 13;        // in the lower half: nothing
+constexpr unsigned kNone = 13;        // in the lower half: no value
 constexpr int kSmallZero = 6;
 constexpr int kLargeZero = 192;
 
@@ -71,7 +71,7 @@ class Walk {
     }
 
     std::span<const std::uint8_t> left_;
-    unsigned values_ = 1U << 16U;  ///< how many there are to choose from
+    unsigned values_ = 1U << 16U;  ///< number of selectable values
     unsigned value_ = 0;
     std::size_t depths_ = 0;
     bool is_sound_ = true;

@@ -1,5 +1,5 @@
-// The compressed depth frames of an .oni file, walked without OpenNI2, whose decoders check neither where
-// their input ends nor what they look up.
+// Decodes the compressed depth frames of an .oni file without OpenNI2, whose decoders check neither the end
+// of their input nor their table indices.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace octoskin::openni2 {
 
 enum class DepthPacking : std::uint8_t {
     plain,       ///< codec "16zP": differences of depths
-    with_table,  ///< codec "16zT": differences of numbers in a table of depths, which comes first
+    with_table,  ///< codec "16zT": differences of indices into a table of depths, which comes first
 };
 
-/// How many depths OpenNI2 2.2 makes of `packed`, step for step as it does; empty if it read beyond the end,
-/// or looked up what is not in the table. O(size); any bytes are safe.
+/// The number of depths that OpenNI2 2.2 decodes from `packed`, by the same steps. Empty if it would read
+/// beyond the end, or use an index outside the table. O(size); safe for any bytes.
 [[nodiscard]] std::optional<std::size_t> depths_in(std::span<const std::uint8_t> packed,
                                                    DepthPacking packing);
 

@@ -1,5 +1,5 @@
-// An OpenNI2 driver with one depth camera that shows what it is given. With it OpenNI2's own recorder writes
-// .oni files without a camera.
+// An OpenNI2 driver with one depth camera that shows given frames. OpenNI2's own recorder can thus write .oni
+// files without a camera.
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -77,7 +77,7 @@ class VirtualStream final : public oni::driver::StreamBase {
         switch (property) {
             case ONI_STREAM_PROPERTY_VIDEO_MODE:
                 return give(mode_, data, size);
-            // Without CROPPING and STRIDE a recording plays back no frames at all.
+            // Without CROPPING and STRIDE a recording plays back no frames.
             case ONI_STREAM_PROPERTY_CROPPING:
                 return give(OniCropping{}, data, size);
             case ONI_STREAM_PROPERTY_STRIDE:
@@ -88,7 +88,7 @@ class VirtualStream final : public oni::driver::StreamBase {
                 return give(int{kDepthMaxValue}, data, size);
             case ONI_STREAM_PROPERTY_MIN_VALUE:
                 return give(int{0}, data, size);
-            // The true intrinsics are the rig's; OpenNI2 only wants some number.
+            // The true intrinsics are in the rig; OpenNI2 only requires a number.
             case ONI_STREAM_PROPERTY_HORIZONTAL_FOV:
                 return give(1.2F, data, size);
             case ONI_STREAM_PROPERTY_VERTICAL_FOV:
@@ -102,7 +102,7 @@ class VirtualStream final : public oni::driver::StreamBase {
         if (property == kPropertyPushFrame && size == static_cast<int>(sizeof(VirtualFrame))) {
             return push(*static_cast<const VirtualFrame*>(data));
         }
-        // The mode is the URI's; setting the same one again is how applications begin.
+        // The URI sets the mode; applications set the same mode again at their start.
         if (property == ONI_STREAM_PROPERTY_VIDEO_MODE || property == ONI_STREAM_PROPERTY_MIRRORING)
             return ONI_STATUS_OK;
         return ONI_STATUS_NOT_IMPLEMENTED;

@@ -1,4 +1,4 @@
-// How octoskin-oni-write hands a frame to the virtual camera driver, which lives in the same process behind
+// How octoskin-oni-write passes a frame to the virtual camera driver, which runs in the same process below
 // OpenNI2.
 #pragma once
 
@@ -18,8 +18,8 @@ struct VirtualFrame {
     const std::uint16_t* pixels = nullptr;
 };
 
-/// OpenNI2's depth codec is lossless only strictly below the stream's MAX_VALUE, and only while a frame has
-/// no more than 2^15 different depths: it numbers them and keeps the sixteenth bit for itself.
+/// OpenNI2's depth codec is lossless only strictly below the stream's MAX_VALUE, and only if a frame has at
+/// most 2^15 different depths: it numbers them and uses the sixteenth bit itself.
 inline constexpr int kDepthMaxValue = 32768;
 
 }  // namespace octoskin::openni2
