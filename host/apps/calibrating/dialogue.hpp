@@ -1,5 +1,5 @@
-// The host's half of a calibration: what is asked of which node, what it answers, and when to give up. Frames
-// and times in, frames and an outcome out.
+// The host's side of a calibration: the command to the node, its answer, and the time limits. Input: frames
+// and times. Output: frames and an outcome.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,14 @@ struct Question {
     wire::CalibrationQuantity quantity = wire::CalibrationQuantity::offset;
     std::uint16_t target_mm = 0;
     std::uint16_t inter_measurement_ms = 0;
-    std::uint8_t sequence = 0;  ///< another than that of the last command
+    std::uint8_t sequence = 0;  ///< differs from that of the last command
 };
 
-/// Hears a heartbeat of the node, which must have the rig's configuration: else the index may mean another
-/// sensor. Then asks, and waits for the answer and the end; a heartbeat that says that the node calibrates
-/// nothing (safe mode, another board under its id, ...) ends it at once. Every wait ends: 2 s for a
-/// heartbeat, 1 s for the answer, asked three times, 10 s and 130 periods for the end.
+/// Waits for a heartbeat of the node, sends the command, then waits for the answer and for the result.
+/// The node must have the rig's configuration: otherwise the index may mean another sensor. A heartbeat in a
+/// state without calibration (safe mode, another board under the same id, ...) ends the dialogue at once.
+/// Every wait is limited: 2 s for a heartbeat; 1 s for the answer, three attempts; 10 s and 130 periods for
+/// the result.
 class Dialogue final : public NodeDialogue {
   public:
     using Outcome = Result<wire::Calibration, AppError>;
@@ -40,11 +41,11 @@ class Dialogue final : public NodeDialogue {
     void on_frame(const wire::CanFrame& frame, HostTime now) override;
     void on_time(HostTime now) override;
     [[nodiscard]] std::optional<wire::CanFrame> take_frame() override;
-    /// The node ranges for it.
+    /// The node is measuring for this calibration.
     [[nodiscard]] bool is_under_way() const noexcept { return step_ == Step::awaiting_end; }
     [[nodiscard]] HostTime deadline() const noexcept override { return deadline_; }
     [[nodiscard]] bool is_over() const noexcept override { return outcome_.has_value(); }
-    /// Once it has ended: `done`, or why not.
+    /// Set when the dialogue has ended: a message with `done`, or the error.
     [[nodiscard]] const std::optional<Outcome>& outcome() const noexcept { return outcome_; }
 
   private:

@@ -1,4 +1,4 @@
-// How measurements become voxels, as a person names it: one that ships, or a file.
+// A mapping profile by its name or its file: the rules by which measurements change voxels.
 #pragma once
 
 #include <string>
@@ -11,20 +11,20 @@
 
 namespace octoskin {
 
-/// What metrics.json has beside the configurations.
+/// metrics.json uses this name for an entry of its own beside the configurations.
 inline constexpr std::string_view kReservedName = "run";
 
 struct NamedMapping {
-    std::string name;  ///< of a file: its name without folder and extension
+    std::string name;  ///< for a file: the file name without folder and extension
     MappingConfig mapping;
-    bool is_depth_noise_free = false;  ///< which of the two recordings the experiment makes it from
+    bool is_depth_noise_free = false;  ///< selects which of the experiment's two recordings is replayed
 };
 
-/// One of kBuiltInMappings (host/io/mapping), or the path of a YAML file. Errors: neither (no_input, with the
-/// name that was meant, if one is like it); a file with a mistake (bad_config); a file
-/// called as metrics.json calls something else (usage).
+/// `name_or_file`: one of kBuiltInMappings (host/io/mapping), or the path of a YAML file.
+/// Errors: neither of them (no_input, with the most similar name if there is one); an invalid file
+/// (bad_config); a file with the reserved name (usage).
 [[nodiscard]] Result<NamedMapping, AppError> named_mapping(const std::string& name_or_file);
-/// A file, as a recording has one, named after it.
+/// Reads a mapping file of a recording; its name is the file's name.
 [[nodiscard]] Result<NamedMapping, AppError> mapping_of_file(const FilePlace& file);
 
 }  // namespace octoskin

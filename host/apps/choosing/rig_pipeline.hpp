@@ -1,4 +1,4 @@
-// What builds maps of the readings of a rig, by the mapping that a person names.
+// Makes the pipeline that builds maps from the readings of a rig, with a given mapping profile.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace octoskin {
 
-/// `rig_file`: as a person knows it. Errors (bad_config): a link of the rig that the robot does not have; a
-/// sensor that sees more of the mapping's voxels than one reading may have (`find_oversized_cone`).
+/// `rig_file`: the name for messages. Errors (bad_config): the rig names a link that the robot does not have;
+/// a reading of a sensor can cover more voxels than one reading may have (`find_oversized_cone`).
 [[nodiscard]] Result<Pipeline, AppError> build_pipeline(const std::string& rig_file, const HostRig& rig,
                                                         RobotModel robot, const MappingConfig& mapping,
                                                         const PipelineConfig& config);

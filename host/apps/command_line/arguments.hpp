@@ -1,4 +1,4 @@
-// What command-line arguments must be: checks with one message and one exit code for every command.
+// Checks of command-line arguments, with the same message and exit code in every command.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,13 +13,13 @@
 
 namespace octoskin::app {
 
-/// Throws CommandFailure with ExitCode::no_input unless the argument is a file that exists.
+/// Throws CommandFailure with ExitCode::no_input unless the argument is an existing file.
 [[nodiscard]] CLI::Validator existing_file();
-/// The same for a file or a directory.
+/// As existing_file(), for a file or a directory.
 [[nodiscard]] CLI::Validator existing_path();
 /// A seed: a whole number from 0 to 2^64 - 1.
 [[nodiscard]] CLI::Validator seed();
-/// A number of T's kind within these.
+/// A number of type T from `min` to `max`.
 template <class T>
 [[nodiscard]] CLI::Validator from_to(T min, T max) {
     const std::string range = fmt::format("from {} to {}", min, max);
@@ -34,18 +34,19 @@ template <class T>
             },
             range};
 }
-/// What --configuration takes.
+/// The help text of --configuration.
 [[nodiscard]] std::string configuration_help(const std::string& use);
 
-/// Throws CommandFailure with ExitCode::usage if the first word is no command, and says which one is like it,
-/// and `others`.
+/// Throws CommandFailure with ExitCode::usage if the first word is not a command. The message contains the
+/// most similar command and `others`.
 void check_command_name(const CLI::App& app, const std::string& others, int argc, const char* const* argv);
 
-/// "fd:N" in place of an interface names a descriptor that whoever started this program left open for it;
-/// empty for any other name. CommandFailure (usage) if none of that number is open.
+/// The descriptor of "fd:N", which is used in place of an interface name; the calling program left it open.
+/// Empty for any other name. CommandFailure (usage) if no open descriptor has that number.
 [[nodiscard]] std::optional<int> descriptor_of(const std::string& interface);
 
-/// The interface, or the open socket that fd:N names. CommandFailure: unavailable, or as descriptor_of().
+/// Opens the interface, or takes the open socket of "fd:N". CommandFailure: unavailable, or as
+/// descriptor_of().
 [[nodiscard]] socketcan::CanSocket open_can(const std::string& interface,
                                             const socketcan::SocketOptions& options = {});
 

@@ -1,4 +1,4 @@
-// How a command ends that cannot be done.
+// The exception of a command that fails.
 #pragma once
 
 #include <stdexcept>
@@ -19,7 +19,7 @@ class CommandFailure : public std::runtime_error {
     ExitCode code_;
 };
 
-/// What the result holds; throws its error as CommandFailure.
+/// Returns the value of the result, or throws its error as CommandFailure.
 template <class T>
 [[nodiscard]] T value_or_fail(Result<T, AppError> result) {
     if (!result) throw CommandFailure(result.error());

@@ -14,12 +14,13 @@ EndSignals::EndSignals(std::initializer_list<int> wanted) {
     sigset_t signals;
     sigemptyset(&signals);
     for (const int signal : wanted) {
-        // What a shell lets a command in the background ignore would come here all the same.
+        // A shell makes background commands ignore SIGINT, and a signalfd would receive it nevertheless:
+        // leave ignored signals alone.
         struct sigaction found {};
         sigaction(signal, nullptr, &found);
         if (found.sa_handler != SIG_IGN) sigaddset(&signals, signal);
     }
-    // First the descriptor: signals that nobody could take would be blocked for nothing.
+    // First the descriptor: if it cannot be made, the signals must not stay blocked.
     descriptor_ = ::signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
     if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "cannot make a signalfd");
     sigprocmask(SIG_BLOCK, &signals, nullptr);

@@ -1,5 +1,5 @@
-// SIGINT and SIGTERM, taken in order to end a command's work rather than its process: what it has to tell is
-// told.
+// Receives SIGINT and SIGTERM as readable events, so that a command stops its work in order and reports its
+// results.
 #pragma once
 
 #include <chrono>
@@ -11,16 +11,16 @@ namespace octoskin::app {
 
 class EndSignals {
   public:
-    /// From now on those that are `wanted` are kept for this. Throws std::system_error if there is no
-    /// descriptor to be had.
+    /// From now on the signals in `wanted` are delivered here only. Throws std::system_error if no descriptor
+    /// can be made.
     explicit EndSignals(std::initializer_list<int> wanted = {SIGINT, SIGTERM});
     ~EndSignals();
     EndSignals(const EndSignals&) = delete;
     EndSignals& operator=(const EndSignals&) = delete;
 
-    /// Readable once one came.
+    /// Readable when a signal is pending.
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-    /// Takes one, for which it waits so long at most; which one, if one came.
+    /// Takes one pending signal; waits at most `patience`. Returns its number, or nothing.
     [[nodiscard]] std::optional<int> came(std::chrono::milliseconds patience) const;
 
   private:

@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM in the midst of a command that writes files: it leaves none of them by halves.
+// Handles Ctrl-C and SIGTERM during a command that writes files: no partly written file remains.
 #pragma once
 
 #include <thread>
@@ -9,10 +9,11 @@ namespace octoskin::app {
 
 class Interruption {
   public:
-    /// While it lives SIGINT, SIGTERM and SIGHUP (a terminal that was closed) remove what is unfinished
-    /// (host/apps/recording/unfinished.hpp), say so and end the process with 128 and the signal's number,
-    /// wherever it is: 130, 143, 129. A second one ends it at once. To be made before other threads. Throws
-    /// std::system_error without a descriptor or a thread.
+    /// While this object exists, SIGINT, SIGTERM and SIGHUP (the terminal was closed) remove the unfinished
+    /// files (host/apps/recording/unfinished.hpp), print a message and end the process, whatever it is doing.
+    /// The exit code is 128 and the signal's number: 130, 143, 129. A second signal ends the process at once.
+    /// Must be constructed before other threads start. Throws std::system_error if no descriptor or thread
+    /// can be made.
     Interruption();
     ~Interruption();
     Interruption(const Interruption&) = delete;
@@ -22,7 +23,7 @@ class Interruption {
     void watch() const;
 
     EndSignals signals_{SIGINT, SIGTERM, SIGHUP};
-    int ended_;  ///< readable once there is nothing more to watch over
+    int ended_;  ///< readable when this object is being destroyed
     std::thread watcher_;
 };
 

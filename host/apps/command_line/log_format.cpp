@@ -19,7 +19,7 @@ std::string text_of(const spdlog::details::log_msg& message) {
     return printable(std::string_view(message.payload.data(), message.payload.size()));
 }
 
-/// What "%*" is in the pattern.
+/// The "%*" of the pattern: the message as printable text.
 class PrintableText final : public spdlog::custom_flag_formatter {
   public:
     void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,
@@ -35,7 +35,8 @@ class PrintableText final : public spdlog::custom_flag_formatter {
 class JournalFormatter final : public spdlog::formatter {
   public:
     void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
-        constexpr std::array<char, 7> kPriority{'7', '7', '6', '4', '3', '2', '6'};  // by spdlog's level
+        constexpr std::array<char, 7> kPriority{
+            '7', '7', '6', '4', '3', '2', '6'};  // by spdlog's level; the values are syslog priorities
         const std::string text = text_of(message);
         line.push_back('<');
         line.push_back(kPriority.at(static_cast<std::size_t>(message.level)));

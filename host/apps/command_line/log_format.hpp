@@ -1,14 +1,14 @@
-// How a message of the log looks, on a terminal and in systemd's journal.
+// The format of log messages, on a terminal and in systemd's journal.
 #pragma once
 
 namespace octoskin::app {
 
-/// Time, level and message. Each message is one line of printable(): what somebody else's names are in it
-/// orders a terminal nothing and makes up no line.
+/// Format: time, level and message. Each message is one line of printable(): names from outside can neither
+/// control the terminal nor add a line.
 void set_log_format();
 
-/// For the journal, which has its own clock, and reads a level from "<4>" at the begin of a line
-/// (sd-daemon(3)).
+/// Format for the journal, which adds the time itself and reads the level from "<4>" at the beginning of a
+/// line (sd-daemon(3)).
 void set_journal_format();
 
 }  // namespace octoskin::app

@@ -1,4 +1,4 @@
-// The files that ship with octoskin: rigs, robots, worlds.
+// Files installed with octoskin: rigs, robots, worlds.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace octoskin::app {
 
-/// A file that ships with octoskin: in share/octoskin beside the program's folder, wherever that is.
+/// The path of an installed file: share/octoskin beside the folder of the running program.
 [[nodiscard]] std::filesystem::path shipped_file(const std::string& relative);
 
 }  // namespace octoskin::app

@@ -1,4 +1,4 @@
-// Standard output that does not lose its errors: a disk that is full shows when the last of it is written.
+// Standard output with error checks: a full disk is detected when the last bytes are written.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,21 +14,22 @@
 
 namespace octoskin::app {
 
-/// Opens what nobody gave us of standard input, output and error, so that no file of ours takes its number
-/// and receives what is meant for it. Reading and writing there still fails. To be called first.
+/// Opens those of standard input, output and error that the caller left closed. Otherwise a file of this
+/// program would get such a number and receive the program's output. Reading and writing these descriptors
+/// still fails. Must be called first.
 void reserve_standard_descriptors();
 
-/// For a machine: the very bytes. What cannot be written is told by flush_standard_output(); the work goes
-/// on.
+/// Machine-readable output: the exact bytes. A failed write is reported by flush_standard_output(); the
+/// program continues.
 void print_exactly(std::string_view text);
 
-/// JSON for a machine: every string is exact, and none orders a terminal about: printable_json().
+/// JSON for programs: every string is exact, and control characters are escaped (printable_json()).
 void print_json(std::string_view json);
 
-/// For a person, in lines of our own making: printable_lines().
+/// Text for people, in lines made by this program (printable_lines()).
 void print_text(std::string_view text);
 
-/// A value for a person; a text, which may be a name of somebody else's, is one line of printable().
+/// A value for people. A text, which may be a name from outside, becomes one line of printable().
 template <typename T>
 [[nodiscard]] decltype(auto) shown(const T& value) {
     if constexpr (std::is_convertible_v<const T&, std::string_view>) {
@@ -43,8 +44,8 @@ void print(fmt::format_string<decltype(shown(std::declval<const T&>()))...> form
     print_text(fmt::format(format, shown(values)...));
 }
 
-/// Writes what still waits. Returns why not all of it could be written; a reader that
-/// went away on its own (`| head`) is no reason.
+/// Writes the buffered output. Returns the error if it could not all be written; a reader that closed its end
+/// (`| head`) is not an error.
 [[nodiscard]] std::optional<AppError> flush_standard_output();
 
 }  // namespace octoskin::app

@@ -1,5 +1,5 @@
-// The host's half of a command: what is sent to which node, how its answer is told from its silence, and when
-// to give up. Frames and times in, frames and an outcome out.
+// The host's side of a command: what is sent to the node, how success and refusal are detected, and the time
+// limits. Input: frames and times. Output: frames and an outcome.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@
 
 namespace octoskin::commanding {
 
-/// Nodes acknowledge no command, but count those they refuse. So a node is asked for NODE_INFO, told what to
-/// do, and asked once more: if it counted a refusal, it refused; else its heartbeats and SENSOR_HEALTH must
-/// show the effect. That a node hears at all is seen by its giving all pages of NODE_INFO at once: unasked
-/// they come one after the other, within a second.
-///
-/// Every wait ends: 2 s for a heartbeat, 0.3 s for NODE_INFO, asked three times, 5 s for the effect;
-/// before a reset up to 5 s more for a run that is long enough to tell. Another
-/// host's command at the same instant may be mistaken for this one.
+/// Nodes do not acknowledge commands; they count the commands that they refuse. The dialogue requests
+/// NODE_INFO, sends the command, and requests NODE_INFO again. If the node's count of refusals has grown, it
+/// refused the command. Otherwise its heartbeats and SENSOR_HEALTH must show the effect.
+/// A node receives commands if it sends all pages of NODE_INFO at once; unrequested, they arrive one after
+/// another within a second.
+/// Every wait is limited: 2 s for a heartbeat; 0.3 s for NODE_INFO, three attempts; 5 s for the effect.
+/// Before a reset up to 5 s more, until the uptime is long enough to detect the restart.
+/// Limit: a command of another host at the same instant may be taken for this one.
 class Dialogue final : public NodeDialogue {
   public:
-    /// What was done, a line for a person and perhaps more; or why not: `failed` (refused, or no effect),
+    /// Success: what was done, one line or more for the user. Errors: `failed` (refused, or no effect),
     /// `unavailable` (no heartbeat, no answer), `usage` (no such sensor), `bad_config` (another protocol, or
-    /// a sensor's name and another configuration), `io_failed` (silent since the command).
+    /// a sensor's name with another configuration), `io_failed` (silent since the command).
     using Outcome = Result<std::string, AppError>;
 
     Dialogue(Order order, HostTime now);
@@ -43,10 +43,10 @@ class Dialogue final : public NodeDialogue {
   private:
     enum class Step : std::uint8_t {
         awaiting_heartbeat,
-        awaiting_uptime,  ///< a run so young that its end by a reset would not show
+        awaiting_uptime,  ///< until the uptime is long enough that a reset shows as a shorter one
         asking_before,
         commanding,
-        awaiting_rest,  ///< until what it had to say before the command is said
+        awaiting_rest,  ///< until messages from before the command have arrived
         asking_after,
         awaiting_effect,
     };

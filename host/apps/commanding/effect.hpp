@@ -1,4 +1,4 @@
-// How the effect of a command shows in what its node says, and why a node refuses one.
+// How the effect of a command shows in the node's messages, and why a node refuses a command.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace octoskin::commanding {
 
-/// Whether all that the command changes has changed. `now` holds what was said since the command. Not for
-/// `reset`, which ends the run that this looks at.
+/// Whether everything that the command changes has changed. `now` contains the messages since the command.
+/// Not for `reset`, which ends the run that `now` describes.
 [[nodiscard]] bool is_in_effect(const Order& order, const NodeView& now, bool has_sent_black_box);
 
-/// What the refusal of this command means, for a person: why, and what to do.
+/// The text for the user on the refusal of this command: the reason and the remedy.
 [[nodiscard]] std::string refusal(const Order& order, const NodeView& view);
 
 }  // namespace octoskin::commanding

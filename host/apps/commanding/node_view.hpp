@@ -1,4 +1,4 @@
-// What a node has said of itself of late, and that as text.
+// The latest messages of a node, and their text for people.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace octoskin::commanding {
 
-/// NODE_INFO, all pages.
+/// The pages of NODE_INFO.
 struct InfoPages {
     std::optional<wire::InfoUidLow> uid_low;
     std::optional<wire::InfoUidHigh> uid_high;
@@ -35,7 +35,7 @@ struct NodeView {
     [[nodiscard]] std::uint8_t sensor_count() const noexcept {
         return info.identity ? info.identity->sensor_count : std::uint8_t{0};
     }
-    /// Of this order's sensors, for which one `has` holds.
+    /// Whether `has` holds for at least one sensor of this command.
     template <class Predicate>
     [[nodiscard]] bool any_of(const wire::Command& command, const Predicate& has) const {
         for (std::uint8_t i = 0; i < sensor_count() && i < sensors.size(); ++i) {
@@ -48,9 +48,9 @@ struct NodeView {
 
 /// "ranging; 4 sensors: 3 ranging, 1 absent (left: no_answer)"
 [[nodiscard]] std::string state_text(const NodeView& view, const Order& order);
-/// All of NODE_INFO, a line for each matter, each indented; a complete view.
+/// All of NODE_INFO, indented, one line per topic. Requires a complete view.
 [[nodiscard]] std::string info_text(const NodeView& view, const Order& order);
-/// That the node's configuration is not the rig's; empty if it is, or if there is no rig.
+/// Text if the node's configuration differs from the rig's; empty if it is the same or there is no rig.
 [[nodiscard]] std::string difference_text(const NodeView& view, const Order& order);
 
 }  // namespace octoskin::commanding

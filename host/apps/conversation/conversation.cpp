@@ -8,14 +8,15 @@
 namespace octoskin {
 namespace {
 
-/// How long a frame for which there was no room waits for another try.
+/// The wait before another attempt to send a frame for which the socket had no room.
 constexpr Nanoseconds kRetry{10'000'000};
 
 AppError app_error(const socketcan::SocketFault& fault) {
     return {ExitCode::unavailable, fault.message()};
 }
 
-/// What waits in the socket was said before anything was asked. A fault shows again at the next call.
+/// Discards frames that arrived before the dialogue began. An error of the socket appears again at the next
+/// call.
 void forget_what_waits(socketcan::CanSocket& socket) {
     constexpr int kFramesMax = 100'000;
     for (int frames_left = kFramesMax; frames_left > 0;) {

@@ -1,4 +1,4 @@
-// A dialogue with one node, held over a CAN socket: what the commands that ask a node have in common.
+// A node session over a CAN socket: the common part of all commands that talk to one node.
 #pragma once
 
 #include <cstdint>
@@ -13,37 +13,38 @@
 
 namespace octoskin {
 
-/// Frames and times in, frames out, until it is over. It must end by itself, whatever comes or does not.
+/// Input: frames and times. Output: frames, until it is over. It must end by itself, whether or not frames
+/// arrive.
 class NodeDialogue {
   public:
     virtual ~NodeDialogue() = default;
 
     virtual void on_frame(const wire::CanFrame& frame, HostTime now) = 0;
-    /// The time is now, whatever came.
+    /// Called with the present time, after frames and after waits.
     virtual void on_time(HostTime now) = 0;
-    /// To be sent; told once.
+    /// The frame to send next; each is returned once.
     [[nodiscard]] virtual std::optional<wire::CanFrame> take_frame() = 0;
-    /// The frame taken last is on its way to the bus. Until then no other is taken.
+    /// The last frame from take_frame() was accepted by the interface. Until then no other frame is taken.
     virtual void on_sent(HostTime) {}
-    /// When `on_time` has something to do.
+    /// The time at which `on_time` must be called next.
     [[nodiscard]] virtual HostTime deadline() const = 0;
     [[nodiscard]] virtual bool is_over() const = 0;
 };
 
-/// The world outside, so that a test can be it.
+/// The outside world, which a test can replace.
 struct Outside {
     std::function<HostTime()> now;
-    /// Returns once the descriptor can be read, or at that time; spurious returns are harmless.
+    /// Returns when the descriptor is readable, or at `until`; it may return earlier.
     std::function<void(int descriptor, HostTime until)> wait;
 };
 [[nodiscard]] Outside this_machine();
 
-/// The first of 16 sequences of commands that are this dialogue's: others than those of a dialogue begun 100
-/// ms or more before, or the node takes a command for a repeated frame.
+/// The first of 16 command sequences of this dialogue. They differ from those of a dialogue that began 100 ms
+/// or more before; otherwise a node would treat the command as a repeated frame.
 [[nodiscard]] std::uint8_t new_sequence();
 
-/// Blocks until the dialogue is over; what waits in the socket already is forgotten. Error: a CAN interface
-/// that does not work (`unavailable`).
+/// Blocks until the dialogue is over. Frames that are in the socket at the start are discarded. Error: a CAN
+/// interface that does not work (`unavailable`).
 [[nodiscard]] Status<AppError> converse(NodeDialogue& dialogue, socketcan::CanSocket& socket,
                                         const Outside& outside);
 

@@ -1,4 +1,4 @@
-// Room that is kept for what must not fail where the process has come to the end of its addresses.
+// Reserved address space, for work that must not fail when the process has used up its limit.
 #pragma once
 
 #include <sys/mman.h>
@@ -9,11 +9,11 @@
 
 namespace octoskin {
 
-/// Addresses and data of this process (ulimit -v, ulimit -d) that nothing uses, and no memory: no page of it
-/// is ever touched. Free for all when it goes.
+/// A part of this process's address space and data limit (ulimit -v, ulimit -d) that nothing uses. It takes
+/// no memory: none of its pages is ever touched. Destroying it frees the part for all.
 class AddressReserve {
   public:
-    AddressReserve() = default;  ///< of nothing
+    AddressReserve() = default;  ///< reserves nothing
     /// Throws std::bad_alloc.
     explicit AddressReserve(std::size_t bytes)
         : place_(::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)),

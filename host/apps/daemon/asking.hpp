@@ -1,4 +1,4 @@
-// How a program asks the daemon: a line to its control socket, and a line back.
+// Requests to the daemon: a line to its control socket, and a line back.
 #pragma once
 
 #include <chrono>
@@ -10,16 +10,16 @@
 
 namespace octoskin {
 
-/// How long a daemon may take at most until it lets us in, however long it may take to answer.
+/// How long a daemon may take to accept a connection, however long its answer takes.
 inline constexpr std::chrono::milliseconds kLetInMax{5'000};
 
-/// Asks a daemon one thing, and waits so long at most, in all, until it lets us in and its whole line is
-/// here. With more patience than `kLetInMax` a daemon that is there is asked for a sign of life first, which
-/// it has so long for: what it says instead is the answer.
+/// Sends one request to a daemon, and waits at most `patience` in all until it accepts the connection and its
+/// whole answer line has arrived. If `patience` exceeds `kLetInMax`, the daemon must first answer "hello"
+/// within `kLetInMax`; an answer other than {"ok":true} is returned in place of the answer.
 [[nodiscard]] Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket,
                                                        const std::string& request,
                                                        std::chrono::milliseconds patience = kLetInMax);
-/// What came from there is not what a daemon of this version answers.
+/// The error for an answer that no daemon of this version gives.
 [[nodiscard]] AppError foreign_answer(const std::filesystem::path& socket);
 
 }  // namespace octoskin

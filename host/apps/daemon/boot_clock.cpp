@@ -25,7 +25,7 @@ std::optional<std::array<std::uint8_t, 16>> boot_id() {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// Of this process's time namespace; 0 where the kernel knows of none.
+/// Offset of this process's time namespace; 0 if the kernel has none.
 std::optional<Nanoseconds> boot_offset() {
     std::ifstream offsets("/proc/self/timens_offsets");
     if (!offsets) return Nanoseconds{0};
@@ -33,12 +33,12 @@ std::optional<Nanoseconds> boot_offset() {
     return read_boot_offset(text);
 }
 
-/// When the second of the bus's time began that the clock shows; empty: it shows none of it.
+/// When the second of the bus time began that the clock shows; empty: it shows none of the bus time.
 std::optional<BootTime> begin_of_second(const VoxelAges::Clock& clock, const std::optional<BootTime>& now,
                                         HostTime bus) {
     if (!now || !clock.has_begun || clock.waits) return std::nullopt;
     const std::int64_t whole_s = bus.ns / kSecond_ns - (clock.zero_s + clock.now);
-    if (whole_s < 0) return now;  // the bus's time was reckoned late, or has gone back
+    if (whole_s < 0) return now;  // the bus time was estimated late, or has gone back
     const std::int64_t boot_s = now->since_boot.count() / kSecond_ns;
     const Nanoseconds since{std::min(whole_s, boot_s) * kSecond_ns + bus.ns % kSecond_ns};
     return BootTime{now->boot, std::max(now->since_boot - since, Nanoseconds{0})};
@@ -48,7 +48,7 @@ std::optional<BootTime> begin_of_second(const VoxelAges::Clock& clock, const std
 
 Nanoseconds clock_boottime() {
     timespec now{};
-    (void)::clock_gettime(CLOCK_BOOTTIME, &now);  // it is there since Linux 2.6.39
+    (void)::clock_gettime(CLOCK_BOOTTIME, &now);  // available since Linux 2.6.39
     return Nanoseconds{std::int64_t{now.tv_sec} * kSecond_ns + now.tv_nsec};
 }
 Nanoseconds clock_monotonic() {
@@ -58,7 +58,7 @@ Nanoseconds clock_monotonic() {
 SleepWatch::SleepWatch(Clock boottime, Clock monotonic)
     : boottime_(std::move(boottime)), monotonic_(std::move(monotonic)), reported_(read().most) {}
 
-/// This thread may lose the processor, or the machine sleep, between two readings.
+/// This thread may lose the processor, or the machine may sleep, between two readings.
 SleepWatch::Slept SleepWatch::read() const {
     const Nanoseconds before = monotonic_();
     const Nanoseconds boottime = boottime_();
@@ -107,7 +107,7 @@ std::optional<std::array<std::uint8_t, 16>> read_boot_id(std::string_view text) 
 }
 
 std::optional<BootTime> boot_now() {
-    static const auto boot = boot_id();  // it is the same for as long as this process lives
+    static const auto boot = boot_id();  // constant while this process lives
     const auto offset = boot_offset();
     if (!boot || !offset) return std::nullopt;
     return BootTime{*boot, std::max(clock_boottime() - *offset, Nanoseconds{0})};
@@ -157,13 +157,13 @@ Nanoseconds MapTime::attend(Pipeline& pipeline, HostTime bus) {
     return slept;
 }
 
-/// From when the map's clock came to what it shows: what passed before the sleep counts, too. Where that is
-/// not known, the sleep alone.
+/// Counts from when the map's clock reached its present value: what passed before the sleep is included. If
+/// that is not known, only the sleep counts.
 void MapTime::go_on_after_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds slept) {
     pipeline.go_on_after_sleep();
     note(pipeline.map(), bus);
     saved_ = map_time_;
-    // It may have been looked at since, and what was settled may be of another second.
+    // It may have been read since then, and the time set may be that of another second.
     if (saved_ && looked_) saved_->since_boot = std::min(saved_->since_boot, looked_->since_boot - slept);
     if (!since_saved()) pipeline.wait((slept.count() + kSecond_ns - 1) / kSecond_ns);
 }

@@ -1,4 +1,4 @@
-// Depth frames of a live camera, read by a thread of its own: a camera that hangs stops nothing but itself.
+// Depth frames of a live camera, read by its own thread: a camera that hangs blocks only that thread.
 #pragma once
 
 #include <atomic>
@@ -20,46 +20,45 @@ namespace octoskin {
 
 struct CameraRecord {
     bool is_open = false;
-    std::uint64_t frames = 0;        ///< that came
-    std::uint64_t displaced = 0;     ///< newer ones came before these were taken
-    std::uint64_t untimed = 0;       ///< whose time of capture could not be told: late, or the first ones
-    std::uint64_t repeated = 0;      ///< equal to earlier ones bit by bit (RepeatedImages): not used
-    bool repeats_often = false;      ///< of the newest images more than a third did
-    std::uint64_t opened = 0;        ///< times
-    double rate_hz = 0.0;            ///< of the mode that it was put into; 0: not told, as of a file
-    HostTime begun;                  ///< looked for since then
-    std::optional<HostTime> newest;  ///< that has a time
-    std::optional<HostTime> newest_untimed;   ///< came
-    std::optional<HostTime> newest_repeated;  ///< came
-    std::string why;                          ///< not open, for a person
+    std::uint64_t frames = 0;                 ///< received
+    std::uint64_t displaced = 0;              ///< displaced by newer ones before they were taken
+    std::uint64_t untimed = 0;                ///< without a known capture time: late, or the first ones
+    std::uint64_t repeated = 0;               ///< equal to earlier ones bit by bit (RepeatedImages): not used
+    bool repeats_often = false;               ///< over a third of the newest images were repeated
+    std::uint64_t opened = 0;                 ///< number of times
+    double rate_hz = 0.0;                     ///< of its mode; 0: not known, as for a file
+    HostTime begun;                           ///< when the search for it began
+    std::optional<HostTime> newest;           ///< the newest frame with a time
+    std::optional<HostTime> newest_untimed;   ///< arrival of the newest one
+    std::optional<HostTime> newest_repeated;  ///< arrival of the newest one
+    std::string why;                          ///< why it is not open, for a person
 };
 
 class CameraFeed {
   public:
-    /// Frames that wait; beyond, the oldest gives way.
+    /// Frames that wait; beyond this the oldest is displaced.
     static constexpr std::size_t kWaitingMax = 3;
-    /// A camera that is gone is looked for this often.
+    /// How often a camera that is gone is looked for.
     static constexpr std::chrono::milliseconds kRetry{1'000};
 
-    /// `uri`: an OpenNI2 device, or the path of an .oni file that is played at its own speed, again and
-    /// again; empty: the first device there is. `silence_max`: a camera that shows nothing for so long is
-    /// opened anew, and so is one whose frames all come late (openni2::CaptureClock::is_lost), and a device
-    /// that shows its last images, with values, for so long, and new ones at most now and then: a film may.
-    /// In the next opening these are repetitions from the first on. `helper`: the program that reads the
-    /// camera, in place of octoskin-camera. `mode`: what a device is put into, if it has such a mode. Throws
-    /// std::system_error if there is no thread or descriptor to be had.
+    /// `uri`: an OpenNI2 device, or the path of an .oni file, played at its own speed in a loop; empty: the
+    /// first device. A camera is opened again if it shows nothing for `silence_max`; if its frames all come
+    /// late (openni2::CaptureClock::is_lost); and if a device, for that long, repeats its last images with
+    /// values and shows new ones only now and then (a film may do so). In the next opening these images count
+    /// as repetitions from the first on. `helper`: the program that reads the camera, in place of
+    /// octoskin-camera. `mode`: the mode to set, if the device has it. Throws std::system_error if there is
+    /// no thread or descriptor left.
     CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
                std::optional<std::filesystem::path> helper = {},
                std::optional<openni2::CameraMode> mode = {});
-    /// Within 2 s, whatever the camera does.
+    /// Takes at most 2 s, whatever the camera does.
     ~CameraFeed();
     CameraFeed(const CameraFeed&) = delete;
     CameraFeed& operator=(const CameraFeed&) = delete;
 
-    /// The camera is let go of, soon; no frame comes any more, and those that wait are there to be taken.
-    /// Waits for nothing.
+    /// Releases the camera soon, without waiting. No new frame comes; those that wait can still be taken.
     void end();
-    /// After `end`: the camera is let go of, and the destructor waits for nothing.
+    /// After `end`: the camera is released, and the destructor does not wait.
     [[nodiscard]] bool has_ended() const noexcept { return has_ended_; }
 
     /// Readable when a frame waits.
@@ -69,7 +68,7 @@ class CameraFeed {
 
   private:
     void work();
-    /// Until the camera ends or falls silent.
+    /// Returns when the camera ends or falls silent.
     void watch_camera();
     void put(DepthFrame frame);
     void note_opened(double rate_hz);
@@ -82,7 +81,7 @@ class CameraFeed {
     std::chrono::milliseconds silence_max_;
     std::optional<std::filesystem::path> helper_;
     std::optional<openni2::CameraMode> mode_;
-    RepeatedImages images_;  ///< of all openings: a camera that hangs may go on with its image; the thread's
+    RepeatedImages images_;  ///< of all openings, as a camera that hangs may repeat its image; the thread's
     int event_ = -1;
     int end_ = -1;  ///< readable when the thread is to end
     mutable std::mutex mutex_;

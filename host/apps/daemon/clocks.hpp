@@ -1,4 +1,4 @@
-// This machine's two clocks, and what a receive stamp is on the one that never steps.
+// The two clocks of this machine, and the conversion of a receive time stamp to the one that never steps.
 #pragma once
 
 #include <chrono>
@@ -12,16 +12,16 @@ namespace octoskin {
 [[nodiscard]] HostTime monotonic_now();
 [[nodiscard]] WallTime wall_now();
 
-/// As a figure, for what a person or a script is told.
+/// In seconds, for messages to a person or a script.
 [[nodiscard]] constexpr double seconds_of(Nanoseconds duration) noexcept {
     return std::chrono::duration<double>(duration).count();
 }
 
-/// Both clocks at one instant, as closely as can be told.
+/// Both clocks at the same instant, as closely as it can be measured.
 struct ClockPair {
     HostTime monotonic;
     WallTime wall;
-    Nanoseconds doubt{0};  ///< between the two readings of the monotonic clock around that of the other
+    Nanoseconds doubt{0};  ///< between the two readings of the monotonic clock before and after the other
 };
 
 struct ClockReaders {
@@ -29,12 +29,12 @@ struct ClockReaders {
     std::function<WallTime()> wall = wall_now;
 };
 
-/// This thread may lose the processor between two readings: read again while they are over 20 us apart, eight
-/// times at most; the closest ones count.
+/// Reads the clocks again while the two monotonic readings are over 20 us apart, as when this thread loses
+/// the processor; eight times at most. The closest reading counts.
 [[nodiscard]] ClockPair read_clocks(const ClockReaders& readers = {});
 
-/// Empty for a stamp that is not of the last second: the wall clock was set meanwhile. And if the clocks
-/// cannot be read within half a millisecond of each other: what a FOLLOW_UP tells must be true.
+/// Empty for a time stamp over a second old: the wall clock was set meanwhile. Also empty if the clocks
+/// cannot be read within half a millisecond of each other: the time in a FOLLOW_UP must be right.
 [[nodiscard]] std::optional<HostTime> monotonic_of(WallTime stamp, const ClockReaders& readers = {});
 
 }  // namespace octoskin

@@ -1,4 +1,4 @@
-// How programs of this machine ask the daemon: a Unix socket, one line of request, one line of JSON back.
+// The daemon's control socket: a Unix socket with one line of request, and one line of JSON back.
 #pragma once
 
 #include <sys/types.h>
@@ -20,43 +20,44 @@ namespace octoskin {
 
 class ControlSocket {
   public:
-    /// Answers a request (without its line feed) with one line (without a line feed). Is not asked for a
-    /// client that has gone by then, and of each client once in a turn of the loop.
+    /// Answers a request (without its line feed) with one line (without a line feed). Not called for a client
+    /// that has gone, and at most once for each client in a turn of the loop.
     using Answer = std::function<std::string(const std::string& request)>;
 
-    /// Takes a request that needs time: true, and `reply` with the ticket will follow, from the loop's
-    /// thread. Until then nothing more is read of that client, which is not idle either. `user`: the
-    /// client's, the overflow user where it cannot be seen.
+    /// Accepts a request that needs time: returns true, and `reply` with the ticket follows from the loop's
+    /// thread. Until then nothing more is read from that client, and it does not count as idle. `user`: the
+    /// client's, the overflow user if it is not visible.
     using Later = std::function<bool(const std::string& request, std::uint64_t ticket, uid_t user)>;
 
-    /// So many are served at once, beside those whose question waits. Who comes beyond that takes the place
-    /// of one that has asked nothing, or has sent half a request and no more just now; or of one whose
-    /// question was answered, if that one's process has more places than the new one's. Else the new one is
-    /// refused. Of several the process with the most places gives one up, the one that came first. Each is
-    /// refused with a line that says so.
+    /// The number of clients served at once, besides those whose question waits. A new client beyond that
+    /// takes the place of one that has asked nothing, or whose half request has stopped arriving; or of one
+    /// whose question was answered, if that one's process has more places than the new one's. Else the new
+    /// one is refused. Of several candidates the process with the most places loses one, the one that came
+    /// first. Each gets a line with the refusal.
     static constexpr std::size_t kClientsMax = 16;
-    /// So many questions wait at once, each of another client; a further one is refused, and its client
-    /// served on. A question that waits is never given up for another.
+    /// The number of questions that wait at once, each of another client. A further question is refused, and
+    /// its client stays connected. A question that waits is never dropped for another.
     static constexpr std::size_t kWaitingMax = 16;
-    /// Of them so many of one user: the others are for other users' programs.
+    /// Of these, the maximum of one user: the others are for other users' programs.
     static constexpr std::size_t kWaitingOfUserMax = 4;
-    /// So many of those who were refused may still finish what they are sending before they are closed.
+    /// The number of refused clients that may finish sending before they are closed.
     static constexpr std::size_t kRefusedMax = 16;
-    /// Of the descriptors that this process may have, clients take none of so many: its files, its devices
-    /// and its saves need them. Of the rest a third each is for clients that are served, wait and were
-    /// refused, at most as above and at least one.
+    /// The number of this process's descriptors that clients leave free, for its files, devices and saves. A
+    /// third each of the rest is for clients that are served, wait, or were refused: at most as above, and at
+    /// least one.
     static constexpr std::size_t kDescriptorsLeft = 40;
     [[nodiscard]] static std::size_t clients_of_each_kind(std::uint64_t descriptors) noexcept;
-    /// A longer request is answered with an error, once so much of it is here, and its client then dropped.
+    /// A longer request is answered with an error as soon as this much has arrived, and its client is then
+    /// dropped.
     static constexpr std::size_t kRequestMax = 48 << 10;
-    /// What a client has not read yet; beyond, it is dropped.
+    /// Unread output of a client; beyond this it is dropped.
     static constexpr std::size_t kUnreadMax = 4 << 20;
 
-    /// Whoever has asked nothing for so long is dropped. Looked after four times meanwhile; so long nobody
-    /// new is let in while this process has no descriptor left.
+    /// A client that has asked nothing for this long is dropped; checked four times in this period. If this
+    /// process has no descriptor left, no new client is accepted until the next check.
     static constexpr std::chrono::milliseconds kIdleMax{10'000};
 
-    /// Takes no descriptors that come along (passed_descriptors.hpp).
+    /// Refuses descriptors that clients pass along (passed_descriptors.hpp).
     [[nodiscard]] static Result<std::unique_ptr<ControlSocket>, AppError> open(
         const std::filesystem::path& file, EventLoop& loop, Answer answer,
         std::chrono::milliseconds idle_max = kIdleMax);
@@ -64,36 +65,35 @@ class ControlSocket {
     ControlSocket(const ControlSocket&) = delete;
     ControlSocket& operator=(const ControlSocket&) = delete;
 
-    /// Is told the ticket of a request that was taken, and whose client has gone: nobody waits for its
-    /// answer.
+    /// Called with the ticket of an accepted request whose client has gone: its answer is no longer needed.
     using Gone = std::function<void(std::uint64_t ticket)>;
 
-    /// Closes all who are there, and lets nobody new in: what they hold is free for the last save. The name
-    /// stays until this goes.
+    /// Closes all clients and accepts no new ones, which frees their resources for the last save. The name
+    /// stays until destruction.
     void close_clients();
 
-    /// From now on asked before `answer`, which gets what it does not take.
+    /// From now on `later` is called first; `answer` gets the requests that it does not accept.
     void answer_later(Later later, Gone gone) {
         later_ = std::move(later);
         gone_ = std::move(gone);
     }
-    /// The answer, without a line feed, to a request that was taken. Nothing if the client has gone.
+    /// Sends the answer, without a line feed, to an accepted request. Does nothing if the client has gone.
     void reply(std::uint64_t ticket, const std::string& line);
 
-    /// Clients that were dropped: idle for too long, or one of too many; too slow to read; a request without
-    /// end.
+    /// Number of clients dropped: idle for too long, or one too many; too slow to read; or with a request
+    /// without end.
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
 
   private:
     struct Client {
         int descriptor = -1;
-        int process = 0;           ///< 0: cannot be seen, as one of another container
-        uid_t user = 0;            ///< the overflow user, where it cannot be seen
-        std::string request;       ///< as much of it as is here
-        HostTime asked;            ///< newest whole request
-        std::uint64_t ticket = 0;  ///< of what it waits for; 0: nothing
+        int process = 0;           ///< 0: not visible, as one of another container
+        uid_t user = 0;            ///< the overflow user if it is not visible
+        std::string request;       ///< the part received so far
+        HostTime asked;            ///< the newest whole request
+        std::uint64_t ticket = 0;  ///< of the answer that it waits for; 0: none
         bool has_asked = false;    ///< a whole request, at least once
-        bool is_refused = false;   ///< it was told why: what it still sends is read and forgotten
+        bool is_refused = false;   ///< it got the refusal: its further input is read and dropped
         EventSource readable;
     };
     ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
@@ -107,14 +107,14 @@ class ControlSocket {
     [[nodiscard]] std::size_t places_of(int process) const;
     [[nodiscard]] Client* one_to_go();
     void refuse(Client& client, const std::string& error, ExitCode code);
-    /// Its answer, or nothing yet: false if the client is to be dropped.
+    /// Sends its answer, or leaves it for later; false if the client is to be dropped.
     [[nodiscard]] bool answer(Client& client, const std::string& request);
     [[nodiscard]] bool send(const Client& client, std::string line) const;
     void watch(Client& client);
     void drop(int descriptor);
     void drop_idle();
-    /// Those who have gone: nothing is read of who waits for an answer, which would tell it, and nobody else
-    /// is to be refused for them.
+    /// Drops clients that have gone. Nothing is read from a client that waits for an answer, so nothing else
+    /// would show it, and no other client is to be refused in its place.
     void drop_gone();
 
     std::filesystem::path file_;

@@ -1,6 +1,6 @@
-// `octoskin run`: what is there for as long as the robot is. One thread owns the pipeline and the map; the
-// camera, the disk, the socket for joint states and what is worked out of an image have threads of their own,
-// which hand over values.
+// `octoskin run`: the daemon beside the robot. One thread owns the pipeline and the map. The camera, the
+// disk, the socket for joint states and the processing of depth images have their own threads, which pass
+// values.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,15 @@ namespace octoskin {
 
 class Daemon {
   public:
-    /// Reads rig and robot, takes the sockets, loads the map that was saved last. A CAN interface or camera
-    /// that is not there yet is no error. `log`: what its status tells of it.
+    /// Reads rig and robot, opens the sockets, and loads the map saved last. A CAN interface or camera that
+    /// is missing yet is no error. `log`: its status goes into the daemon's status.
     [[nodiscard]] static Result<std::unique_ptr<Daemon>, AppError> build(const DaemonRequest& request,
                                                                          std::shared_ptr<const LogQueue> log);
     ~Daemon();
 
-    /// Until SIGTERM or SIGINT; then the map is saved, and it returns within 5 s, saved or not; with a map of
-    /// over 64 MiB 134 ms later for each MiB beyond, at most. SIGHUP reads rig, robot and mapping again: all
-    /// of them, or none.
+    /// Runs until SIGTERM or SIGINT; then saves the map and returns within 5 s, saved or not. With a map of
+    /// over 64 MiB it takes at most 134 ms longer for each MiB beyond. SIGHUP reads rig, robot and mapping
+    /// again: all of them, or none.
     [[nodiscard]] ExitCode run();
 
   private:

@@ -1,5 +1,5 @@
-// What lives while the daemon does, for the three files that have what it does: daemon.cpp (its life and its
-// answers), daemon_map.cpp (the map's way from and to the disk), daemon_reload.cpp (SIGHUP).
+// The parts of the daemon, for the three files with its functions: daemon.cpp (its life and its answers),
+// daemon_map.cpp (loading and saving the map), daemon_reload.cpp (SIGHUP).
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@
 
 namespace octoskin {
 
-/// The loop comes first: whatever watches through it goes before it.
+/// The loop comes first: each watcher is destroyed before it.
 struct Daemon::Parts {
     Parts(DaemonRequest request_in, Settings settings_in, Pipeline pipeline_in,
           std::shared_ptr<const LogQueue> log_in)
@@ -55,14 +55,14 @@ struct Daemon::Parts {
     void go_where_home_is(std::optional<OpenFolder> next);
     [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
     void go_on_with(KeptMap kept);
-    /// What a copy of the map is of, for the next start, once it has gone on to now.
+    /// The origin of a copy of the map for the next start; first advances the copy to the present time.
     [[nodiscard]] SnapshotOrigin make_ready_to_save(FusedMap& copy);
     void save_map();
     std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
     [[nodiscard]] std::string why_map_ends(const Settings& next) const;
     [[nodiscard]] bool is_placed_as(std::uint32_t placement_crc32) const;
-    /// What a save of such a map takes besides, as bricks that are listed.
+    /// The address space that a save of such a map takes in addition, for its list of bricks.
     [[nodiscard]] static std::size_t bytes_to_save(const MapConfig& map) noexcept;
     [[nodiscard]] bool take_limits(const MapConfig& next);
     [[nodiscard]] bool go_on_with(Next& next);
@@ -79,11 +79,11 @@ struct Daemon::Parts {
     DaemonRequest request;
     Settings settings;
     EventLoop loop;
-    ThreadFaults faults;  ///< goes after all that have a thread
+    ThreadFaults faults;  ///< destroyed after all that have a thread
     Pipeline pipeline;
     AddressReserve reserve;     ///< for the last save
-    DepthThread depth_thread;   ///< goes before the pipeline that it works for
-    RecordRequests recordings;  ///< lets go of the pipeline before that goes
+    DepthThread depth_thread;   ///< destroyed before the pipeline that it works for
+    RecordRequests recordings;  ///< releases the pipeline before it is destroyed
     Inputs inputs;
     std::optional<HomeWatch> home;
     std::optional<MapKeeper> keeper;
@@ -94,7 +94,7 @@ struct Daemon::Parts {
     ReloadCounts reloads;
     std::optional<HostTime> reloaded;
     ReloadPace reload_pace;
-    SideTask<NextResult> reading;  ///< of the files, for SIGHUP
+    SideTask<NextResult> reading;  ///< reads the files after SIGHUP
     ProblemLog problem_log;
     RegisterLog register_log;
     LastUsed last_used;
@@ -103,7 +103,7 @@ struct Daemon::Parts {
     std::vector<EventSource> sources;
 };
 
-/// What a person should know of the rig and the robot.
+/// Logs the warnings about the rig and the robot.
 void tell_warnings(const Settings& settings);
 
 }  // namespace octoskin

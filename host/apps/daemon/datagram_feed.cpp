@@ -22,7 +22,7 @@
 namespace octoskin {
 namespace {
 
-/// Addresses of a program that can be seen say nothing more of it: it cannot flood under many names.
+/// For a program with a visible process the addresses do not count: it cannot flood under many names.
 SenderKey key_of(const socketcan::StampedDatagram& received, const std::string& address) {
     const pid_t pid = received.sender ? received.sender->pid : 0;
     return {pid, pid > 0 ? std::string() : address};
@@ -33,7 +33,7 @@ JointSender sender_of(const socketcan::StampedDatagram& received, std::string ad
     return {seen.pid, seen.pid > 0 ? seen.uid : 0, std::move(address)};
 }
 
-/// Waits for none of the descriptors that may be beside it.
+/// Does not block on descriptors that may come along.
 socketcan::StampedDatagram receive_one(int socket, std::span<char> room, std::string& address) {
     std::optional<socketcan::ShortWaits> none_long;
     if (socketcan::has_descriptors_beside(socket)) none_long.emplace();
@@ -63,7 +63,7 @@ DatagramFeed::~DatagramFeed() {
     const std::uint64_t one = 1;
     (void)!::write(end_, &one, sizeof(one));
     thread_.join();
-    socketcan::close_socket(socket_);  // with what was not taken
+    socketcan::close_socket(socket_);  // with the datagrams not taken
     for (const int descriptor : {event_, end_}) ::close(descriptor);
 }
 
@@ -99,7 +99,7 @@ void DatagramFeed::work() {
     while (true) {
         (void)::poll(watched.data(), watched.size(), -1);
         if (watched[1].revents != 0) return;
-        // In a flood this thread would have the lock again before anybody who waits for it wakes up.
+        // In a flood this thread would get the lock again before a waiting thread wakes up.
         while (takers_ > 0) std::this_thread::yield();
         try {
             put_next();
@@ -113,18 +113,19 @@ void DatagramFeed::work() {
 void DatagramFeed::put_next() {
     const std::lock_guard lock(mutex_);
     auto datagram = receive();
-    if (!datagram) return;  // `take` was quicker
-    // First what may fail: an event for nothing would stay, since nothing would ever be taken for it.
+    if (!datagram) return;  // `take` was faster
+    // First the step that may fail: a wake-up without a datagram would stay set, because no `take` would
+    // clear it.
     waiting_.push_back(std::move(*datagram));
     const std::uint64_t one = 1;
     if (waiting_.size() == 1) (void)!::write(event_, &one, sizeof(one));
     if (waiting_.size() > kWaitingMax) displace();
 }
 
-/// One that sends more than others has more waiting, and gives way before them. O(kWaitingMax), and as rare
-/// as shares are small.
+/// A sender that sends more than others has more datagrams waiting, and loses them first. O(kWaitingMax), and
+/// as rare as shares are small.
 void DatagramFeed::displace() {
-    std::vector<std::pair<SenderKey, std::size_t>> counts;  // of a few senders: each has a share
+    std::vector<std::pair<SenderKey, std::size_t>> counts;  // of few senders: each has a share
     for (const Datagram& datagram : waiting_) {
         const auto found =
             std::ranges::find(counts, datagram.from, &std::pair<SenderKey, std::size_t>::first);
@@ -141,8 +142,8 @@ void DatagramFeed::displace() {
     ++displaced_;
 }
 
-/// Under the lock: what is received by two at once would be put in disorder. Empty, too, in the middle of a
-/// flood: what is beyond its sender's share is not looked for without end.
+/// Called with the lock, because two receivers would mix up the order. In a flood it may return empty
+/// although more has arrived: datagrams beyond their sender's share are not skipped without end.
 std::optional<Datagram> DatagramFeed::receive() {
     constexpr int kSurplusAtOnce = 64;
     for (int i = 0; i < kSurplusAtOnce; ++i) {
@@ -157,7 +158,7 @@ std::optional<Datagram> DatagramFeed::receive() {
         }
         datagram.sender = sender_of(received, std::move(address));
         datagram.bytes.assign(room_.data(), static_cast<std::size_t>(received.count));
-        // It may have waited: it came when the kernel says.
+        // It may have waited: the kernel's time stamp is its arrival.
         datagram.came = received.stamp.value_or(wall_now());
         datagram.came_at = monotonic_of(datagram.came);
         datagram.read = monotonic_now();

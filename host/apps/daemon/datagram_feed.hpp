@@ -1,5 +1,5 @@
-// Datagrams of a socket, read by a thread of its own: whoever takes them may be busy with other things while
-// they come. A Unix socket alone keeps but a few (net.unix.max_dgram_qlen).
+// Datagrams of a socket, read by its own thread, so that the receiver may be busy while they arrive. A Unix
+// socket alone keeps only a few (net.unix.max_dgram_qlen).
 #pragma once
 
 #include <atomic>
@@ -19,39 +19,39 @@ namespace octoskin {
 
 struct Datagram {
     std::string bytes;
-    WallTime came;                    ///< when the kernel had it
-    std::optional<HostTime> came_at;  ///< the same on the clock that never steps, if that can be told
+    WallTime came;                    ///< when the kernel received it
+    std::optional<HostTime> came_at;  ///< the same on the clock that never steps, if it can be converted
     HostTime read;
     SenderKey from;
-    JointSender sender;  ///< the same, and whose it is
+    JointSender sender;  ///< its sender, with the address
 };
 
 class DatagramFeed {
   public:
-    /// Datagrams that wait; beyond, the oldest of the program that has most waiting gives way. A second of an
-    /// arm that tells 1000 samples.
+    /// Datagrams that wait; beyond this, the oldest of the program with the most waiting is displaced. One
+    /// second of an arm that sends 1000 samples a second.
     static constexpr std::size_t kWaitingMax = 1024;
 
-    /// `socket` is a Unix socket that does not block and wants stamps and senders (stamped_datagram.hpp); it
-    /// is closed here. Of each datagram the first `bytes_max` bytes are kept. Throws std::system_error if the
-    /// system has no room for it; the socket is then still the caller's. Takes no descriptors that come along
-    /// (passed_descriptors.hpp).
+    /// `socket`: a non-blocking Unix socket with time stamps and senders enabled (stamped_datagram.hpp),
+    /// which is closed here. Of each datagram the first `bytes_max` bytes are kept. Throws std::system_error
+    /// if the system lacks resources; the socket then still belongs to the caller. Refuses descriptors that
+    /// are passed along (passed_descriptors.hpp).
     DatagramFeed(int socket, std::size_t bytes_max);
-    /// At once.
+    /// Does not wait.
     ~DatagramFeed();
     DatagramFeed(const DatagramFeed&) = delete;
     DatagramFeed& operator=(const DatagramFeed&) = delete;
 
     /// Readable while a datagram waits.
     [[nodiscard]] int descriptor() const noexcept { return event_; }
-    /// The oldest, in the order in which they came; empty: none came before this call that is not taken yet,
-    /// whether or not the thread had its turn.
+    /// The oldest, in the order of arrival; empty: none that arrived before this call is left, whether or not
+    /// the thread has run.
     [[nodiscard]] std::optional<Datagram> take();
-    /// One that was taken was of use: its sender is one of those that have a share (SenderShares::keep).
+    /// Marks a taken datagram as useful: its sender is one of those that have a share (SenderShares::keep).
     void keep(const Datagram& useful);
-    /// So many gave way untaken.
+    /// Number of datagrams displaced before they were taken.
     [[nodiscard]] std::uint64_t displaced() const;
-    /// So many were beyond what one program may send (SenderShares), and are dropped as they come.
+    /// Number of datagrams beyond the share of one program (SenderShares), which are dropped on arrival.
     [[nodiscard]] std::uint64_t surplus() const;
 
   private:
@@ -61,7 +61,7 @@ class DatagramFeed {
     void displace();
 
     int socket_;
-    std::vector<char> room_;  ///< for one
+    std::vector<char> room_;  ///< for one datagram
     int event_ = -1;
     int end_ = -1;  ///< readable when the thread is to end
     mutable std::mutex mutex_;
@@ -69,7 +69,7 @@ class DatagramFeed {
     std::uint64_t displaced_ = 0;
     std::uint64_t surplus_ = 0;
     SenderShares shares_;
-    std::atomic<int> takers_ = 0;  ///< that want the lock: the thread lets them have it first
+    std::atomic<int> takers_ = 0;  ///< callers that wait for the lock: the thread lets them have it first
     std::thread thread_;
 };
 

@@ -21,7 +21,7 @@ std::size_t bytes_of(const DepthFrame& frame) {
 
 }  // namespace
 
-/// What the thread needs, for as long as it needs it: it may outlive the recorder.
+/// State shared with the thread, which may outlive the recorder.
 class DepthRecorder::Work {
   public:
     Work(FilePlace oni, FilePlace epoch) : oni_(std::move(oni)), epoch_(std::move(epoch)) {}
@@ -53,7 +53,7 @@ class DepthRecorder::Work {
         }
         changed_.notify_all();
     }
-    /// After what waits, or at once.
+    /// Ends after the waiting frames, or immediately.
     void end(bool is_at_once) {
         {
             const std::lock_guard lock(mutex_);
@@ -68,7 +68,7 @@ class DepthRecorder::Work {
     }
 
   private:
-    /// Empty once no frame will come.
+    /// Empty if no further frame will come.
     [[nodiscard]] std::optional<DepthFrame> next() {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [this] { return (may_begin_ && !waiting_.empty()) || is_finishing_; });

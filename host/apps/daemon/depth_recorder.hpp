@@ -1,4 +1,4 @@
-// Depth frames into an .oni file, by a thread of its own: the recorder of OpenNI2 takes its time.
+// Writes depth frames to an .oni file in its own thread, because the recorder of OpenNI2 is slow.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,26 @@ namespace octoskin {
 
 class DepthRecorder {
   public:
-    /// What may wait, in bytes of pixels: about 10 s of 512 x 424 at 30 Hz.
+    /// Bytes of pixels that may wait: about 10 s of 512 x 424 at 30 Hz.
     static constexpr std::size_t kWaitingMax = std::size_t{128} << 20U;
 
-    /// Touches nothing until `begin`; then makes the file with the first frame.
+    /// Touches nothing before `begin`; then creates the file with the first frame.
     DepthRecorder(FilePlace oni, FilePlace epoch);
-    /// Drops what waits, unless `finish` was called and has ended. Within 0.1 s: a write that hangs is left
-    /// behind.
+    /// Drops waiting frames, unless `finish` was called and has ended. Takes at most 0.1 s: a write that
+    /// hangs is left behind.
     ~DepthRecorder();
     DepthRecorder(const DepthRecorder&) = delete;
     DepthRecorder& operator=(const DepthRecorder&) = delete;
 
-    /// From now on the files may be made: whose folder that is has been found out.
+    /// From now on the files may be created: the owner of the folder has been checked.
     void begin();
-    /// Frames of one size, in the order of their times. False if there is no room, or recording failed. Never
-    /// waits.
+    /// Adds a frame; all have one size and come in the order of their times. False if there is no room, or
+    /// recording failed. Never waits.
     [[nodiscard]] bool add(const DepthFrame& frame);
-    /// Waits until all are in the file and the file is whole, a minute at most. What went wrong, for a
-    /// person; empty: nothing.
+    /// Waits at most a minute until all frames are in the file and the file is complete. Returns the error,
+    /// for a person; empty: none.
     [[nodiscard]] std::string finish();
-    /// What went wrong so far; empty: nothing.
+    /// The error so far; empty: none.
     [[nodiscard]] std::string error() const;
 
   private:

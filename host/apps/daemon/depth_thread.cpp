@@ -46,7 +46,7 @@ void DepthThread::run() {
         lock.unlock();
         std::exception_ptr thrown;
         try {
-            work_();  // nobody else touches it until it is null
+            work_();  // no other thread touches it until it is null
         } catch (...) {
             thrown = std::current_exception();
         }

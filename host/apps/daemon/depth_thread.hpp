@@ -14,9 +14,9 @@ namespace octoskin {
 
 class DepthThread final : public DepthWorker {
   public:
-    /// Throws std::system_error if there is no thread or descriptor to be had.
+    /// Throws std::system_error if there is no thread or descriptor left.
     DepthThread();
-    /// After what it is at.
+    /// Waits for the work in progress.
     ~DepthThread() override;
     DepthThread(const DepthThread&) = delete;
     DepthThread& operator=(const DepthThread&) = delete;
@@ -35,10 +35,10 @@ class DepthThread final : public DepthWorker {
     WakeEvent event_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::function<void()> work_;  ///< null: there is none, or it is done
+    std::function<void()> work_;  ///< null: no work, or it is done
     std::exception_ptr thrown_;
     bool is_ending_ = false;
-    std::thread thread_;  ///< the last: it uses all others
+    std::thread thread_;  ///< the last member: it uses all others
 };
 
 }  // namespace octoskin

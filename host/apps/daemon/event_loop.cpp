@@ -22,13 +22,13 @@ void check(int result, const char* doing) {
     if (result < 0) throw std::system_error(-result, std::generic_category(), doing);
 }
 
-/// What is called may end its own watch: so a copy is called.
+/// The callback may end its own watch, so a copy of it is called.
 int call_copy(const void* watch) {
     const std::function<void()> call = static_cast<const EventSource::Watch*>(watch)->call;
     EventLoop& loop = *static_cast<const EventSource::Watch*>(watch)->loop;
     try {
         call();
-    } catch (...) {  // it must not cross the frames of a C library
+    } catch (...) {  // must not cross the frames of a C library
         loop.fail(std::current_exception());
     }
     return 0;
@@ -42,7 +42,7 @@ int call_timer(sd_event_source* source, std::uint64_t due_us, void* given) {
     auto* watch = static_cast<EventSource::Watch*>(given);
     std::uint64_t now_us = 0;
     sd_event_now(sd_event_source_get_event(source), CLOCK_MONOTONIC, &now_us);
-    // What was missed is not made up for.
+    // Missed periods are skipped.
     const std::uint64_t next_us = std::max(due_us, now_us - watch->period_us) + watch->period_us;
     sd_event_source_set_time(source, next_us);
     return call_copy(watch);
@@ -56,7 +56,7 @@ int call_signal(sd_event_source*, const signalfd_siginfo*, void* watch) {
 
 EventLoop::EventLoop() {
     check(sd_event_new(&loop_), "cannot make an event loop");
-    (void)sd_event_set_watchdog(loop_, 1);  // 0: nobody watches
+    (void)sd_event_set_watchdog(loop_, 1);  // 0: there is no watchdog
 }
 
 EventLoop::~EventLoop() {

@@ -1,4 +1,4 @@
-// One thread that waits for many things: descriptors, times, signals. systemd's sd-event, as values.
+// One thread that waits for descriptors, times and signals: systemd's sd-event, as values.
 #pragma once
 
 #include <chrono>
@@ -13,10 +13,10 @@ struct sd_event_source;
 
 namespace octoskin {
 
-/// What is watched for as long as it lives. Movable; an empty one watches nothing.
+/// A watch, which ends when this is destroyed. Movable; an empty one watches nothing.
 class EventSource {
   public:
-    struct Watch {  ///< what sd-event calls back
+    struct Watch {  ///< the target of sd-event's callbacks
         sd_event_source* source = nullptr;
         std::function<void()> call;
         class EventLoop* loop = nullptr;
@@ -36,24 +36,24 @@ class EventSource {
 
 class EventLoop {
   public:
-    /// Throws std::system_error if the system has no room for it. The service manager's watchdog, if there
-    /// is one, is fed as long as the loop turns.
+    /// Throws std::system_error if the system lacks resources. While the loop runs, it feeds the service
+    /// manager's watchdog, if there is one.
     EventLoop();
     ~EventLoop();
     EventLoop(const EventLoop&) = delete;
     EventLoop& operator=(const EventLoop&) = delete;
 
-    /// `on_ready` whenever there is something to read, or the other end is gone. The descriptor stays the
-    /// caller's, and must outlive the source.
+    /// Calls `on_ready` whenever there is something to read, or the other end is gone. The descriptor still
+    /// belongs to the caller, and must outlive the source.
     [[nodiscard]] EventSource on_readable(int descriptor, std::function<void()> on_ready);
-    /// The first time one period from now.
+    /// Calls `on_time` in each period, the first time one period from now.
     [[nodiscard]] EventSource every(std::chrono::microseconds period, std::function<void()> on_time);
-    /// Blocks the signal for this thread and those it starts from now on.
+    /// Blocks the signal for this thread and for those that it starts from now on.
     [[nodiscard]] EventSource on_signal(int signal, std::function<void()> on_signal);
 
-    /// Until `stop`; returns what it was given. Throws what a call threw, if one did.
+    /// Runs until `stop`, and returns its argument. Throws the exception of a callback, if one threw.
     int run();
-    /// Ends the loop: `run` will throw this.
+    /// Ends the loop: `run` throws this exception.
     void fail(std::exception_ptr thrown);
     void stop(int outcome);
 

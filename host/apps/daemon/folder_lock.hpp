@@ -1,4 +1,4 @@
-// One daemon for each folder of maps: two would overwrite each other's.
+// One daemon for each folder of maps: two would overwrite each other's maps.
 #pragma once
 
 #include <filesystem>
@@ -11,23 +11,23 @@
 
 namespace octoskin {
 
-/// Holds the folder until it is destroyed, or the process ends in any way.
+/// Holds the folder until destruction, or until the process ends in any way.
 class FolderLock {
   public:
-    /// The file in the folder that is locked.
+    /// The locked file in the folder.
     static constexpr const char* kFile = kDaemonsLock;
 
-    /// Makes the folder if it is not there. Refuses, naming its process, if somebody else holds it, if
-    /// nothing can be written there, if the folder is somebody else's, and if its file "lock" is a link or no
-    /// file. One with several names is replaced, not written to.
+    /// Creates the folder if it is missing. Refuses a folder that another process holds (naming that
+    /// process), that cannot be written to, that belongs to another user, or whose lock file is a link or no
+    /// regular file. A lock file with several names is replaced, not written to.
     [[nodiscard]] static Result<FolderLock, AppError> take(const std::filesystem::path& folder);
-    /// The same of a folder that is open to be written to. `named`: as a person named it.
+    /// The same for a folder that is open for writing. `named`: the path as the user gave it.
     [[nodiscard]] static Result<FolderLock, AppError> take(const OpenFolder& folder,
                                                            const std::filesystem::path& named);
-    /// Why maps cannot be saved in a folder that cannot be opened to be written to.
+    /// Why maps cannot be saved in a folder that cannot be opened for writing.
     [[nodiscard]] static AppError cannot_save(const std::filesystem::path& named, const FolderError& error);
 
-    /// The folder that is held: what takes its name later is another one.
+    /// The folder that is held; a later folder of the same name is another one.
     [[nodiscard]] const OpenFolder& folder() const noexcept { return folder_; }
 
   private:

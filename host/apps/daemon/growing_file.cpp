@@ -27,7 +27,7 @@ Status<std::string> GrowingFile::create(const FilePlace& file) {
 
 Status<std::string> GrowingFile::append(const std::string& text) {
     std::string_view rest = text;
-    while (!rest.empty()) {  // each round writes some of it
+    while (!rest.empty()) {  // each round writes a part
         const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) return failure();

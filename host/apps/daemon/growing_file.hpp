@@ -1,4 +1,4 @@
-// A new file that only grows: what is recorded as it comes.
+// A new file that only grows, for recordings.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,18 @@
 
 namespace octoskin {
 
-/// A new file that only grows. Errors say what failed and why ("out/can.log: No space left on device").
+/// A new file that only grows. Errors contain the file and the reason ("out/can.log: No space left on
+/// device").
 class GrowingFile {
   public:
     GrowingFile() = default;
     GrowingFile(const GrowingFile&) = delete;
     GrowingFile& operator=(const GrowingFile&) = delete;
     ~GrowingFile();
-    /// Refuses one that is there already.
+    /// Refuses an existing file.
     [[nodiscard]] Status<std::string> create(const FilePlace& file);
     [[nodiscard]] Status<std::string> append(const std::string& text);
-    /// To the disk, and closed.
+    /// Writes it to the disk and closes it.
     [[nodiscard]] Status<std::string> finish();
 
   private:

@@ -13,7 +13,7 @@ HomeWatch::HomeWatch(MapHome home, Looker looker)
 }
 
 HomeWatch::~HomeWatch() {
-    // Closing the folder's lock may take as long as a look.
+    // Closing the folder's lock may take as long as a check.
     if (!task_.begun()) task_.begin([home = std::exchange(home_, nullptr)] { return Look{}; });
 }
 

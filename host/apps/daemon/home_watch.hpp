@@ -1,5 +1,4 @@
-// Looks at the maps' folder beside the event loop: a file system that does not answer holds up the look
-// alone.
+// Checks the maps' folder in its own thread: a file system that does not answer blocks only that thread.
 #pragma once
 
 #include <functional>
@@ -15,34 +14,34 @@ namespace octoskin {
 
 class HomeWatch {
   public:
-    /// What a look found.
+    /// The result of a check.
     struct Look {
-        std::optional<OpenFolder> next;  ///< is held from now on; empty: the one before still is
-        std::string problem;             ///< for a person, and what to do; empty: none
-        std::string where;               ///< the folder is now; empty: it was removed
+        std::optional<OpenFolder> next;  ///< held from now on; empty: the previous one is kept
+        std::string problem;             ///< for a person, with the remedy; empty: none
+        std::string where;               ///< where the folder is now; empty: it was removed
     };
     using Looker = std::function<Look(MapHome& home)>;
 
-    /// Throws std::system_error if there is no thread to be had.
+    /// Throws std::system_error if there is no thread left.
     explicit HomeWatch(MapHome home, Looker looker = look);
-    /// Within 0.1 s: a look that hangs is left behind, with the folder and its lock.
+    /// Takes at most 0.1 s: a check that hangs is left behind, with the folder and its lock.
     ~HomeWatch();
     HomeWatch(const HomeWatch&) = delete;
     HomeWatch& operator=(const HomeWatch&) = delete;
 
-    /// Readable while `take` has something new.
+    /// Readable while `take` has a new result.
     [[nodiscard]] int descriptor() const noexcept { return task_.descriptor(); }
-    /// Begins a look, unless one is at work.
+    /// Starts a check, unless one is running.
     void ask();
-    /// Takes what a look found, if one has ended: the folder that is held from now on, if it is another one.
+    /// Takes the result of a finished check: the folder held from now on, if it is another one.
     [[nodiscard]] std::optional<OpenFolder> take();
-    /// A look that begins after this call, if there is time for it: waits for `patience` at most.
+    /// The result of a check that starts after this call; waits at most `patience` for it.
     [[nodiscard]] std::optional<OpenFolder> look_again(Nanoseconds patience);
 
-    /// As of the newest look.
+    /// By the newest check.
     [[nodiscard]] const std::string& problem() const noexcept { return newest_.problem; }
     [[nodiscard]] const std::string& where() const noexcept { return newest_.where; }
-    /// When the look that is at work was begun; empty: none is.
+    /// When the running check started; empty: none is running.
     [[nodiscard]] const std::optional<HostTime>& looking_since() const noexcept { return task_.begun(); }
 
     [[nodiscard]] static Look look(MapHome& home);
@@ -50,7 +49,7 @@ class HomeWatch {
   private:
     [[nodiscard]] std::optional<OpenFolder> note(std::optional<Look> found);
 
-    std::shared_ptr<MapHome> home_;  ///< only the task touches it
+    std::shared_ptr<MapHome> home_;  ///< used only by the task
     Looker looker_;
     Look newest_;
     SideTask<Look> task_;

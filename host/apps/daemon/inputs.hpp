@@ -1,5 +1,5 @@
-// What comes in beside a robot: CAN frames, joint states of this machine, depth frames. Each goes into the
-// pipeline as it comes; what the bus asks of its host is answered.
+// The inputs beside a robot: CAN frames, joint states of this machine, depth frames. Each goes into the
+// pipeline on arrival; requests of the bus to its host are answered.
 #pragma once
 
 #include <cstdint>
@@ -29,66 +29,68 @@ namespace octoskin {
 
 class Inputs {
   public:
-    /// All of these must outlive it; `pipeline` may be replaced by another in the same place.
+    /// All arguments must outlive it; `pipeline` may be replaced by another in the same place.
     Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop, Pipeline& pipeline,
            RecordRequests& recordings);
     Inputs(const Inputs&) = delete;
     Inputs& operator=(const Inputs&) = delete;
 
-    /// Makes the joint socket, if one is asked for.
+    /// Creates the joint socket, if one is requested.
     [[nodiscard]] Status<AppError> take_sockets(const HostRig& rig);
-    /// From now on the loop brings what comes.
+    /// From now on the loop delivers the inputs.
     void watch(const HostRig& rig);
-    /// Another rig: its filters, joints and camera. The pipeline must be that rig's already, and this one
-    /// told before, while the pipeline was the former one's.
+    /// Switches to another rig: its filters, joints and camera. Call `prepare_for` before, while the pipeline
+    /// is the former rig's, and this when the pipeline is the new rig's.
     void change_rig(const HostRig& rig);
-    /// That rig comes next: what waits goes into the pipeline, joint states first of all. A camera that it
-    /// wants in another mode, or not at all, is let go of, and what it has shown goes there, too.
+    /// Prepares for the next rig: waiting inputs go into the pipeline, joint states first. A camera that the
+    /// rig uses in another mode, or not at all, is released, and its waiting frames go into the pipeline,
+    /// too.
     void prepare_for(const HostRig& rig);
 
-    /// Twenty times a second: opens what is closed, sends SYNC when it is due.
+    /// Called twenty times a second: opens what is closed, and sends SYNC when it is due.
     void attend();
-    /// Takes every frame that is here, so that nobody seems silent who only was not listened to.
+    /// Takes every frame that has arrived, so that no sender seems silent because its frames were not read.
     void catch_up();
 
     [[nodiscard]] const CanLink& can() const noexcept { return can_; }
-    /// So long the frames of this rig that were heard or sent have kept the bus busy, with as many stuff bits
-    /// as can be. Those of others the kernel keeps back.
+    /// How long the frames of this rig, received or sent, have kept the bus busy, with the maximum of stuff
+    /// bits. The kernel filters out frames of others.
     [[nodiscard]] Nanoseconds bus_busy() const noexcept { return bus_busy_; }
     /// Null without a socket.
     [[nodiscard]] const JointSocket* joints() const noexcept { return joints_ ? &*joints_ : nullptr; }
-    /// Samples of the socket that came too soon after the one before.
+    /// Samples of the socket that followed the one before too soon.
     [[nodiscard]] std::uint64_t joints_thinned() const noexcept { return joints_thinned_; }
     /// Samples of the socket that came while several programs sent some.
     [[nodiscard]] std::uint64_t joints_of_several() const noexcept { return joints_of_several_; }
-    /// Datagrams of the socket that gave way to newer ones: the loop was held up, or they are a flood.
+    /// Datagrams of the socket displaced by newer ones: the loop was held up, or they are a flood.
     [[nodiscard]] std::uint64_t joints_displaced() const;
-    /// Some have within the last 2 s, or were beyond what one program may send.
+    /// Datagrams were displaced within the last 2 s, or exceeded the share of one program.
     [[nodiscard]] bool is_flooded(HostTime now) const;
     /// Frames of the rig's joint node on the bus, while the socket is the source.
     [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
-    /// Empty without a camera. Its `untimed` has those that came while another host's clock was not known.
+    /// Empty without a camera. Its `untimed` includes those that came while another host's clock was not
+    /// known.
     [[nodiscard]] std::optional<CameraRecord> camera() const;
-    /// Of readings that came onto the map with a frame: since that frame was here.
+    /// For readings that reached the map with a frame: the time since the arrival of that frame.
     [[nodiscard]] const LatencyHistogram& latency() const noexcept { return latency_; }
-    /// Of the same: since they were captured.
+    /// For the same readings: the time since their capture.
     [[nodiscard]] const LatencyHistogram& age() const noexcept { return age_; }
-    /// FOLLOW_UP of other hosts, left out while this one sends its own.
+    /// FOLLOW_UP frames of other hosts, ignored while this one sends its own.
     [[nodiscard]] std::uint64_t foreign_follow_ups() const noexcept { return foreign_follow_ups_; }
     /// Another host's newest SYNC or FOLLOW_UP, on this machine's clock.
     [[nodiscard]] std::optional<HostTime> foreign_sync() const noexcept { return foreign_sync_; }
-    /// What time it is on the bus, on the clock that SYNC tells; empty while nobody knows.
+    /// The bus time at `now`, on the clock that SYNC distributes; empty while it is not known.
     [[nodiscard]] std::optional<HostTime> bus_now(HostTime now) const { return bus_time_.at(now); }
-    /// Where that is empty: by this machine's clock since it was last known.
+    /// The same; while it is not known, continued by this machine's clock since it was last known.
     [[nodiscard]] HostTime reckoned_bus_now(HostTime now) const { return bus_time_.reckoned_at(now); }
-    /// Nodes of the rig spoke, and do no more.
+    /// Nodes of the rig were active, and no longer are.
     [[nodiscard]] bool has_bus_fallen_silent(HostTime now) const { return bus_time_.has_fallen_silent(now); }
-    /// Of the host that sends SYNC, while this one only listens.
+    /// The clock of the host that sends SYNC, while this one only listens.
     [[nodiscard]] const ForeignClock& foreign_clock() const noexcept { return foreign_clock_; }
 
   private:
     [[nodiscard]] std::optional<openni2::CameraMode> mode_for(const HostRig& rig) const;
-    /// Opens the camera, once the one before is let go of; without a thread to be had, again in a second.
+    /// Opens the camera, once the one before is released; without a thread left, tries again in a second.
     void attend_camera();
     void take_depth(DepthFrame frame);
     /// False if there may be more frames.
@@ -112,7 +114,7 @@ class Inputs {
     EventLoop& loop_;
     Pipeline& pipeline_;
     RecordRequests& recordings_;
-    EventSource can_ready_;  ///< before the link: it must let go of a descriptor before that is closed
+    EventSource can_ready_;  ///< before the link: it must release a descriptor before that is closed
     CanLink can_;
     SyncMaster sync_;
     wire::NodeId joint_node_;
@@ -120,18 +122,18 @@ class Inputs {
     JointBurst joint_burst_;
     std::optional<JointSocket> joints_;
     EventSource joints_ready_;
-    std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that came before them
-    bool has_joints_left_ = false;            ///< more came than one turn takes
-    std::uint64_t joints_late_ = 0;  ///< left out: later frames are in the pipeline, or another rig holds
+    std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that arrived before them
+    bool has_joints_left_ = false;            ///< more arrived than one turn takes
+    std::uint64_t joints_late_ = 0;        ///< left out: later frames are in the pipeline, or the rig changed
     std::optional<WallTime> rig_changed_;  ///< by a reload
     std::uint64_t displaced_noted_ = 0;
-    std::optional<HostTime> displaced_at_;  ///< when it was noted last that some were too many
-    std::optional<WallTime> newest_stamp_;  ///< of frames in the pipeline that are no joint samples
+    std::optional<HostTime> displaced_at_;  ///< when displaced samples were noted last
+    std::optional<WallTime> newest_stamp_;  ///< of the frames in the pipeline that are no joint samples
     std::unique_ptr<CameraFeed> camera_;
-    std::optional<openni2::CameraMode> camera_mode_;  ///< wanted; empty: no camera is
-    std::unique_ptr<CameraFeed> camera_leaving_;      ///< of another mode; has the device a little longer
-    CameraRecord camera_missing_;           ///< what there is to tell while one is wanted and none is open
-    std::optional<HostTime> camera_tried_;  ///< last, in the mode that is wanted
+    std::optional<openni2::CameraMode> camera_mode_;  ///< wanted; empty: no camera is wanted
+    std::unique_ptr<CameraFeed> camera_leaving_;      ///< of another mode; keeps the device a little longer
+    CameraRecord camera_missing_;           ///< the record while a camera is wanted and none is open
+    std::optional<HostTime> camera_tried_;  ///< last attempt in the wanted mode
     EventSource camera_ready_;
     LatencyHistogram latency_;
     LatencyHistogram age_;
@@ -141,7 +143,7 @@ class Inputs {
     std::uint64_t joints_of_several_ = 0;
     std::uint64_t joint_node_ignored_ = 0;
     std::uint64_t foreign_follow_ups_ = 0;
-    HostTime told_;  ///< when the newest frame that tells the pipeline the time was here
+    HostTime told_;  ///< arrival of the newest frame that gives the pipeline the time
     std::optional<HostTime> foreign_sync_;
     ForeignClock foreign_clock_;
     BusTime bus_time_;

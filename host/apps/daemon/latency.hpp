@@ -1,4 +1,4 @@
-// How long things took: counts by duration, so that any share can be asked for at any time, in bounded room.
+// A histogram of durations: any percentile at any time, in bounded memory.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace octoskin {
 
 class LatencyHistogram {
   public:
-    /// Durations are told to this; those of 0.5 s and more together.
+    /// Resolution of durations; those of 0.5 s and more count together.
     static constexpr Nanoseconds kStep{20'000};
     static constexpr std::size_t kSteps = 25'000;
 
@@ -24,8 +24,8 @@ class LatencyHistogram {
 
     [[nodiscard]] std::uint64_t count() const noexcept { return total_; }
     [[nodiscard]] Nanoseconds longest() const noexcept { return longest_; }
-    /// What this share (0..1) did not exceed, rounded up to a step; 0 if there is none. The last step says
-    /// "as long as the longest". O(steps).
+    /// The duration that this share (0..1) did not exceed, rounded up to a step; 0 without durations. For the
+    /// last step it is the longest one. O(steps).
     [[nodiscard]] Nanoseconds within(double share) const noexcept {
         const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(total_) + 0.5);
         std::uint64_t seen = 0;

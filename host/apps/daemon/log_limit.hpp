@@ -1,4 +1,4 @@
-// The daemon's log has a bound, whatever somebody makes it say again and again.
+// Bounds the daemon's log, even if an input provokes the same line again and again.
 #pragma once
 
 #include <spdlog/sinks/sink.h>
@@ -17,8 +17,8 @@
 
 namespace octoskin {
 
-/// Passes lines on to others: of each level so many at once, and then one in each period. Those of
-/// spdlog::level::critical always: there is one in a process's life. May be called from any thread.
+/// Passes lines on to other sinks: for each level a burst, and then one in each period. Lines of
+/// spdlog::level::critical always pass: a process logs one in its life. May be called from any thread.
 class LogLimit final : public spdlog::sinks::sink {
   public:
     static constexpr int kAtOnce = 60;
@@ -37,7 +37,7 @@ class LogLimit final : public spdlog::sinks::sink {
     struct Level {
         int room = kAtOnce;
         std::optional<HostTime> grown;  ///< when there was room for one more
-        std::uint64_t left_out = 0;     ///< since the newest line that went through
+        std::uint64_t left_out = 0;     ///< since the newest line that passed
     };
     [[nodiscard]] bool takes(Level& level);
     void pass(const spdlog::details::log_msg& message);

@@ -1,4 +1,4 @@
-// The files of a map that the daemon keeps.
+// The files of a map that the daemon saves.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Where the daemon keeps its maps: the folder itself, held open and locked, whatever becomes of its name.
+// The folder in which the daemon saves its maps, held open and locked, even if its name changes.
 #pragma once
 
 #include <filesystem>
@@ -12,35 +12,35 @@
 
 namespace octoskin {
 
-/// A folder that is removed, moved or replaced while a daemon runs is another one than it holds. Nothing is
-/// ever saved by name: into the folder that is held, or into one that took its place, once that is locked,
-/// and only if it has no map of its own. Links in the name that was typed are followed once, at the start;
-/// from then on the place is where they led, and a link there, or on the way there, is not followed.
+/// A folder that is removed, moved or replaced while a daemon runs is not the one it holds. Maps are never
+/// saved by name: only into the held folder, or into one that took its place, once that is locked and if it
+/// has no map of its own. Links in the given name are followed once, at the start. From then on the place is
+/// their target, and a link there, or on the way there, is not followed.
 class MapHome {
   public:
-    /// Makes the folder if it is not there. Errors: as FolderLock::take.
+    /// Creates the folder if it is missing. Errors as for FolderLock::take.
     [[nodiscard]] static Result<MapHome, AppError> take(const std::filesystem::path& named);
 
     [[nodiscard]] const OpenFolder& folder() const noexcept { return lock_.folder(); }
 
-    /// Looks whether the folder is still in its place. If not, and a folder without a map has taken it, that
-    /// one is held from now on: true.
+    /// Checks that the folder is still in its place. If not, and a folder without a map has taken it, that
+    /// one is held from now on: returns true.
     [[nodiscard]] bool look();
     /// Where the folder is now; empty if it was removed.
     [[nodiscard]] std::string where() const;
-    /// What was wrong at the last look, and what to do; empty: nothing.
+    /// The problem at the last check, with the remedy; empty: none.
     [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   private:
     MapHome(std::filesystem::path named, FolderLock lock);
     [[nodiscard]] bool is_in_its_place() const;
     [[nodiscard]] std::string why_not_there() const;
-    /// What becomes of the map meanwhile.
+    /// Where the map is saved meanwhile, for messages.
     [[nodiscard]] std::string where_it_goes() const;
 
     std::filesystem::path named_;
     FolderLock lock_;
-    std::filesystem::path place_;  ///< absolute, and without a link when the folder was taken
+    std::filesystem::path place_;  ///< absolute, and without a link at the start
     std::string problem_;
 };
 

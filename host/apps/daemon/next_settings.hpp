@@ -1,4 +1,4 @@
-// What a reload goes on with: read, checked and built beside the loop.
+// The settings of a reload: read, checked and built beside the loop.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@ struct Next {
     Settings settings;
     Pipeline pipeline;
 };
-/// Empty: the files say what holds already.
+/// Empty: the files are unchanged.
 using NextResult = Result<std::optional<Next>, AppError>;
 
-/// `held`: what holds. Waits for the files; touches nothing else that changes, so from any thread. Errors: as
-/// read_settings and make_pipeline; bad_config, too, where there is no memory.
+/// `held`: the settings in force. Waits for the files; uses no other state that changes, so it may be called
+/// from any thread. Errors as for read_settings and make_pipeline, and bad_config if there is no memory.
 [[nodiscard]] NextResult read_next(const DaemonRequest& request, const RecordedSettings& held);
 
 }  // namespace octoskin

@@ -7,7 +7,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first directory of a variable that may hold several, as systemd's do; empty if it is not set.
+/// The first directory of a variable that may hold several, as systemd's may; empty if it is not set.
 fs::path directory_in(const char* variable) {
     const char* const value = std::getenv(variable);
     if (value == nullptr) return {};

@@ -1,17 +1,17 @@
-// Where the daemon and those who ask it meet, if nobody says otherwise.
+// Default places of the daemon's sockets and maps.
 #pragma once
 
 #include <filesystem>
 
 namespace octoskin {
 
-/// Under the service manager's directory for this service, else the user's, else /run/octoskin.
+/// In the service manager's directory for this service, else in the user's, else /run/octoskin.
 [[nodiscard]] std::filesystem::path default_control_socket();
 
 /// Beside the control socket.
 [[nodiscard]] std::filesystem::path default_joint_socket();
 
-/// Under the service manager's state directory for this service, else the user's.
+/// In the service manager's state directory for this service, else in the user's.
 [[nodiscard]] std::filesystem::path default_map_folder();
 
 }  // namespace octoskin

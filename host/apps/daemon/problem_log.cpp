@@ -41,7 +41,7 @@ void ProblemLog::log(const std::vector<Problem>& problems, HostTime now) {
     }
 }
 
-/// A sentence that another of the same subject has replaced is no more, and nothing is over.
+/// A sentence that was replaced by another one of the same subject is removed without "over".
 void ProblemLog::log_over(HostTime now) {
     const auto is_over = [now](const Told& told) { return now - told.seen >= told.over_after(); };
     for (const Told& told : told_) {
@@ -62,7 +62,7 @@ void ProblemLog::log_over(HostTime now) {
     forget_old(now);
 }
 
-/// How often one that comes has come back by now. It is gone no more.
+/// How often a problem that appears has come back by now. Removes it from the gone ones.
 unsigned ProblemLog::returns_of_gone(const Problem& problem) {
     const auto gone = std::ranges::find(
         gone_, problem.about, [](const Told& each) -> const std::string& { return each.problem.about; });

@@ -1,4 +1,5 @@
-// Problems in the log and in the service manager's status: each when it comes, and when it has gone for good.
+// Problems in the log and in the service manager's status: logged when they appear, and when they are gone
+// for good.
 #pragma once
 
 #include <string>
@@ -9,36 +10,39 @@
 namespace octoskin {
 
 struct Problem {
-    /// What is wrong with what: the same as long as the problem is, whatever figures its text has.
+    /// Identifies the problem; the same as long as it lasts, whatever figures its text has.
     std::string about;
     std::string text;  ///< a sentence for a person
-    /// Whose problem it is, where another sentence may take this one's place; else empty.
+    /// Its subject, if another sentence of the same subject may replace this one; else empty.
     std::string subject = {};
-    /// Whose problem hides this one: while there is one of that subject, nobody can tell whether this is
-    /// over.
+    /// The subject whose problem hides this one: while that has a problem, it cannot be decided whether this
+    /// one is over.
     std::string hidden_by = {};
     friend bool operator==(const Problem&, const Problem&) = default;
 };
 
 class ProblemLog {
   public:
-    /// A problem is over in the log when it was not there for so long: one that comes and goes is one.
+    /// A problem is over in the log when it was absent for this long, so that one that comes and goes counts
+    /// as one.
     static constexpr Nanoseconds kOver{2'000'000'000};
-    /// One that comes back so often must then be away for twice as long each time, up to kOverMax: a line for
-    /// each of its turns would hide the others. Once it is over, the log says how often it came and went.
+    /// A problem that has come back this often must be absent for twice as long each time, up to kOverMax: a
+    /// line for each of its returns would hide the others. When it is over, the log contains how often it
+    /// came and went.
     static constexpr unsigned kFreeReturns = 2;
     static constexpr Nanoseconds kOverMax{300'000'000'000};
-    /// After so long without it, it is one that never was.
+    /// After this long without it, it counts as a new problem.
     static constexpr Nanoseconds kForgotten{600'000'000'000};
 
-    /// All that there are now; while `is_settling` some cannot be judged, and none that was told is over.
+    /// `problems`: all that exist now. While `is_settling`, some cannot be judged, and no reported problem is
+    /// over.
     void tell(std::vector<Problem> problems, HostTime now, bool is_settling = false);
 
   private:
     struct Told {
         Problem problem;
-        HostTime seen;         ///< the newest time that it was there
-        unsigned returns = 0;  ///< after it was away for kOver
+        HostTime seen;         ///< when it was last there
+        unsigned returns = 0;  ///< after it was absent for kOver
         [[nodiscard]] Nanoseconds over_after() const;
     };
     void log(const std::vector<Problem>& problems, HostTime now);

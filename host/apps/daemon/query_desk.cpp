@@ -14,7 +14,7 @@
 namespace octoskin {
 namespace {
 
-/// Empty if nobody knows.
+/// Empty if they are not known.
 std::vector<double> present_joints(const Pipeline& pipeline, std::size_t count, std::optional<HostTime> now) {
     std::vector<double> newest;
     std::optional<HostTime> sampled;
@@ -62,7 +62,8 @@ bool QueryDesk::take(const std::string& line, std::uint64_t ticket, uid_t user) 
     return true;
 }
 
-/// With the lock. A user has one question in a round: what it asks beyond waits until others had theirs.
+/// Called with the lock. A user has one question in a round: further ones wait until the others had their
+/// turn.
 std::uint64_t QueryDesk::round_of_next(uid_t user) const {
     std::uint64_t round = round_;
     for (const Questions* questions : {&served_, &at_work_, &waiting_})
@@ -98,7 +99,7 @@ void QueryDesk::run() {
         if (is_ending_) return UnwindingRoom::spend();
         Ground ground = std::move(*ground_);
         ground_.reset();
-        if (waiting_.empty()) continue;  // forgotten meanwhile
+        if (waiting_.empty()) continue;  // cleared meanwhile
         at_work_.splice(at_work_.end(), waiting_, std::ranges::min_element(waiting_, {}, &Question::round));
         Question& question = at_work_.front();
         if (question.round != round_) served_.clear();
@@ -108,7 +109,7 @@ void QueryDesk::run() {
         UnwindingRoom::keep();
         try {
             question.answer.front().line = answer(question.line, std::move(ground));
-        } catch (const std::exception&) {  // no memory to say why: it says so already
+        } catch (const std::exception&) {  // no memory: the answer prepared for that case is sent
         }
         lock.lock();
         answers_.splice(answers_.end(), question.answer);
@@ -118,11 +119,11 @@ void QueryDesk::run() {
     }
 }
 
-/// Until there is a question and what it is put to, or the end.
+/// Waits for a question and the map for it, or for the end.
 void QueryDesk::wait_for_questions(std::unique_lock<std::mutex>& lock) {
     const auto has_work = [this] { return !waiting_.empty() || is_ending_; };
     if (field_.is_there() && !changed_.wait_for(lock, field_idle_max_, has_work)) {
-        lock.unlock();  // who puts a question need not wait for it to go
+        lock.unlock();  // the thread that adds a question need not wait
         field_.drop();
         lock.lock();
     }
@@ -137,14 +138,14 @@ std::string QueryDesk::answer(const std::string& question, Ground ground) {
     const AnswerRoom room(kRoomBytes);
     nlohmann::ordered_json json;
     try {
-        ground.map.go_on(ground.now.reckoned);  // nothing may have been measured for long, or ever
+        ground.map.go_on(ground.now.reckoned);  // the last measurement may be long ago, or there is none
         const auto request = read_query(question);
         json = request ? answer_query(*request,
                                       {&ground.setup->rig, &ground.setup->robot, std::move(ground.map),
                                        std::move(ground.present), &field_, true, ground.now.wall, work_max_},
                                       [this] { return is_ending_ || is_forgotten_; })
                        : query_refused(request.error());
-    } catch (const std::bad_alloc&) {  // nor for the words
+    } catch (const std::bad_alloc&) {  // nor for a message
         throw;
     } catch (const std::exception& error) {
         json = query_refused({ExitCode::unavailable, std::string("no answer: ") + error.what()});

@@ -1,4 +1,5 @@
-// Questions to the map while it goes on: answered from snapshots, by a thread of its own.
+// The query server: answers questions about the map from snapshots, in its own thread, while the map is
+// updated.
 #pragma once
 
 #include <sys/types.h>
@@ -24,48 +25,48 @@
 
 namespace octoskin {
 
-/// Each question is put to a copy of the map as it is when its turn comes: some microseconds of the loop's
-/// time. There is one copy, however many questions wait. A distance field that long paths make for themselves
-/// follows from copy to copy, and goes when nothing was asked for `field_idle_max`. The loop calls `serve`
-/// whenever `descriptor` is readable. As many questions wait as the control socket lets, at the most. Users
-/// take turns, one question each; a question ends after `work_max`, and says so.
+/// Each question uses a copy of the map, made when its turn comes, which takes some microseconds of the
+/// loop's time. There is one copy, however many questions wait. The distance field that long paths need is
+/// updated from copy to copy, and dropped when nothing was asked for `field_idle_max`. The loop calls `serve`
+/// whenever `descriptor` is readable. At most as many questions wait as the control socket admits. Users take
+/// turns, one question each. A question ends after `work_max`, and its answer states that.
 class QueryDesk {
   public:
     static constexpr std::chrono::milliseconds kFieldIdleMax{10'000};
     static constexpr std::chrono::milliseconds kWorkMax{10'000};
-    /// Throws std::system_error if there is no thread or descriptor to be had.
+    /// Throws std::system_error if there is no thread or descriptor left.
     explicit QueryDesk(const HostSetup& setup, std::chrono::milliseconds field_idle_max = kFieldIdleMax,
                        std::chrono::milliseconds work_max = kWorkMax);
-    /// After the posture that it is at, or the row of voxels.
+    /// Waits for the posture, or the row of voxels, in progress.
     ~QueryDesk();
     QueryDesk(const QueryDesk&) = delete;
     QueryDesk& operator=(const QueryDesk&) = delete;
 
-    /// What is asked from now on is asked of this robot.
+    /// Later questions use this robot.
     void change_robot(const HostSetup& setup);
 
-    /// False if the line is no query. Throws std::bad_alloc; what is taken gets an answer though there is no
-    /// memory for one later.
+    /// False if the line is no query. Throws std::bad_alloc; an accepted question gets an answer even if
+    /// there is no memory for one later.
     bool take(const std::string& line, std::uint64_t ticket, uid_t user);
-    /// This answer is no longer waited for: it is not sought, or not to its end.
+    /// The answer to this ticket is no longer needed: it is not computed, or not completed.
     void forget(std::uint64_t ticket);
 
-    /// Now, on the clock of what the map was told. A time in doubt must not make the map younger: by
-    /// `reckoned` it ages all the same.
+    /// The present time, on the clock of the map's measurements. A time in doubt must not make the map
+    /// younger: by `reckoned` it still ages.
     struct Now {
         std::optional<HostTime> known;  ///< empty: the time is unknown or in doubt
-        HostTime reckoned;              ///< the newest known time, gone on by this machine's clock
-        WallTime wall;                  ///< which an answer states
+        HostTime reckoned;              ///< the newest known time, continued by this machine's clock
+        WallTime wall;                  ///< stated in an answer
     };
     struct Answer {
         std::uint64_t ticket = 0;
         std::string line;
     };
     using Answers = std::list<Answer>;
-    /// Readable when there is something for `serve`, until then.
+    /// Readable when there is something for `serve`.
     [[nodiscard]] int descriptor() const noexcept { return event_.descriptor(); }
-    /// Gives the question whose turn it is the map as it is, and takes the answers that are there. The arm is
-    /// where the newest joint sample says, if that is at most `kPresentMax` old and the time is known.
+    /// Gives the present map to the question whose turn it is, and returns the finished answers. The arm's
+    /// position is the newest joint sample, if that is at most `kPresentMax` old and the time is known.
     [[nodiscard]] Answers serve(const Pipeline& pipeline, const Now& now);
     static constexpr Nanoseconds kPresentMax{500'000'000};
 
@@ -73,12 +74,12 @@ class QueryDesk {
     struct Question {
         std::string line;
         uid_t user = 0;
-        std::uint64_t round = 0;  ///< in which it has its turn: one of each user's in a round
-        Answers answer;           ///< the place for it, which says until then that there is no memory
+        std::uint64_t round = 0;  ///< the round of its turn: each user has one question in a round
+        Answers answer;           ///< its place, filled in advance with the answer for lack of memory
         [[nodiscard]] std::uint64_t ticket() const { return answer.front().ticket; }
     };
     using Questions = std::list<Question>;
-    /// What one question is put to.
+    /// The data that one question uses.
     struct Ground {
         std::shared_ptr<const HostSetup> setup;
         FusedMap map;
@@ -96,17 +97,17 @@ class QueryDesk {
     std::shared_ptr<const HostSetup> setup_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    Questions waiting_;          ///< in the order they came
-    Questions at_work_;          ///< one, or none
-    Questions served_;           ///< of this round, one of each user's
-    std::uint64_t round_ = 0;    ///< of the one that is at work, or was the last
-    bool wants_ground_ = false;  ///< a question's turn has come
+    Questions waiting_;          ///< in the order of arrival
+    Questions at_work_;          ///< at most one
+    Questions served_;           ///< users of this round, one question each
+    std::uint64_t round_ = 0;    ///< of the question being answered, or the last one
+    bool wants_ground_ = false;  ///< it is a question's turn
     std::optional<Ground> ground_;
     Answers answers_;
     std::atomic<bool> is_ending_ = false;
-    std::atomic<bool> is_forgotten_ = false;  ///< the question at work
-    KeptField field_;                         ///< the thread's own
-    std::thread thread_;                      ///< the last: it uses all others
+    std::atomic<bool> is_forgotten_ = false;  ///< the question being answered
+    KeptField field_;                         ///< used by the thread only
+    std::thread thread_;                      ///< the last member: it uses all others
 };
 
 }  // namespace octoskin

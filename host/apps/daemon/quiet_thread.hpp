@@ -1,5 +1,4 @@
-// A thread that no signal is delivered to but its own faults: signals are for the one that runs the event
-// loop.
+// A thread that gets no signals except its own faults: signals are for the thread of the event loop.
 #pragma once
 
 #include <pthread.h>
@@ -16,13 +15,13 @@
 
 namespace octoskin {
 
-/// What the work throws ends the daemon's loop (ThreadFaults); where there is none, the process.
+/// An exception of the work ends the daemon's loop (ThreadFaults) or, without one, the process.
 template <class Work>
 [[nodiscard]] std::thread start_without_signals(Work work) {
     sigset_t others;
     sigset_t before;
     sigfillset(&others);
-    // A fault whose signal is blocked ends the process at once: what waits in the log would be lost.
+    // A fault whose signal is blocked ends the process at once, and the waiting log lines would be lost.
     for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigdelset(&others, fault);
     pthread_sigmask(SIG_SETMASK, &others, &before);
     struct Restored {
@@ -38,8 +37,8 @@ template <class Work>
     });
 }
 
-/// A thread of that kind that a disk may hold in the middle of a write: whoever ends it waits so long and no
-/// longer. So the work must own what it uses.
+/// The same for work that a disk may block in a write: the wait for its end is limited. So the work
+/// must own all data that it uses.
 class LeavableThread {
   public:
     template <class Work>
@@ -49,7 +48,7 @@ class LeavableThread {
         thread_ = start_without_signals([work = std::move(work), ended = std::move(ended)]() mutable {
             try {
                 work();
-            } catch (...) {  // a promise that is broken asks for memory to say so
+            } catch (...) {  // a broken promise would need memory for its error
                 ended.set_value();
                 throw;
             }
@@ -60,7 +59,7 @@ class LeavableThread {
     LeavableThread(const LeavableThread&) = delete;
     LeavableThread& operator=(const LeavableThread&) = delete;
 
-    /// Waits for its end, `patience` at most. False: it is left behind.
+    /// Waits at most `patience` for its end. False: it is left behind.
     bool end(Nanoseconds patience) {
         if (!thread_.joinable()) return true;
         const bool has_ended = ended_.wait_for(patience) == std::future_status::ready;
@@ -74,8 +73,8 @@ class LeavableThread {
         return has_ended;
     }
 
-    /// Whether any was ever left behind. The process must then end by _exit(2): such a thread may still be at
-    /// work on what exit(3) takes away.
+    /// Whether a thread was ever left behind. The process must then end by _exit(2): such a thread may still
+    /// use objects that exit(3) destroys.
     [[nodiscard]] static bool was_one_left() noexcept { return was_left_; }
 
   private:

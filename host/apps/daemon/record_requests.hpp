@@ -1,7 +1,7 @@
-// What clients ask of the recorder, and the recorder that is at work, if one is.
+// Requests of clients to the recorder, and the running recorder, if there is one.
 //
-//     record start SECONDS FOLDER     0: until `record stop`; FOLDER: an absolute path
-//     record stop [FOLDER]            with FOLDER: only if that is where it is recorded to
+//     record start SECONDS FOLDER     SECONDS 0: until `record stop`; FOLDER: an absolute path
+//     record stop [FOLDER]            with FOLDER: only if the recording goes to it
 //     record status
 #pragma once
 
@@ -22,16 +22,16 @@
 
 namespace octoskin {
 
-/// Why nothing is recorded to a folder of this name; empty if it may be. One with control characters would
-/// end a request, or a line of a log, in its midst; one called as a file of the daemon would take its place.
+/// Why nothing is recorded to a folder of this name; empty if it is allowed. Control characters would end a
+/// request, or a line of a log, in the middle; the name of a daemon's file would take its place.
 [[nodiscard]] std::string fault_of_folder(const std::filesystem::path& folder);
-/// As it is named in requests and answers: without "." or "..", and without a slash at its end.
+/// The form in requests and answers: without "." or "..", and without a slash at the end.
 [[nodiscard]] std::filesystem::path plain(const std::filesystem::path& folder);
 
-/// What `record start` asks for.
+/// The arguments of `record start`.
 struct RecordStart {
     std::optional<Nanoseconds> limit;  ///< empty: until it is ended
-    std::filesystem::path folder;      ///< absolute, as `plain` has it
+    std::filesystem::path folder;      ///< absolute, in the form of `plain`
 };
 /// Reads "SECONDS FOLDER". Errors: `usage`.
 [[nodiscard]] Result<RecordStart, AppError> read_record_start(std::string_view arguments);
@@ -41,8 +41,8 @@ class RecordRequests {
     explicit RecordRequests(Recorder::Copier copier = &FusedMap::copy) : copier_(std::move(copier)) {}
 
     [[nodiscard]] static bool is_one(const std::string& line) { return line.starts_with("record "); }
-    /// A line of JSON: "ok"; "error" and "code", the exit code for it, if it is not; "recording", the one at
-    /// work or the last, with its "number" since this daemon began; and "before", the one before that.
+    /// A line of JSON: "ok"; if false, "error" and "code", the exit code; "recording", the running or the
+    /// last one, with its "number" since the daemon started; and "before", the one before that.
     [[nodiscard]] std::string answer(const std::string& line, const RecordedSettings& settings,
                                      Pipeline& pipeline, HostTime now);
 
@@ -52,32 +52,33 @@ class RecordRequests {
     void attend(HostTime now) {
         if (recorder_) recorder_->attend(now);
     }
-    /// To be called before the pipeline is replaced, and at the end. `early`: why, where nobody asked for it.
+    /// Call this before the pipeline is replaced, and at the end. `early`: the reason, if no one requested
+    /// the end.
     void stop(HostTime now, std::string early = {}) {
         if (recorder_) recorder_->stop(now, std::move(early));
     }
-    /// The same with a `last_map` of before something changed the map.
+    /// The same with a `last_map` from before a change of the map.
     void stop(HostTime now, std::string early, std::optional<FusedMap> last_map) {
         if (recorder_) recorder_->stop(now, std::move(early), std::move(last_map));
     }
-    /// Recorder::last_map; empty, too, where nothing is recorded.
+    /// Recorder::last_map; also empty without a recording.
     [[nodiscard]] std::optional<FusedMap> last_map() const {
         return recorder_ ? recorder_->last_map() : std::nullopt;
     }
-    /// Until a recording that was stopped is whole; says in the log what came of it.
+    /// Waits until a stopped recording is complete, and logs the result.
     void finish(Nanoseconds patience);
-    /// The one at work or, until there is another, the last; null if there was none.
+    /// The running one or, until there is another, the last one; null if there was none.
     [[nodiscard]] const Recorder* recorder() const noexcept { return recorder_.get(); }
 
-    /// Why the newest recording could not begin for want of memory or of a thread; empty: it could.
+    /// Why the newest recording could not start for lack of memory or of a thread; empty: it could.
     [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
 
   private:
     [[nodiscard]] Status<AppError> start(const std::string& arguments, const RecordedSettings& settings,
                                          Pipeline& pipeline, HostTime now);
-    /// Unless its folder is refused: then nothing has changed.
+    /// Changes nothing if its folder is refused.
     [[nodiscard]] Status<AppError> begin(std::unique_ptr<Recorder> recorder, HostTime now);
-    /// Nobody ends a recording but where it is said to be.
+    /// A recording is ended only by the folder that it goes to.
     [[nodiscard]] Status<AppError> stop(const std::string& folder, HostTime now);
     [[nodiscard]] nlohmann::ordered_json to_json(HostTime now) const;
 

@@ -1,4 +1,4 @@
-// `octoskin record`: what the daemon takes in and what it puts into its map, kept from one moment to another.
+// `octoskin record`: the inputs of the daemon and the updates of its map over a period.
 #pragma once
 
 #include <chrono>
@@ -17,8 +17,8 @@
 
 namespace octoskin {
 
-/// What the daemon runs with, as text: so that a recording holds what was in force, not what the files say by
-/// then.
+/// The daemon's settings as text, so that a recording contains those in force, not the present content of the
+/// files.
 struct RecordedSettings {
     std::string rig;
     std::string robot;
@@ -38,11 +38,10 @@ class Recorder final : public CommitListener {
   public:
     using Copier = std::function<FusedMap(const FusedMap& map)>;
 
-    /// Begins with the pipeline as it is, at any time, and changes nothing of it but its listener: the map
-    /// goes on as if nothing was recorded. `pipeline` must outlive the recording: until `stop`. Waits for
-    /// nothing: what is wrong with the folder shows in `error`. Throws std::bad_alloc if there is no memory
-    /// for a copy of the map, std::system_error if there is no thread to be had; the pipeline then knows
-    /// nothing of it.
+    /// Starts with the pipeline in any state, and changes only its listener: the map is updated as without a
+    /// recording. `pipeline` must outlive the recording: until `stop`. Does not wait: a fault of the folder
+    /// appears in `error`. Throws std::bad_alloc if there is no memory for a copy of the map,
+    /// std::system_error if there is no thread left; the pipeline is then unchanged.
     Recorder(const std::filesystem::path& folder, std::optional<Nanoseconds> limit,
              const RecordedSettings& settings, Pipeline& pipeline, HostTime now,
              Copier copier = &FusedMap::copy);
@@ -50,33 +49,33 @@ class Recorder final : public CommitListener {
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// A frame that goes to the pipeline next.
+    /// Notes a frame that goes to the pipeline next.
     void on_can(const wire::CanFrame& frame, WallTime stamp);
-    /// Ends it if it is long enough, or has failed. To be called every now and then.
+    /// Ends the recording if it is long enough, or has failed. Call this regularly.
     void attend(HostTime now);
-    /// What is recorded is complete now; the files become so soon after, see `wait`. Without the memory for a
-    /// copy of the map it has failed, and `error` says so. `early`: why it ends though nobody asked for that
-    /// and its time is not over; for a person.
+    /// Ends the input; the files are complete soon after, see `wait`. Without memory for a copy of the map
+    /// the recording has failed, with an `error`. `early`: the reason if it ends before its time and without
+    /// a request; for a person.
     void stop(HostTime now, std::string early = {});
-    /// The same with a `last_map` of before something changed the map.
+    /// The same with a `last_map` from before a change of the map.
     void stop(HostTime now, std::string early, std::optional<FusedMap> last_map);
-    /// The map as it is now; empty if there is no memory for it, or what is recorded is complete already.
+    /// The present map; empty if there is no memory for it, or the input has ended.
     [[nodiscard]] std::optional<FusedMap> last_map() const;
-    /// Until the files are whole, after `stop`; false if `patience` was too short.
+    /// Waits until the files are complete, after `stop`; false if `patience` was too short.
     [[nodiscard]] bool wait(Nanoseconds patience) { return writer_.wait(patience); }
 
-    /// Why the folder was not taken: it is not empty, or somebody else's. Empty if it was; and if a disk
-    /// takes longer than `patience` to tell, `error` says it then.
+    /// Why the folder was refused: it is not empty, or belongs to another user. Empty if it was accepted. If
+    /// a disk takes longer than `patience`, `error` has it then.
     [[nodiscard]] std::string refusal(Nanoseconds patience) { return writer_.refusal(patience); }
 
-    /// It takes nothing more; its files may not be whole yet.
+    /// It accepts no more input; its files may not be complete yet.
     [[nodiscard]] bool is_stopped() const { return stopped_.has_value(); }
     [[nodiscard]] bool has_ended() const { return writer_.has_ended(); }
-    /// For a person; empty: all is well so far.
+    /// For a person; empty: no error so far.
     [[nodiscard]] std::string error() const { return writer_.error(); }
     /// As RecordingWriter::writing_since.
     [[nodiscard]] std::optional<HostTime> writing_since() const { return writer_.writing_since(); }
-    /// All that the map was made of could be recorded so far.
+    /// All that went into the map could be recorded so far.
     [[nodiscard]] bool is_complete() const { return counts_.is_complete() && error().empty(); }
     [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
     [[nodiscard]] nlohmann::ordered_json to_json(HostTime now) const;
@@ -86,14 +85,14 @@ class Recorder final : public CommitListener {
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, const Evidence& terms) override;
     void on_wait(const WaitCommit& passed) override { put(passed); }
-    /// Ends it: its replay could not go on from there.
+    /// Ends the recording: its replay could not continue from there.
     void on_time_leap() override;
 
   private:
     void put(const Commit& commit);
-    /// What was rejected since the begin, by name.
+    /// Counts of rejected inputs since the start, by name.
     [[nodiscard]] std::string remarks() const;
-    /// Once it has: how it ended.
+    /// Logs the result once it has ended.
     void tell_end();
 
     Copier copier_;
@@ -103,13 +102,13 @@ class Recorder final : public CommitListener {
     double depth_max_m_;
     HostTime begun_;
     std::optional<HostTime> stopped_;
-    std::string early_;  ///< why it ended before it was to; empty: it did not
+    std::string early_;  ///< why it ended before its time; empty: it did not
     bool is_end_told_ = false;
     Pipeline* pipeline_;
     std::vector<AccountTable> accounts_at_begin_;
     candump::LogEntry entry_;
     orderlog::Trailer counts_;
-    std::uint64_t commits_before_ = 0;  ///< joint samples that the daemon had when it began
+    std::uint64_t commits_before_ = 0;  ///< joint samples in the daemon at the start
     std::uint64_t can_frames_ = 0;
     std::uint64_t depth_frames_ = 0;
     RecordingWriter writer_;

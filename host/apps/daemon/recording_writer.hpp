@@ -1,4 +1,4 @@
-// A recording's files, written by a thread while the daemon goes on.
+// Writes a recording's files in its own thread.
 #pragma once
 
 #include <cstdint>
@@ -20,54 +20,54 @@
 
 namespace octoskin {
 
-/// What a recording begins with.
+/// The data at the start of a recording.
 struct RecordingBegin {
     RecordingPaths paths;
     std::string rig;                    ///< the rig file's text; names robot.urdf
     std::string robot;                  ///< the URDF's text
     std::string mapping;                ///< mapping.yaml's text
-    orderlog::Header order;             ///< but for the checksums of the first map and state
+    orderlog::Header order;             ///< without the checksums of the first map and state
     std::uint32_t placement_crc32 = 0;  ///< as in a SnapshotOrigin
     MapState first;
 };
 
-/// What it ends with.
+/// The data at its end.
 struct RecordingEnd {
-    orderlog::Trailer order;  ///< but for the checksum of the last map
-    std::string remarks;      ///< lines before the trailer, each begun with '#'
+    orderlog::Trailer order;  ///< without the checksum of the last map
+    std::string remarks;      ///< lines before the trailer, each starting with '#'
     RecordingMeta meta;
-    std::optional<FusedMap> last_map;  ///< empty: there was no memory for it, so that the recording fails
+    std::optional<FusedMap> last_map;  ///< empty: there was no memory for it, and the recording fails
 };
 
 class RecordingWriter {
   public:
-    /// What may wait of each text: seconds of a full bus.
+    /// Bytes of each text that may wait: seconds of a full bus.
     static constexpr std::size_t kTextMax = std::size_t{8} << 20U;
-    /// Saves a map under that name; gives the file's CRC-32.
+    /// Saves a map under that name; returns the file's CRC-32.
     using MapWriter =
         std::function<Result<std::uint32_t, MapFileError>(const FusedMap& map, const FilePlace& file)>;
 
-    /// Throws std::system_error if there is no thread to be had.
+    /// Throws std::system_error if there is no thread left.
     explicit RecordingWriter(RecordingBegin begin, MapWriter map_writer = save_map);
-    /// Stops writing, wherever it is, unless it has ended. Within 0.2 s: a write that hangs is left behind,
-    /// and the log says so.
+    /// Stops writing at any point, unless it has ended. Takes at most 0.2 s: a write that hangs is left
+    /// behind, and that is logged.
     ~RecordingWriter();
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-    // None of these waits. False: there was no room, or recording failed, and it is not recorded.
+    // None of these waits. False: there was no room, or recording failed, and the input is not recorded.
     [[nodiscard]] bool add_can(const std::string& line);
     [[nodiscard]] bool add_order(const std::string& line);
     [[nodiscard]] bool add_depth(const DepthFrame& frame);
     void finish(RecordingEnd end);
 
     [[nodiscard]] bool has_ended() const;
-    /// What went wrong, for a person; empty: nothing so far.
+    /// The error, for a person; empty: none so far.
     [[nodiscard]] std::string error() const;
-    /// When what is being written, or asked of the folder, was begun; empty: nothing is.
+    /// When the write, or the request to the folder, in progress began; empty: none is.
     [[nodiscard]] std::optional<HostTime> writing_since() const;
-    /// Why the folder was not taken, and nothing written; empty if it was, or if the disk has not told within
-    /// `patience`.
+    /// Why the folder was refused, so that nothing is written; empty if it was accepted, or if the disk has
+    /// not answered within `patience`.
     [[nodiscard]] std::string refusal(Nanoseconds patience);
     /// Waits for the end, after `finish`; false if `patience` was too short.
     [[nodiscard]] bool wait(Nanoseconds patience);

@@ -5,7 +5,7 @@
 namespace octoskin {
 
 std::vector<std::string> RegisterLog::news(const NodeRegistry& nodes) {
-    // A node that starts anew and reads other values each time must not fill the log.
+    // A node that restarts and reads other values each time must not fill the log.
     constexpr std::size_t kToldMax = 256;
     std::vector<std::string> lines;
     for (const auto& [node, record] : nodes.records()) {

@@ -1,5 +1,5 @@
-// What is no problem and yet worth a line: a register that the sensors of a node read alike, otherwise than
-// it is written. Each once, for as long as the daemon runs.
+// Log lines for registers that the sensors of a node read alike, with another value than was written. This is
+// no problem; each is logged once in the daemon's life.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace octoskin {
 
 class RegisterLog {
   public:
-    /// The lines that are to be logged now; O(nodes * registers).
+    /// The lines to log now; O(nodes * registers).
     [[nodiscard]] std::vector<std::string> news(const NodeRegistry& nodes);
 
   private:

@@ -6,7 +6,7 @@
 namespace octoskin {
 namespace {
 
-/// One that was silent for so long has all of its share again: nothing is lost with it.
+/// A sender that was silent for this long has its whole share again: dropping it loses nothing.
 constexpr Nanoseconds kForgotten{1'000'000'000};
 static_assert(SenderShares::kAtOnce <= SenderShares::kPerSecond);
 
@@ -28,19 +28,20 @@ void SenderShares::keep(const SenderKey& sender, HostTime came) {
         share->useful = std::max(share->useful, std::optional(came));
 }
 
-/// Null: as many others keep theirs.
+/// Null: all shares are taken by others.
 SenderShares::Share* SenderShares::share_of(const SenderKey& sender, HostTime now) {
     const auto found = std::ranges::find(shares_, sender, &Share::sender);
     if (found != shares_.end()) return &*found;
     std::erase_if(shares_, [now](const Share& share) { return now - share.newest >= kForgotten; });
     if (shares_.size() < kSendersMax) return &shares_.emplace_back(Share{sender, kAtOnce, now, {}});
-    // With what is left of it, and no more: however many programs take turns, they send no more than eight.
+    // With the rest of that share, and no more: however many programs take turns, they send no more than
+    // eight would.
     Share* const lost = share_to_lose(now);
     if (lost != nullptr) lost->sender = sender;
     return lost;
 }
 
-/// The one that most is left of: a program that comes anew may have a sample to send.
+/// The share with the largest rest: a new program may have a sample to send.
 SenderShares::Share* SenderShares::share_to_lose(HostTime now) {
     Share* found = nullptr;
     for (Share& share : shares_) {

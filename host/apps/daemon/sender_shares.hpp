@@ -1,4 +1,4 @@
-// What each program may send to a socket: one that floods it leaves room for the others.
+// The share of each program that sends to a socket: one that floods it leaves room for the others.
 #pragma once
 
 #include <sys/types.h>
@@ -12,26 +12,26 @@
 
 namespace octoskin {
 
-/// A program, as far as it can be told from others.
+/// Identifies a program, as far as it can be distinguished.
 struct SenderKey {
-    pid_t pid = 0;        ///< 0: cannot be seen
-    std::string address;  ///< of one that cannot be seen: what its socket is bound to; empty: to nothing
+    pid_t pid = 0;        ///< 0: not visible
+    std::string address;  ///< for one that is not visible: the address its socket is bound to; empty: none
     friend bool operator==(const SenderKey&, const SenderKey&) = default;
 };
 
 class SenderShares {
   public:
-    /// Twice what the quickest driver has to say: the rig's joints.rate_hz is 1000 at the most.
+    /// Twice the rate of the fastest driver: the rig's joints.rate_hz is at most 1000.
     static constexpr double kPerSecond = 2048.0;
-    /// At once: what a program may have sent while nobody received for a second.
+    /// The burst: as many as a program may have sent while the receiver paused for a second.
     static constexpr double kAtOnce = 2048.0;
-    /// Of a flood of programs as many have a share: those that were found useful within the last second
-    /// (`keep`) keep theirs, the others lose it to any program that has none.
+    /// In a flood of programs this many have a share. Those that sent something useful within the last second
+    /// (`keep`) keep theirs; the others lose it to any program that has none.
     static constexpr std::size_t kSendersMax = 8;
 
-    /// One datagram of this program came at `now`; false: it is beyond what may be taken. O(kSendersMax).
+    /// Counts one datagram of this program at `now`; false: it exceeds the share. O(kSendersMax).
     [[nodiscard]] bool take(const SenderKey& sender, HostTime now);
-    /// One that came at `came` was useful: the program keeps its share, or has one again. O(kSendersMax).
+    /// One received at `came` was useful: the program keeps its share, or gets one again. O(kSendersMax).
     void keep(const SenderKey& sender, HostTime came);
 
   private:
@@ -39,7 +39,7 @@ class SenderShares {
         SenderKey sender;
         double left = kAtOnce;
         HostTime newest;
-        std::optional<HostTime> useful;  ///< the newest of those that were
+        std::optional<HostTime> useful;  ///< the newest useful one
     };
     [[nodiscard]] Share* share_of(const SenderKey& sender, HostTime now);
     [[nodiscard]] Share* share_to_lose(HostTime now);

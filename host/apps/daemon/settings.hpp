@@ -1,4 +1,4 @@
-// What the daemon is asked for on its command line, and what the files say that are named there.
+// The settings from the daemon's command line, and from the files named there.
 #pragma once
 
 #include <chrono>
@@ -22,16 +22,16 @@ struct DaemonRequest {
     std::string configuration =
         kDefaultMapping;  ///< how measurements become voxels: a built-in one, or a file
     std::string interface = "can0";
-    /// In place of the interface: a descriptor that carries frames as a raw CAN socket does.
+    /// Used instead of the interface: a descriptor that carries frames as a raw CAN socket does.
     std::optional<int> can_descriptor;
     bool is_listen_only = false;         ///< transmits nothing, SYNC included
     bool has_camera = true;              ///< if the rig has one
-    std::string camera_uri;              ///< of OpenNI2, or an .oni file; empty: the first there is
+    std::string camera_uri;              ///< of OpenNI2, or an .oni file; empty: the first device
     std::filesystem::path joint_socket;  ///< empty: joint states come over CAN only
     std::filesystem::path control_socket;
     std::filesystem::path map_folder;
     std::chrono::seconds save_period{20};
-    unsigned depth_threads = 1;  ///< how many work on an image
+    unsigned depth_threads = 1;  ///< threads that work on an image
 };
 
 /// Read at the start, and again at each SIGHUP.

@@ -1,4 +1,4 @@
-// Work that may wait for a disk, done by a thread beside the event loop, which takes what came of it.
+// Work that may wait for a disk, in a thread beside the event loop, which takes the result.
 #pragma once
 
 #include <cassert>
@@ -21,12 +21,12 @@ namespace octoskin {
 template <class Outcome>
 class SideTask {
   public:
-    /// Owns what it uses: it may outlive the task.
+    /// It must own the data that it uses: it may outlive the task.
     using Work = std::function<Outcome()>;
 
-    /// Throws std::system_error if there is no thread, or no descriptor, to be had.
+    /// Throws std::system_error if there is no thread or descriptor left.
     SideTask() : thread_([shared = shared_] { run(*shared); }) {}
-    /// Within `kEndPatience`: work that hangs is left behind.
+    /// Takes at most `kEndPatience`: work that hangs is left behind.
     ~SideTask() {
         {
             const std::lock_guard lock(shared_->mutex);
@@ -38,12 +38,12 @@ class SideTask {
     SideTask(const SideTask&) = delete;
     SideTask& operator=(const SideTask&) = delete;
 
-    /// Readable while there is something to take.
+    /// Readable while there is a result to take.
     [[nodiscard]] int descriptor() const noexcept { return shared_->done.descriptor(); }
-    /// When what is at work, or was not taken yet, was begun; empty: nothing.
+    /// When the work began that is running, or whose result was not taken yet; empty: none.
     [[nodiscard]] const std::optional<HostTime>& begun() const noexcept { return begun_; }
 
-    /// Asserted: nothing is at work, and what came of the last was taken.
+    /// Asserted: no work is running, and the last result was taken.
     void begin(Work work) {
         assert(!begun_);
         begun_ = monotonic_now();
@@ -53,9 +53,9 @@ class SideTask {
         }
         shared_->changed.notify_all();
     }
-    /// What came of the work, once; empty: it has not ended. Throws what it threw.
+    /// The result of the work, once; empty: it has not ended. Throws the exception of the work.
     [[nodiscard]] std::optional<Outcome> take() { return wait(Nanoseconds{0}); }
-    /// The same, after its end, for which it waits so long.
+    /// The same, waiting at most `patience` for the end of the work.
     [[nodiscard]] std::optional<Outcome> wait(Nanoseconds patience) {
         if (!begun_) return std::nullopt;
         std::unique_lock lock(shared_->mutex);
@@ -73,7 +73,7 @@ class SideTask {
     struct Shared {
         std::mutex mutex;
         std::condition_variable changed;
-        Work work;  ///< that waits for the thread
+        Work work;  ///< waits for the thread
         std::optional<Outcome> outcome;
         std::exception_ptr thrown;
         bool is_ending = false;
@@ -91,7 +91,7 @@ class SideTask {
             std::exception_ptr thrown;
             try {
                 outcome.emplace(work());
-                work = nullptr;  // what it holds is let go of here, where that may take long
+                work = nullptr;  // its data is released here, which may take long
             } catch (...) {
                 thrown = std::current_exception();
             }

@@ -19,7 +19,7 @@ Json age_s(const std::optional<HostTime>& since, const std::optional<HostTime>& 
     return since && now ? Json(seconds_of(*now - *since)) : Json(nullptr);
 }
 
-/// Links without a body: all of them, or those that the rig does not list.
+/// Links without a body: all of them, or only those that the rig does not list.
 Json links_json(const HostRig& rig, bool leaves_out_listed) {
     Json names = Json::array();
     for (const LinkWithoutBody& link : rig.links_without_body)
@@ -131,7 +131,7 @@ Json register_json(const wire::RegisterReport& report, bool is_alike) {
             {"sensors", is_alike ? report.subject : 1}};
 }
 
-/// Those of sensors that are well by now are over.
+/// Without those of sensors that are well by now.
 Json registers_json(const DaemonView& view, const HostNode& node, const NodeRecord& record) {
     Json registers = Json::array();
     for (const wire::RegisterReport& report : record.registers.alike())
@@ -179,7 +179,7 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     return json;
 }
 
-/// What the comparison of images with ranges finds off, if anything.
+/// The fault that the comparison of images with ranges finds, if any.
 PoseFault pose_fault(const DaemonView& view) {
     const SensorWitness* const witness = view.pipeline->builder().witness();
     return witness != nullptr ? witness->pose().fault().value_or(PoseFault{}) : PoseFault{};

@@ -1,4 +1,4 @@
-// Text on its way to a file that another thread writes: whoever adds to it never waits for the disk.
+// Text for a file that another thread writes: adding to it never waits for the disk.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,17 @@ namespace octoskin {
 
 class TextQueue {
   public:
-    /// Beyond so many bytes nothing more is taken.
+    /// Beyond this many bytes no more text is accepted.
     explicit TextQueue(std::size_t bytes_max) : bytes_max_(bytes_max) {}
 
-    /// False if there was no room: nothing of it will be written.
+    /// False if there was no room: none of it will be written.
     [[nodiscard]] bool add(const std::string& text) {
         const std::lock_guard lock(mutex_);
         if (text_.size() + text.size() > bytes_max_) return false;
         text_ += text;
         return true;
     }
-    /// All that waits.
+    /// All waiting text.
     [[nodiscard]] std::string take() {
         const std::lock_guard lock(mutex_);
         return std::exchange(text_, {});

@@ -7,7 +7,7 @@
 namespace octoskin {
 namespace {
 
-/// A thread that was left behind may end after the daemon has.
+/// A thread that was left behind may end after the daemon.
 std::mutex mutex;
 ThreadFaults* there = nullptr;
 

@@ -1,5 +1,5 @@
-// What ends a thread of the daemon, though nothing in that thread foresees it: most often there is no memory.
-// The loop ends by it, in the ordinary way, and the map is saved.
+// Unexpected exceptions in the daemon's threads, mostly for lack of memory. They end the loop in the ordinary
+// way, and the map is saved.
 #pragma once
 
 #include <exception>
@@ -8,21 +8,22 @@
 
 namespace octoskin {
 
-/// For as long as it lives; there is one in a process at a time (asserted).
+/// Active while it lives; at most one in a process at a time (asserted).
 class ThreadFaults {
   public:
-    /// Throws std::system_error if there is no descriptor to be had.
+    /// Throws std::system_error if there is no descriptor left.
     ThreadFaults();
     ~ThreadFaults();
     ThreadFaults(const ThreadFaults&) = delete;
     ThreadFaults& operator=(const ThreadFaults&) = delete;
 
-    /// Of what is thrown just now, from any thread's catch block. False: there is none of these to take it.
+    /// Reports the current exception; to be called in a catch block of any thread. False: there is no
+    /// ThreadFaults.
     [[nodiscard]] static bool tell() noexcept;
 
-    /// Readable once a thread has ended so.
+    /// Readable once a thread has reported an exception.
     [[nodiscard]] int descriptor() const noexcept { return event_.descriptor(); }
-    /// Throws what the first of them threw; nothing if none has ended so.
+    /// Throws the first of these exceptions; does nothing if there is none.
     void rethrow();
 
   private:

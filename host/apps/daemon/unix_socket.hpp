@@ -1,4 +1,4 @@
-// Sockets of the local machine by the name of a file.
+// Unix sockets with a file name.
 #pragma once
 
 #include <chrono>
@@ -10,16 +10,16 @@
 
 namespace octoskin {
 
-/// A socket bound to `file`; non-blocking. `type`: SOCK_DGRAM or SOCK_STREAM (then it listens). A file that a
-/// dead process left is replaced; one that somebody listens on is refused, also if both begin at once; the
-/// error names the process of a SOCK_STREAM that lets us in. Waits 2 s at most for another that makes a
-/// socket in that folder. Who may connect: owner and group. `option`: of the command line, that names another
-/// place.
+/// Returns a non-blocking socket bound to `file`. `type`: SOCK_DGRAM, or SOCK_STREAM (then it listens). A
+/// file that a dead process left is replaced. One with a listener is refused, also if both start at once; the
+/// error names the process of a SOCK_STREAM that accepts the connection. Waits at most 2 s for another
+/// process that creates a socket in that folder. Owner and group may connect. `option`: the command-line
+/// option that names another place.
 [[nodiscard]] Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type,
                                                      const std::string& option = "--socket");
 
-/// A socket connected to `file`. Waits `patience` at most for whoever listens there and lets nobody in, as a
-/// process that is stopped: ExitCode::io_failed then.
+/// Returns a socket connected to `file`. Waits at most `patience` for a listener that accepts no connection,
+/// such as a stopped process: then ExitCode::io_failed.
 [[nodiscard]] Result<int, AppError> connect_unix_socket(
     const std::filesystem::path& file, int type,
     std::chrono::milliseconds patience = std::chrono::seconds{5});

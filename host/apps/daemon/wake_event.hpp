@@ -1,4 +1,4 @@
-// How a thread tells the event loop that it has something for it.
+// Wakes the event loop from another thread.
 #pragma once
 
 #include <sys/eventfd.h>
@@ -12,7 +12,7 @@ namespace octoskin {
 /// An eventfd: readable from `wake` until `clear`. Both from any thread, and neither waits.
 class WakeEvent {
   public:
-    /// Throws std::system_error if there is no descriptor to be had.
+    /// Throws std::system_error if there is no descriptor left.
     WakeEvent() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
         if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
     }

@@ -1,4 +1,4 @@
-// `octoskin explain`: which readings and depth frames made a voxel what it is.
+// `octoskin explain`: which readings and depth frames determined the state of a voxel.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,30 +18,32 @@
 namespace octoskin {
 
 struct Explanation {
-    Eigen::Vector3d p_map = Eigen::Vector3d::Zero();   ///< that was asked about
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of its voxel, map frame, metres
+    Eigen::Vector3d p_map = Eigen::Vector3d::Zero();   ///< the requested point, map frame, metres
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centre of its voxel, map frame, metres
     double resolution_m = 0.0;
     Occupancy occupancy = Occupancy::unknown;
-    /// Contributions for which the map, full by then, had no room: the witness has none of them.
+    /// Contributions that the full map refused; the voxel trace contains none of them.
     std::uint64_t no_room = 0;
     VoxelWitness witness;
-    std::optional<HostTime> begin;            ///< of the recording: times are told from here
-    std::map<BeamSource, std::string> names;  ///< "camera", "forearm_3"; with its zone if there are several
-    std::vector<std::string> warnings;        ///< of the replay
-    std::optional<AppError> lost = std::nullopt;  ///< most of the recording, though the explanation is there
+    std::optional<HostTime> begin;  ///< of the recording: the zero of all times in the text
+    std::map<BeamSource, std::string>
+        names;                          ///< "camera", "forearm_3"; with the zone if the sensor has several
+    std::vector<std::string> warnings;  ///< of the replay
+    std::optional<AppError> lost =
+        std::nullopt;  ///< set if most of the recording was lost although there is an explanation
 };
 
-/// Replays the recording, as `octoskin replay` would, and watches the voxel at `p_map` (metres, map frame) in
-/// the fused map. Errors: those of the replay; a point outside the octree (usage); terms that do not add up
-/// to the map's log-odds (failed).
+/// Replays the recording as `octoskin replay` does and traces the voxel at `p_map` (metres, map frame) in the
+/// fused map. Errors: those of the replay; a point outside the octree (usage); terms that do not add up to
+/// the map's log-odds (failed).
 [[nodiscard]] Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vector3d& p_map,
                                                     std::size_t contributions_max,
                                                     const ReplayReport& report = {});
 
-/// In one sentence: "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 12 hits; the camera
-/// saw it free in 3 frames, and never occupied".
+/// One sentence: "occupied, mainly by sensor forearm_3 between 4.100 and 4.600 s, 12 hits; the camera saw it
+/// free in 3 frames, and never occupied".
 [[nodiscard]] std::string conclusion_of(const Explanation& explanation);
-/// For a person: the voxel, each source's share, the newest contributions, the conclusion.
+/// Text for people: the voxel, the share of each source, the newest contributions, the conclusion.
 [[nodiscard]] std::string to_text(const Explanation& explanation);
 [[nodiscard]] nlohmann::ordered_json to_json(const Explanation& explanation);
 

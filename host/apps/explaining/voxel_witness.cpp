@@ -57,7 +57,7 @@ double VoxelWitness::sum() const {
 void VoxelWitness::take(Contribution contribution, std::span<const VoxelUpdate> updates) {
     is_newest_of_commit_ = false;
     for (const VoxelUpdate& update : updates) {
-        // As FusedMap::apply: neither of these touches a voxel.
+        // As in FusedMap::apply: a zero term and a term that is not finite leave the voxel unchanged.
         if (update.key != key_ || update.log_odds == 0.0F || !std::isfinite(update.log_odds)) continue;
         contribution.term = update.log_odds;
         contribution.before = now_.value_or(0.0F);

@@ -1,4 +1,4 @@
-// Watches one voxel while a map is made, and keeps everything that changed it.
+// The trace of one voxel while a map is made: everything that changes the voxel.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,19 +15,20 @@
 
 namespace octoskin {
 
-/// One reading or depth frame that had a term for the voxel.
+/// A reading or depth frame with a term for the voxel.
 struct Contribution {
     BeamSource source;        ///< node 0: the camera
-    std::uint64_t frame = 0;  ///< of the camera: how many frames were integrated before it
+    std::uint64_t frame = 0;  ///< for the camera: how many frames were integrated before this one
     HostTime captured;
-    std::optional<double> range_m;                            ///< of a reading with a target
-    Eigen::Vector3d p_map_sensor = Eigen::Vector3d::Zero();   ///< of a reading: where its sensor was, metres
-    Eigen::Vector3d direction_map = Eigen::Vector3d::Zero();  ///< and where it looked
-    float term = 0.0F;                                        ///< log-odds that it asked for
-    float before = 0.0F;                                      ///< the voxel's log-odds; 0 if it was unknown
-    float after = 0.0F;                                       ///< clamped
-    /// What it did. Exact: their sum is the voxel's log-odds, less that of the begin, and less what was
-    /// forgotten (`Forgotten`).
+    std::optional<double> range_m;  ///< for a reading with a target
+    Eigen::Vector3d p_map_sensor =
+        Eigen::Vector3d::Zero();  ///< for a reading: origin of the sensor, map frame, metres
+    Eigen::Vector3d direction_map = Eigen::Vector3d::Zero();  ///< for a reading: viewing direction, map frame
+    float term = 0.0F;                                        ///< log-odds term of this contribution
+    float before = 0.0F;  ///< log-odds of the voxel before it; 0 if unknown
+    float after = 0.0F;   ///< log-odds of the voxel after it, clamped
+    /// The change of the voxel. Exact: the sum of all changes is the log-odds of the voxel, less those at the
+    /// beginning, and less what expired (`Forgotten`).
     [[nodiscard]] double change() const { return static_cast<double>(after) - static_cast<double>(before); }
 };
 
@@ -35,8 +36,8 @@ struct Contribution {
 struct SourceShare {
     std::uint64_t hits = 0;    ///< terms above 0
     std::uint64_t misses = 0;  ///< terms below 0
-    double change = 0.0;       ///< log-odds, clamping included
-    double kept = 0.0;         ///< of that, since the voxel was last forgotten
+    double change = 0.0;       ///< log-odds, after clamping
+    double kept = 0.0;         ///< part of `change` since the voxel last expired
     HostTime first;
     HostTime last;
 };
@@ -44,14 +45,14 @@ struct SourceShare {
 /// The voxel expired: no sensor had confirmed it for `age.unknown_after_s`.
 struct Forgotten {
     std::uint64_t times = 0;
-    double change = 0.0;           ///< log-odds, of all times together
+    double change = 0.0;           ///< log-odds, sum over all expiries
     std::optional<HostTime> last;  ///< empty: while a saved map waited for its first measurement
-    bool is_last = false;          ///< nothing touched the voxel since
+    bool is_last = false;          ///< nothing has changed the voxel since
 };
 
 class VoxelWitness final : public CommitListener {
   public:
-    /// Of the contributions the newest `kept_max` are kept; the shares count all of them.
+    /// Keeps the newest `kept_max` contributions; the shares count all of them.
     VoxelWitness(VoxelKey key, const MapConfig& config, std::size_t kept_max)
         : key_(key), config_(config), kept_max_(kept_max) {}
 
@@ -64,18 +65,20 @@ class VoxelWitness final : public CommitListener {
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, const Evidence& terms) override;
-    /// Where range sensors count hits and misses, terms do not simply add up: there the map is asked.
+    /// In a map that counts hits and misses of range sensors, terms do not simply add up: the log-odds are
+    /// read from the map.
     void on_maps(std::span<const FedMap> maps) override {
         if (const FusedMap* const map = find_map(maps, MapFeed::both)) on_fused(*map);
     }
     void on_fused(const FusedMap& map);
 
     [[nodiscard]] VoxelKey key() const noexcept { return key_; }
-    /// The voxel's log-odds in the map that this one goes on from; empty: unknown.
+    /// The log-odds of the voxel in the map from which this one continues; empty: unknown.
     [[nodiscard]] std::optional<float> begin() const noexcept { return begin_; }
-    /// By the same arithmetic as the map's, but where that is asked; empty: unknown.
+    /// Computed with the same arithmetic as in the map, or read from the map where terms do not add up;
+    /// empty: unknown.
     [[nodiscard]] std::optional<float> log_odds() const noexcept { return now_; }
-    /// What was there at the begin and every change since, added up: the voxel's log-odds, or 0 for unknown.
+    /// The initial log-odds and every change since, added up: the log-odds of the voxel, or 0 for unknown.
     [[nodiscard]] double sum() const;
     [[nodiscard]] const std::deque<Contribution>& newest() const noexcept { return newest_; }
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
@@ -92,7 +95,7 @@ class VoxelWitness final : public CommitListener {
     std::size_t kept_max_;
     std::uint64_t depth_frames_ = 0;
     std::uint64_t count_ = 0;
-    bool is_newest_of_commit_ = false;  ///< newest_.back() is of the reading or frame that came last
+    bool is_newest_of_commit_ = false;  ///< newest_.back() belongs to the latest reading or frame
     std::deque<Contribution> newest_;
     std::map<BeamSource, SourceShare> shares_;
     Forgotten forgotten_;

@@ -18,9 +18,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kOutputMax = std::size_t{1} << 20U;
-constexpr int kFolderInChild = 3;  ///< kOpenocdFolder names it
+constexpr int kFolderInChild = 3;  ///< the number in kOpenocdFolder
 
-/// A process that is killed and waited for, at the latest, when this goes.
+/// A child process; the destructor kills it and waits for it.
 class Child {
   public:
     Child(pid_t process, int output) : process_(process), output_(output) {}
@@ -34,7 +34,7 @@ class Child {
         }
     }
 
-    /// Takes in what it says until it has closed its output. False if that lasts beyond `deadline`.
+    /// Reads its output until it closes it. False if that takes longer than `deadline`.
     [[nodiscard]] bool listen(Clock::time_point deadline, std::string& said) const {
         std::array<char, 4096> buffer{};
         while (true) {
@@ -61,7 +61,7 @@ class Child {
     int output_;
 };
 
-/// Its error, or 0 and the process.
+/// Returns the error number, or 0 and the process.
 int spawn(const OpenFolder& folder, std::vector<std::string>& arguments, int output, pid_t& process) {
     std::vector<char*> raw;
     raw.reserve(arguments.size() + 1);
@@ -73,7 +73,7 @@ int spawn(const OpenFolder& folder, std::vector<std::string>& arguments, int out
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO);
-    // Last: the output may have had its number, and is copied by then.
+    // Last: `output` may have had this number, and is duplicated before.
     posix_spawn_file_actions_adddup2(&actions, folder.descriptor(), kFolderInChild);
     const int error = posix_spawnp(&process, raw[0], &actions, nullptr, raw.data(), environ);
     posix_spawn_file_actions_destroy(&actions);

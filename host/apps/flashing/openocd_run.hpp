@@ -1,4 +1,4 @@
-// Starts OpenOCD, waits for its end, keeps what it said.
+// Starts OpenOCD, waits for its end and keeps its output.
 #pragma once
 
 #include <chrono>
@@ -12,21 +12,22 @@ namespace octoskin::flashing {
 struct OpenocdRun {
     enum class End {
         not_found,   ///< no `openocd` on the PATH
-        no_process,  ///< it is there and cannot be started; `output` says why
-        timed_out,   ///< killed
+        no_process,  ///< it exists but cannot be started; the reason is in `output`
+        timed_out,   ///< killed after its time
         exited,
     };
     End end = End::not_found;
-    int exit_code = 0;   ///< of `exited`; 128 + the signal if one ended it
+    int exit_code = 0;   ///< if `exited`; 128 + the signal's number if a signal ended it
     std::string output;  ///< standard output and standard error; the first MiB
 };
 
-/// `folder` of run_openocd(), as OpenOCD finds it: by its descriptor, whatever becomes of its name.
+/// The path of run_openocd()'s `folder` for OpenOCD: by its descriptor, so that renaming the folder has no
+/// effect.
 inline constexpr const char* kOpenocdFolder = "/proc/self/fd/3";
 
-/// `openocd ARGUMENTS...` with `folder` as kOpenocdFolder. Blocks until it ends, at most `patience`. It runs
-/// in /: OpenOCD looks for each script that another one sources beneath its working directory first, and runs
-/// what it finds there, so that must be no folder that others may have filled.
+/// Runs `openocd ARGUMENTS...` with `folder` as kOpenocdFolder. Blocks until it ends, at most `patience`.
+/// The working directory is /: OpenOCD looks for sourced scripts beneath its working directory first and runs
+/// what it finds. That must not be a folder into which other users may write.
 [[nodiscard]] OpenocdRun run_openocd(const OpenFolder& folder, std::vector<std::string> arguments,
                                      std::chrono::seconds patience);
 

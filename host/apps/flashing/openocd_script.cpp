@@ -12,8 +12,8 @@ constexpr std::uint32_t kDeviceRegister = 0xE004'2000;
 
 std::string write_options_if_they_differ() {
     const image::MaskedWord wanted = image::wanted_option_bytes();
-    // Loading them resets the chip in the middle of the command, which OpenOCD may take for an error; they
-    // are read again, and that counts.
+    // Loading the option bytes resets the chip in the middle of the command, which OpenOCD may report as an
+    // error. The option bytes are read again; only that value counts.
     return fmt::format(
         "    if {{($options & 0x{0:08X}) != 0x{1:08X}}} {{\n"
         "        stm32l4x option_write 0 0x{2:X} 0x{1:08X} 0x{0:08X}\n"
@@ -36,9 +36,9 @@ std::string openocd_script(const ScriptPlan& plan) {
         "tcl_port disabled\n"
         "telnet_port disabled\n",
         kScriptFile, kHexFile, plan.openocd_board);
-    // The node sleeps (WFI) nearly all the time, and does not keep its debug port clocked meanwhile
-    // (DBGMCU_CR.DBG_SLEEP would cost the power that sleeping saves): it is met under reset instead, which
-    // also meets one whose image is broken. OpenOCD sets the bit itself once it is in.
+    // The node sleeps (WFI) nearly all the time, and its debug port has no clock meanwhile
+    // (DBGMCU_CR.DBG_SLEEP would cost the power that sleeping saves). Therefore OpenOCD connects under reset,
+    // which also works with a broken image. OpenOCD sets the bit itself after connecting.
     text += "reset_config srst_only srst_nogate connect_assert_srst\n";
     if (!plan.adapter_serial.empty()) text += fmt::format("adapter serial {}\n", plan.adapter_serial);
     text += fmt::format(

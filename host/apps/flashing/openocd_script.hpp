@@ -1,5 +1,5 @@
-// The script that OpenOCD runs to program one board. It only does and tells; what it told is judged by
-// `openocd_verdict`.
+// The script with which OpenOCD programs one board. It executes steps and prints markers; `openocd_verdict`
+// evaluates the output.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace octoskin::flashing {
 
-/// Beside the script, which finds it by its own place.
+/// In the folder of the script, which finds it relative to itself.
 inline constexpr const char* kHexFile = "flash.hex";
 inline constexpr const char* kScriptFile = "flash.cfg";
 
-/// Words that begin the script's own lines in OpenOCD's output; a value follows the first two.
+/// Prefixes of the script's own lines in OpenOCD's output. A value follows the first two.
 inline constexpr const char* kSaysDevice = "octoskin: device ";
 inline constexpr const char* kSaysOptions = "octoskin: options ";
 inline constexpr const char* kSaysProgrammed = "octoskin: programmed";
@@ -19,15 +19,15 @@ inline constexpr const char* kSaysVerified = "octoskin: verified";
 inline constexpr const char* kSaysStarted = "octoskin: started";
 
 struct ScriptPlan {
-    std::string openocd_board;    ///< a script that OpenOCD ships
-    std::uint32_t device_id = 0;  ///< nothing is touched on any other chip
-    std::string adapter_serial;   ///< letters and digits; empty: whichever ST-LINK there is
+    std::string openocd_board;    ///< a script that comes with OpenOCD
+    std::uint32_t device_id = 0;  ///< any other chip is left untouched
+    std::string adapter_serial;   ///< letters and digits; empty: any ST-LINK
     bool writes_option_bytes = false;
 };
 
-/// Run by `openocd -f FOLDER/flash.cfg`, in whatever working directory; the hex file lies beside it. With `-c
-/// "set octoskin_dry_run 1"` before, it connects to nothing and lists the flash banks: then OpenOCD has read
-/// all of it.
+/// To be run with `openocd -f FOLDER/flash.cfg` in any working directory; the hex file is in the same folder.
+/// With `-c "set octoskin_dry_run 1"` before it, OpenOCD connects to nothing and lists the flash banks, which
+/// shows that it could read the whole script.
 [[nodiscard]] std::string openocd_script(const ScriptPlan& plan);
 
 }  // namespace octoskin::flashing

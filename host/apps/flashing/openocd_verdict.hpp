@@ -1,4 +1,4 @@
-// From what OpenOCD said to one sentence: programmed, or what was in the way and what to do.
+// Turns OpenOCD's output into a result: programmed, or an error with its cause and remedy.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace octoskin::flashing {
 
-/// The image is in flash, verified, and was started.
+/// The image is in flash, verified and started.
 struct Programmed {
     std::uint32_t flash_optr = 0;  ///< option bytes as last read
 };
@@ -21,11 +21,11 @@ struct Expected {
     std::string adapter_serial;  ///< empty: any
 };
 
-/// After a run of the whole script. Codes: `unavailable` if OpenOCD, the adapter or the chip is missing,
-/// `no_permission`, `io_failed` if programming, verifying or starting failed.
+/// Evaluates a run of the whole script. Errors: `unavailable` if OpenOCD, the adapter or the chip is missing;
+/// `no_permission`; `io_failed` if programming, verifying or starting failed.
 [[nodiscard]] Result<Programmed, AppError> judge(const OpenocdRun& run, const Expected& expected);
 
-/// After a dry run: nothing if OpenOCD has read the script.
+/// Evaluates a dry run: no error if OpenOCD has read the script.
 [[nodiscard]] std::optional<AppError> judge_dry_run(const OpenocdRun& run);
 
 }  // namespace octoskin::flashing

@@ -1,4 +1,4 @@
-// What was flashed to which board, for whoever asks later.
+// The record of what was flashed to which board.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace octoskin::flashing {
 
 inline constexpr const char* kRecordFile = "record.yaml";
 
-/// As YAML. `programmed`: empty if nothing was.
+/// The record as YAML. `programmed` is empty if the board was not programmed.
 [[nodiscard]] std::string record(const Order& order, const Prepared& prepared,
                                  const std::optional<Programmed>& programmed);
 

@@ -1,4 +1,4 @@
-// What something is called, and what it means, in a sentence for whoever stands before the screen.
+// A name and its meaning, as a sentence for the person at the screen.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ struct Meaning {
     std::string_view text;
 };
 
-/// The text of `name` in `group`; empty if it is not there. O(meanings).
+/// The text of `name` in `group`; empty if there is none. O(meanings).
 [[nodiscard]] constexpr std::string_view find_meaning(std::span<const Meaning> meanings,
                                                       std::string_view group,
                                                       std::string_view name) noexcept {

@@ -1,4 +1,4 @@
-// What `octoskin monitor` shows: two answers of the daemon, some time apart, as lines of text.
+// The screen of `octoskin monitor`: two answers of the daemon, some time apart, as lines of text.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct ScreenLine {
     Emphasis emphasis = Emphasis::none;
 };
 
-/// `before` and `now`: status objects (docs/daemon.md), the first `passed` earlier: rates are what grew
+/// `before` and `now`: status objects (docs/status.md), the first `passed` earlier: rates are what grew
 /// between them. Problems come first, then a line for each input and the map, so that they are seen on the
 /// smallest terminal; sensors and counters follow. A status of another version may lack keys: what is not
 /// there is not shown.
@@ -28,14 +28,14 @@ struct ScreenLine {
                                                 const nlohmann::ordered_json& now,
                                                 std::chrono::duration<double> passed);
 
-/// Lines that are longer than so many columns go on in the next ones, indented, broken between words.
+/// Lines longer than `columns` continue in the next line, indented, broken between words.
 [[nodiscard]] std::vector<ScreenLine> wrapped(const std::vector<ScreenLine>& lines, std::size_t columns);
 
-/// How many of so many lines fit: where they do not all, the last row says so.
+/// How many of `lines` fit: if not all do, the last row of the terminal states it.
 [[nodiscard]] std::size_t rows_for(std::size_t lines, ScreenSize size) noexcept;
 
-/// Cut to the terminal, from line `first` on (of 0, with which those that fit are shown): what does not fit
-/// is said in the last row. With colours as ANSI sequences, if wanted.
+/// Cut to the terminal, from line `first` on (0-based; the lines that fit are shown). If lines are left over,
+/// the last row states which are shown. With colours as ANSI sequences, if wanted.
 [[nodiscard]] std::string to_terminal(const std::vector<ScreenLine>& lines, ScreenSize size, bool has_colours,
                                       std::size_t first = 0);
 

@@ -38,7 +38,7 @@ std::size_t last_first(std::size_t lines, std::size_t rows) {
 }
 
 std::size_t moved(std::size_t first, Move move, std::size_t lines, std::size_t rows) {
-    const std::size_t page = std::max<std::size_t>(rows, 2) - 1;  // a line of the page before stays in sight
+    const std::size_t page = std::max<std::size_t>(rows, 2) - 1;  // a line of the page before stays visible
     switch (move) {
         case Move::line_down:
             return first + 1;

@@ -1,4 +1,4 @@
-// Which lines of more than a terminal holds `octoskin monitor` shows: its keys.
+// The keys of `octoskin monitor`, and which lines it shows if the terminal has too few rows.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,9 @@ namespace octoskin {
 
 class Scroll {
   public:
-    /// What was typed, as a terminal sends it: arrows or j and k by a line, Page keys or space and b by a
-    /// page, Home or g to the top, End or G to the bottom; q ends. Anything else is nothing. `lines` of text,
-    /// `rows` of which are shown at once.
+    /// Handles typed bytes as a terminal sends them: arrows or j and k by a line, Page keys or space and b by
+    /// a page, Home or g to the top, End or G to the bottom; q ends. Other bytes are ignored. Of `lines`
+    /// lines of text, `rows` are shown at once.
     void type(std::string_view keys, std::size_t lines, std::size_t rows);
 
     /// The first line that is shown; within `lines`, which may have become fewer.

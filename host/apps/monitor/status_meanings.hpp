@@ -1,4 +1,4 @@
-// What a key of `octoskin status --json` means.
+// The meaning of each key of `octoskin status --json`.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace octoskin {
 
-/// Of every key; a group is the path of the object that has it ("nodes.sensors": of each sensor of each
-/// node), empty at the top. docs/status.md has the same tables.
+/// All keys. The group is the path of the object with the key ("nodes.sensors": each sensor of each node),
+/// empty at the top level. docs/status.md has the same tables.
 [[nodiscard]] std::span<const Meaning> status_meanings() noexcept;
 
 }  // namespace octoskin

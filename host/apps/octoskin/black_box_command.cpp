@@ -1,4 +1,4 @@
-// octoskin black-box: what a node's I2C bus went through before a fault, out of a candump log.
+// octoskin black-box: the I2C transfers of a node before a fault, from a candump log.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 

@@ -53,10 +53,11 @@ void hold_daemon_signals() {
     pthread_sigmask(SIG_BLOCK, &obeyed, nullptr);
     for (const int signal :
          {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT, SIGPIPE, SIGTRAP,
-          SIGSYS})  // of these two only what is sent: a fault of that kind ends it
+          SIGSYS})  // of the last two only signals that are sent: a fault of that kind ends the process
         ignore(signal);
     for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) ignore(signal);
-    const sigset_t ours = set_of({socketcan::ShortWaits::signal()});  // another's would end calls early
+    const sigset_t ours =
+        set_of({socketcan::ShortWaits::signal()});  // one of another process would end calls early
     pthread_sigmask(SIG_BLOCK, &ours, nullptr);
 }
 
@@ -88,7 +89,7 @@ void StartGuard::work() const {
     while (::poll(watched.data(), watched.size(), -1) < 0) {  // interrupted
     }
     if (watched[1].revents != 0) return;
-    // It stays where it is, for the loop, which takes it when it begins.
+    // The signal stays pending for the loop, which takes it when it starts.
     if (is_readable(has_begun_.descriptor(), kPatienceMs)) return;
     signalfd_siginfo came{};
     if (::read(signals_, &came, sizeof(came)) != sizeof(came)) return;

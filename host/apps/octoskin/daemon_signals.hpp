@@ -1,4 +1,4 @@
-// The signals of a daemon while it begins: none may end it half-way, and none is lost.
+// The signals of a daemon during its start: none may end it in between, and none is lost.
 #pragma once
 
 #include <memory>
@@ -9,21 +9,22 @@
 
 namespace octoskin::app {
 
-/// To be called first of all. From now on the signals that a daemon obeys wait for its loop, and those that
-/// mean nothing to it are ignored; one that another part has taken already, as a profiler, is left alone.
+/// Call this first. From now on the signals that a daemon obeys wait for its loop, and those without meaning
+/// for it are ignored. One that another part handles already, such as a profiler, is left alone.
 void hold_daemon_signals();
 
-/// Where the limit of the processor time (ulimit -t) is one that kills, it comes some seconds earlier as
-/// SIGXCPU, so that the map can be saved.
+/// If the processor time limit (ulimit -t) would kill the process, SIGXCPU arrives some seconds earlier, so
+/// that the map can be saved.
 void keep_processor_time_for_the_end();
 
-/// While the daemon begins: SIGTERM, SIGINT and SIGQUIT wait for its loop, but if that has not begun within
-/// kPatience, as on a file system that does not answer, they end the process: 128 and the signal's number.
+/// During the start SIGTERM, SIGINT and SIGQUIT wait for the daemon's loop. If that has not started within
+/// kPatience, as on a file system that does not answer, they end the process with exit code 128 plus the
+/// signal's number.
 class StartGuard {
   public:
     static constexpr int kPatienceMs = 5000;
 
-    /// Throws std::system_error if there is no thread, or no descriptor, to be had.
+    /// Throws std::system_error if there is no thread or descriptor left.
     explicit StartGuard(std::shared_ptr<const LogQueue> log);
     ~StartGuard();
     StartGuard(const StartGuard&) = delete;

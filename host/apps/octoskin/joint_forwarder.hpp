@@ -1,4 +1,4 @@
-// Lines of joint states on their way from standard input to wherever they go.
+// Forwards lines of joint states from standard input.
 #pragma once
 
 #include <cstdint>
@@ -16,49 +16,47 @@
 
 namespace octoskin::app {
 
-/// Where a line's sample goes.
+/// The target of the samples.
 class JointOutput {
   public:
     virtual ~JointOutput() = default;
-    /// `sample`: the line's; empty where no rig tells of how many joints it must be. False if it could not be
-    /// sent now; it will not be sent later.
+    /// `sample`: of the line; empty without a rig, because the number of joints is then not known. False if
+    /// it could not be sent now; it is not sent later.
     [[nodiscard]] virtual bool put(const std::string& line, const std::optional<JointSample>& sample) = 0;
-    /// Whatever else the way there asks for; called often.
+    /// Handles other requests of the target; called often.
     virtual void attend() = 0;
-    /// -1, or what is worth a call of `attend` when it is readable.
+    /// -1, or a descriptor for which `attend` is called when it is readable.
     [[nodiscard]] virtual int descriptor() const = 0;
-    /// Why nothing can be sent, for a person; empty while it can.
+    /// Why nothing can be sent, for a person; empty while sending works.
     [[nodiscard]] virtual std::string why() const = 0;
 };
 
-/// What a line must keep to. The daemon drops what is beyond it, and the sender of the lines does not see
-/// that.
+/// The limits of a line. The daemon drops samples beyond them, and the sender of the lines would not notice.
 struct RigJoints {
     std::vector<std::string> names;
     std::vector<JointLimits> limits;
 
-    /// Of a sample that the daemon would not take, why; empty: it is within the limits.
+    /// Why the daemon would not accept the sample; empty: it is within the limits.
     [[nodiscard]] std::string fault_of(std::span<const double> position) const;
 };
 
-/// What is said of the lines: once for each reason why they are lost or refused, once when they go through
+/// Log messages about the lines: once for each reason of a loss or refusal, and once when lines are sent
 /// again.
 class JointForwarder {
   public:
-    /// `joints`: of the rig, if there is one to check lines against. `burst`: of lines without a time that
-    /// were held up in one block the newest alone goes out; empty: that is for the other end to find. It
-    /// needs `joints`.
+    /// `joints`: of the rig, if there is one to check lines against. `burst`: of the lines without a time
+    /// that came in one block, only the newest is sent; empty: the other end detects that. It needs `joints`.
     JointForwarder(JointOutput& output, std::optional<RigJoints> joints, std::optional<JointBurst> burst);
 
-    /// Of the lines that came now, which are dated alike.
+    /// Starts a block: its lines get the same time.
     void begin_block();
     /// A line of the block. With a `burst` it waits for `send_due`.
     void put(const std::string& line);
-    /// What waits, but for what may have a newer one behind it yet. For after each block, and soon again.
+    /// Sends the waiting lines, except those that a newer one may still replace. Call it after each block,
+    /// and soon again.
     void send_due();
     [[nodiscard]] bool is_waiting() const noexcept { return !waiting_.empty(); }
-    /// Sends what waits, and says what became of the lines. Throws CommandFailure if not a single one went
-    /// through.
+    /// Sends the waiting lines, and logs the counts. Throws CommandFailure if not a single line was sent.
     void finish();
 
   private:
@@ -72,16 +70,16 @@ class JointForwarder {
     JointOutput& output_;
     std::optional<RigJoints> joints_;
     std::optional<JointBurst> burst_;
-    HostTime now_;                     ///< when the block came
+    HostTime now_;                     ///< arrival of the block
     WallTime came_;                    ///< the same
     std::deque<JointSample> waiting_;  ///< for the end of a burst
-    std::uint64_t left_out_ = 0;       ///< of the burst: they fare as its newest does
+    std::uint64_t left_out_ = 0;       ///< of the burst: they count like its newest line
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t refused_ = 0;
-    std::set<std::string> losses_told_;    ///< each reason once since the last line that went through
+    std::set<std::string> losses_told_;    ///< each reason once since the last line that was sent
     std::set<std::string> refusals_told_;  ///< likewise
-    std::string why_;                      ///< of the newest line that did not go through
+    std::string why_;                      ///< of the newest line that was not sent
 };
 
 }  // namespace octoskin::app

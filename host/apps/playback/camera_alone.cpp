@@ -85,7 +85,7 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const r
     HostRig host;
     host.name = rig.name;
     host.camera = host_camera(*rig.camera);
-    // A pipeline has a robot of at least one joint. Nobody moves this one, and nothing asks where it is.
+    // A pipeline requires a robot with at least one joint. This joint never moves and is never used.
     const JointDescription joint{.name = "no_joint",
                                  .parent_link = rig.base_link,
                                  .child_link = "no_link",
@@ -106,7 +106,7 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const r
 
 Result<Playback, AppError> play_camera(PlaybackRequest request, rig::Rig rig, std::uint32_t crc32,
                                        DepthSource& images, const ReplayReport& report) {
-    request.mapping.removes_robot_from_depth = false;  // there is none
+    request.mapping.removes_robot_from_depth = false;  // there is no robot to remove
     auto pipeline = make_pipeline(request, rig);
     if (!pipeline) return unexpected(pipeline.error());
     MapOrigin origin = origin_of(request, rig, crc32);

@@ -1,4 +1,4 @@
-// What a camera without a bus and a robot is played with: a data set, or an .oni file that stands alone.
+// Playback of a camera without bus and robot: a data set, or an .oni file on its own.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,19 @@ namespace octoskin {
 
 /// Depth from 0.5 to 4.5 m, 30 images a second.
 [[nodiscard]] rig::Camera camera_with(const CameraIntrinsics& intrinsics);
-/// One of tum::kDataSetCameras; usage, if there is none of this name.
+/// One of tum::kDataSetCameras. Error: `usage` if there is no camera with this name.
 [[nodiscard]] Result<rig::Camera, AppError> named_camera(std::string_view name);
 
-/// The rig that is given; empty if none is. bad_config, if it has no camera that `seen` could be seen by.
+/// The rig of the request; empty if the request has none. Error: bad_config if the rig has no camera that
+/// fits `seen`.
 [[nodiscard]] Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest& request,
                                                                         const std::string& seen);
 
-/// A camera, and nothing else.
+/// A rig that contains only this camera.
 [[nodiscard]] rig::Rig rig_of_camera(const rig::Camera& camera, const std::string& name);
-/// Plays `images` to their end into maps in the frame that the camera's pose is in; no robot is taken out of
-/// them. `rig`: of the camera alone. `crc32`: of what the images are read from. The accounts are those of the
-/// pipeline that have something in them.
+/// Plays all `images` into maps, in the frame of the camera's poses; no robot is removed from the images.
+/// `rig`: contains only the camera. `crc32`: of the image source. The result has those counter tables of the
+/// pipeline that are not empty.
 [[nodiscard]] Result<Playback, AppError> play_camera(PlaybackRequest request, rig::Rig rig,
                                                      std::uint32_t crc32, DepthSource& images,
                                                      const ReplayReport& report);

@@ -1,5 +1,5 @@
-// A data set in the TUM RGB-D layout, in place of a recording: depth images of a camera that moved, no bus,
-// no robot.
+// A data set in the TUM RGB-D layout in place of a recording: depth images of a moving camera, without bus
+// and robot.
 #pragma once
 
 #include "common/result.hpp"
@@ -10,12 +10,12 @@ namespace octoskin {
 /// Whether the directory has a depth.txt and no can.log.
 [[nodiscard]] bool is_data_set(const RecordingPaths& recording);
 
-/// That the request asks for nothing that a data set does not have: a robot, both a rig and a camera.
+/// Checks that the request has no options that a data set cannot meet: a robot, or both a rig and a camera.
 [[nodiscard]] Status<AppError> check_data_set(const PlaybackRequest& request);
 
-/// Plays the images in the order of their times and at the pace asked for, each from where the camera was,
-/// into the maps of a pipeline. Of the rig, if one is given, it takes `camera`, but for its pose: the map's
-/// frame is that of the data set.
+/// Plays the images in the order of their times, at the requested pace, each from its camera pose, into the
+/// maps of a pipeline. From a given rig it uses `camera` without its pose: the map's frame is that of the
+/// data set.
 [[nodiscard]] Result<Playback, AppError> play_data_set(const PlaybackRequest& request,
                                                        const ReplayReport& report);
 

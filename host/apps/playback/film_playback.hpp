@@ -1,5 +1,5 @@
-// An .oni file that stands alone, as NiViewer records it: the depth of a camera that did not move, no bus, no
-// robot's joints.
+// An .oni file on its own, as NiViewer records it: depth of a stationary camera, without bus and joint
+// states.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace octoskin {
 
-/// The file that was named, if its name ends with .oni; or the only such file of a folder that is no
-/// recording (no can.log, meta.yaml or order.log) and no data set. Empty: there is none, or more than one.
+/// The named file, if its name ends with .oni. For a folder that is neither a recording (no can.log,
+/// meta.yaml or order.log) nor a data set: its only .oni file. Empty if there is none, or more than one.
 [[nodiscard]] std::optional<FilePlace> lone_film(const RecordingPaths& recording);
 
-/// That the request says where the camera was (`T_map_camera`, or a rig), and asks for nothing that a film
-/// does not have.
+/// Checks that the request contains the camera's pose (`T_map_camera`, or a rig), and no options that such a
+/// file cannot meet.
 [[nodiscard]] Status<AppError> check_film(const PlaybackRequest& request);
 
-/// Plays the images in their order and at the pace asked for. The camera is that of the rig, if one is
-/// given, else the named one. It was at `T_map_camera`, else where the rig has it.
+/// Plays the images in order, at the requested pace. The camera is the rig's if a rig is given, else the
+/// named one. Its pose is `T_map_camera`, else the rig's.
 [[nodiscard]] Result<Playback, AppError> play_film(const PlaybackRequest& request,
                                                    const ReplayReport& report);
 

@@ -1,5 +1,5 @@
-// What has to be known of a log before it is replayed: the interface that the rig is on, how coarse its
-// stamps are, and whether the map begins at a START.
+// Facts about a log that are needed before its replay: the interface of the rig, the resolution of its time
+// stamps, and whether the map begins at a START.
 #pragma once
 
 #include <cstddef>
@@ -17,33 +17,34 @@ namespace octoskin {
 
 class LogSurvey {
   public:
-    /// `intake`: how a frame will be taken in, as far as it is known.
+    /// `intake`: how frames will be decoded, as far as it is known.
     explicit LogSurvey(const HostRig& rig, const IntakeConfig& intake = {})
         : rig_(rig), intake_(intake), all_(rig, intake) {}
 
-    /// Entries in the order of the log.
+    /// Must be called in the order of the log.
     void take(const candump::LogEntry& entry);
-    /// Nothing that may follow would change the answers.
+    /// True if no further entry can change the results.
     [[nodiscard]] bool is_complete() const {
         return interface_ && chosen().scan.has_start() && chosen().stamps.has_enough();
     }
 
-    /// The interface that the rig is on: the first that carries a heartbeat of one of its nodes. A log may
-    /// hold several, and the same bus twice. Empty if none does: then every frame is looked at, and counted
-    /// for what it is.
+    /// The interface of the rig: the first one with a heartbeat of one of its nodes. A log may contain
+    /// several interfaces, and the same bus twice. Empty if there is none: then every frame is examined and
+    /// counted.
     [[nodiscard]] std::string interface() const { return interface_.value_or(""); }
     [[nodiscard]] MapBegin begin() const {
         return chosen().scan.has_start() ? MapBegin::start_mark : MapBegin::first_usable;
     }
-    /// Of that interface.
+    /// The resolution of the time stamps of that interface.
     [[nodiscard]] Nanoseconds stamp_grain() const { return chosen().stamps.grain(); }
-    /// How frames with such stamps are taken in: "now" may be off by their grain, as far as that can be.
+    /// The intake for these time stamps: the present time may be wrong by their resolution.
     [[nodiscard]] IntakeConfig intake_for_stamps() const;
-    /// For a person, if the log has a START and the map will not take it.
+    /// Text for people, if the log has a START that the map will not use.
     [[nodiscard]] std::optional<std::string> warning() const;
 
   private:
-    /// A damaged log may name any number of interfaces; those beyond are followed from their first heartbeat.
+    /// A damaged log may contain any number of interface names. Interfaces beyond this number are followed
+    /// from their first heartbeat.
     static constexpr std::size_t kInterfacesMax = 16;
 
     struct Followed {
@@ -60,7 +61,7 @@ class LogSurvey {
 
     const HostRig& rig_;
     IntakeConfig intake_;
-    Followed all_;  ///< every interface; until one is chosen
+    Followed all_;  ///< all interfaces together, until one is chosen
     std::map<std::string, Followed> followed_;
     std::optional<std::string> interface_;
 };

@@ -12,14 +12,14 @@
 namespace octoskin {
 namespace {
 
-/// What the account alone does not say.
+/// Details that the counters do not contain.
 std::string detail(const Loss& loss, const Playback& playback) {
     if (loss.reason != "joints_missing") return {};
     const auto& gap = playback.pipeline.builder().newest_joint_gap();
     return gap ? " " + gap_text(*gap) : std::string();
 }
 
-/// The node that sends the joint states works only as far as they are used.
+/// The node of the joint states is reported as working only as far as its joint states are used.
 void note_joint_loss(const Loss& loss, Playback& playback) {
     if (loss.unit != "joint samples" || !loss.is_mendable) return;
     for (NodeSummary& node : playback.nodes) {
@@ -27,7 +27,7 @@ void note_joint_loss(const Loss& loss, Playback& playback) {
     }
 }
 
-/// What the others follow from comes first: without joint states no reading has a pose.
+/// Causes come before their consequences: without joint states no reading has a pose.
 int rank_of(const Loss& loss) {
     constexpr std::array<std::string_view, 6> kUnits{"log lines", "CAN frames",   "joint samples",
                                                      "readings",  "depth images", "depth frames"};
@@ -45,7 +45,7 @@ void find_losses(Playback& playback) {
         if (!loss && is_empty && table.used == 0) loss = most_frequent(table);
         if (!loss) continue;
         auto& said = loss->is_mendable || is_empty ? playback.warnings : playback.notes;
-        if (loss->reason != "wrong_size")  // which size is among the warnings already
+        if (loss->reason != "wrong_size")  // the warnings already contain the size
             said.push_back(describe(*loss) + detail(*loss, playback));
         note_joint_loss(*loss, playback);
         playback.losses.push_back(std::move(*loss));

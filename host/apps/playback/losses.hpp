@@ -1,12 +1,13 @@
-// Of a replay: what most of its input was rejected for.
+// The main reasons for which a replay rejected input.
 #pragma once
 
 #include "host/apps/playback/playback.hpp"
 
 namespace octoskin {
 
-/// Fills `losses` by the accounts, and says each: a mendable one, and why nothing came into a map, among the
-/// warnings, the others among the notes. Also which joint is beyond its limits, and how slow the poses are.
+/// Fills `losses` from the input counters and adds a text for each: those that the user can correct, and the
+/// reason for an empty map, to the warnings; the others to the notes. Also reports joints beyond their limits
+/// and slow poses.
 void find_losses(Playback& playback);
 
 }  // namespace octoskin

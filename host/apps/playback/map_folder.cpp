@@ -7,7 +7,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Maps that were there before and are none of the new ones.
+/// Maps of earlier runs that are not among the new ones.
 struct OtherMaps {
     SavedMaps told;
     std::vector<fs::path> retired;
@@ -19,7 +19,7 @@ OtherMaps look_at_others(const OpenFolder& folder, const MapOrigin& origin) {
     for (const std::string& name : map_file_names()) {
         const FilePlace map(folder, name);
         if (origin.maps.contains(name) || !map.is_there()) continue;
-        // Only what is, byte for byte, what a replay left here.
+        // Only a map that is byte for byte the one of an earlier replay.
         const bool is_ours =
             former && *former && (*former)->maps.contains(name) && !fault_of_map(map, **former);
         (is_ours ? others.told.removed : others.told.foreign).push_back(name);

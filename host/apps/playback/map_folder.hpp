@@ -1,5 +1,5 @@
-// The maps of one playback in a folder, with what they were made from: all of them, or those that were there
-// before.
+// The maps of one playback in a folder, with their provenance. A save replaces all of them or, on an error,
+// none.
 #pragma once
 
 #include <filesystem>
@@ -17,30 +17,30 @@ namespace octoskin {
 
 using NamedMaps = std::vector<std::pair<std::string, const FusedMap*>>;
 
-/// depth, proximity and fused, as far as they were asked for; no depth without depth frames, no
-/// proximity of a rig without sensor boards. They belong to
-/// the playback.
+/// The requested ones of depth, proximity and fused. No depth map without depth frames, no proximity map for
+/// a rig without sensor boards. The maps belong to the playback.
 [[nodiscard]] NamedMaps named_maps(const Playback& playback);
 
-/// What a person should know of a folder after a save.
+/// What to report about the folder after a save.
 struct SavedMaps {
-    std::vector<std::string> removed;  ///< maps of the playback before, which this one has none of
+    std::vector<std::string> removed;  ///< maps of the previous playback that this one does not have
     std::vector<std::string>
-        foreign;  ///< maps beside that no octoskin put there, as far as is known: left alone
+        foreign;  ///< maps that octoskin, as far as is known, did not write: left unchanged
 };
 
-/// That nothing lies in the place of a map, or of maps.yaml, that save() could not replace.
+/// Checks that save() can replace whatever exists under the names of the maps and of maps.yaml.
 [[nodiscard]] Status<AppError> check_map_places(const OpenFolder& folder);
 
-/// A folder that is ours from the moment it is opened, so that a second octoskin is refused before its work.
+/// A folder that is locked from the moment it is opened, so that a second octoskin is refused before it
+/// starts work.
 class MapFolder {
   public:
-    /// Makes the folder if it is not there, and locks it: see FileSet::begin(). Refuses what
-    /// check_map_places() does.
+    /// Creates the folder if it does not exist, and locks it: see FileSet::begin(). Errors: those of
+    /// check_map_places().
     [[nodiscard]] static Result<MapFolder, AppError> open(const FilePlace& folder);
 
-    /// Writes each map as .ot, .bt and .ply, and maps.yaml; once. On an error those before are as they were.
-    /// `origin`: what the maps were made from; their checksums are filled in.
+    /// Writes each map as .ot, .bt and .ply, and maps.yaml. May be called once. On an error the previous maps
+    /// are unchanged. `origin`: provenance of the maps; save() fills in the maps' checksums.
     [[nodiscard]] Result<SavedMaps, AppError> save(const NamedMaps& maps, MapOrigin origin);
 
     [[nodiscard]] const OpenFolder& folder() const noexcept { return files_.folder(); }

@@ -1,4 +1,4 @@
-// How fast a recording is played: as fast as it goes, at so many times its own speed, or one thing at a time.
+// The speed of a playback: as fast as possible, at a multiple of real time, or one item at a time.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +15,20 @@ namespace octoskin {
 
 class Pace {
   public:
-    /// Called before each thing with what it is; returns when it may happen.
+    /// Called before each item with its description; returns when the item may be played.
     using Step = std::function<void(const std::string& what)>;
 
-    /// As fast as it goes.
+    /// As fast as possible.
     Pace() = default;
-    /// 1: real time; 10: ten times as fast. Positive and finite (asserted).
+    /// 1: real time; 10: ten times as fast. Must be positive and finite (asserted).
     [[nodiscard]] static Pace times(double speed);
     [[nodiscard]] static Pace by_step(Step step);
 
-    /// Whether `wait` ever waits: what it is need not be told else.
+    /// Whether `wait` ever waits; if not, it needs no description.
     [[nodiscard]] bool waits() const noexcept { return speed_.has_value() || step_; }
     [[nodiscard]] bool steps() const noexcept { return static_cast<bool>(step_); }
-    /// Until something of this time may happen: as long after the first one as it was then, divided by the
-    /// speed. A time that goes back, or leaps by more than a minute, begins anew.
+    /// Waits until an item of this time is due: its distance from the first item, divided by the speed. A
+    /// time that goes back, or jumps by more than a minute, restarts the time base.
     void wait(std::int64_t time_ns, const std::string& what = {});
 
   private:
@@ -36,11 +36,11 @@ class Pace {
     Step step_;
     std::int64_t first_ns_ = 0;         ///< of the recording
     std::int64_t newest_ns_ = 0;        ///< of the recording
-    std::int64_t began_steady_ns_ = 0;  ///< when the first one happened
+    std::int64_t began_steady_ns_ = 0;  ///< wall time of the first item
     bool has_begun_ = false;
 };
 
-/// Frames of a log, each at its time.
+/// The frames of a log, each at its time.
 class PacedCan final : public CanSource {
   public:
     PacedCan(candump::LogSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
@@ -51,7 +51,7 @@ class PacedCan final : public CanSource {
     Pace pace_;
 };
 
-/// Depth frames where nothing else tells the time, each at its own.
+/// Depth frames without another time source, each at its own time.
 class PacedDepth final : public DepthSource {
   public:
     PacedDepth(DepthSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
@@ -63,8 +63,9 @@ class PacedDepth final : public DepthSource {
     std::uint64_t frames_ = 0;
 };
 
-/// Commits of a daemon, each at its time. Joint samples of before `begin` (that of the recording; empty: its
-/// first reading or depth frame) come at once: a recording starts with those that the daemon still had.
+/// The commits of a daemon, each at its time. Joint samples before `begin` (of the recording; empty: its
+/// first reading or depth frame) come without delay: a recording starts with the samples that the daemon
+/// still held.
 class PacedCommits final : public CommitSource {
   public:
     PacedCommits(CommitSource& source, Pace pace, std::optional<HostTime> begin)

@@ -1,4 +1,4 @@
-// Joint configurations as text: on the command line, in a file of a path, in a datagram.
+// Joint configurations as text: on the command line, in a path file, in a datagram.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +12,25 @@
 
 namespace octoskin {
 
-/// Plain decimal numbers, between each two of them blanks, or one comma and blanks. The error is the field
-/// that is no finite number: empty where there is none between two commas, before the first or after the
-/// last. Any bytes are safe; nothing but blanks has no number.
+/// Plain decimal numbers, separated by blanks, or by one comma with optional blanks. The error is the field
+/// that is not a finite number; it is empty where a number is missing between two commas, before the first or
+/// after the last. Any bytes are safe as input. A text of blanks gives no numbers.
 [[nodiscard]] Result<std::vector<double>, std::string> read_numbers(std::string_view text);
 
-/// What is wrong with the field that read_numbers() gives back and what is expected, for a person.
+/// Text for people: the fault of the field from read_numbers(), and the expected form.
 [[nodiscard]] std::string describe_field(std::string_view field);
 
 struct JointPath {
     std::vector<std::vector<double>> configurations;
-    std::vector<std::size_t> lines;  ///< of each, from 1 on
+    std::vector<std::size_t> lines;  ///< line number of each configuration, from 1
 };
 
-/// What a file of a path may have, all comments counted: some 1 kB for each of kConfigurationsMax.
+/// Size limit of a path file, comments included: about 1 kB for each of kConfigurationsMax.
 inline constexpr std::size_t kPathBytesMax = 1 << 20;
 
-/// A configuration a line; empty lines and those that begin with # are none. Reads a block
-/// more than kPathBytesMax at the most. Errors name `name`, the line and what it has: bad_data; io_failed if
-/// `stream` cannot be read.
+/// One configuration a line; empty lines and lines that begin with # are skipped. Reads at most one block
+/// more than kPathBytesMax. Errors contain `name`, the line and its content: bad_data; io_failed if `stream`
+/// cannot be read.
 [[nodiscard]] Result<JointPath, AppError> read_joint_path(std::istream& stream, const std::string& name);
 
 }  // namespace octoskin

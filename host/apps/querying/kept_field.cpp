@@ -6,14 +6,14 @@
 namespace octoskin {
 namespace {
 
-/// What a brick that the map wrote costs the field, and what a posture costs less with it: measured at 0.04
-/// and 0.02 m. Neither need be exact: they say when a field is made, not what is answered.
+/// Time per changed brick to update the field, and time saved per posture: measured at 0.04 and 0.02 m.
+/// Approximate values suffice: they decide when a field is made, not what is answered.
 constexpr std::size_t kBrick_us = 5;
 constexpr std::size_t kPosture_us = 100;
 
-/// Beyond the surfaces of capsules, for what the field loses by its voxels: see axis_reach_m().
+/// Margin beyond the capsules' surfaces for the field's loss by its voxels: see axis_reach_m().
 constexpr double kVoxelsLost = 2.25;
-/// The next path is seldom in quite the same space.
+/// The next path seldom covers exactly the same space.
 constexpr double kWider_m = 0.1;
 
 FieldExtent extent_of(const MapConfig& map, const AskedSpace& asked) {
@@ -47,7 +47,7 @@ const DistanceField* KeptField::of(const FusedMap& map, const AskedSpace& asked)
         }
         (void)field_->update(map);
         return &*field_;
-    } catch (const std::bad_alloc&) {  // it is searched for
+    } catch (const std::bad_alloc&) {  // answered by search instead
         drop();
         return nullptr;
     }
@@ -58,7 +58,7 @@ bool KeptField::tells(const MapConfig& map, const AskedSpace& asked) const {
     return extent_.region.contains(asked.axes) && extent_of(map, asked).reach_m <= extent_.reach_m;
 }
 
-/// Where it was asked before, too, so that who asks here and there has one field for both.
+/// The extent includes that of the previous field, so that alternating queries share one field.
 bool KeptField::make(const MapConfig& map, const AskedSpace& asked) {
     FieldExtent alone = extent_of(map, asked);
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kWider_m);
@@ -70,7 +70,7 @@ bool KeptField::make(const MapConfig& map, const AskedSpace& asked) {
     }
     const FieldExtent& extent = is_possible(map, both) ? both : alone;
     if (!is_possible(map, extent)) return false;
-    drop();  // before there are two
+    drop();  // frees it before a second one is allocated
     extent_ = extent;
     field_.emplace(map, extent_);
     return true;

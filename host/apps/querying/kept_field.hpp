@@ -1,4 +1,4 @@
-// A distance field that is kept from one question to the next, for as long as that pays.
+// A distance field that is kept between queries for as long as it saves time.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,11 +12,11 @@
 
 namespace octoskin {
 
-/// Where distances are asked for.
+/// The space of a query's distances.
 struct AskedSpace {
-    Eigen::AlignedBox3d axes;   ///< of all capsules in all postures, map frame
-    double radius_max_m = 0.0;  ///< of a capsule, padding included
-    double reach_m = 0.0;       ///< from the capsules' surface, above 0
+    Eigen::AlignedBox3d axes;   ///< axes of all capsules in all postures, map frame
+    double radius_max_m = 0.0;  ///< radius of a capsule, padding included
+    double reach_m = 0.0;       ///< from the capsules' surface; greater than 0
     std::size_t postures = 0;
 
     void include(std::span<const PosedCapsule> capsules) {
@@ -28,16 +28,15 @@ struct AskedSpace {
     }
 };
 
-/// For one thread. Whether there is a field makes no difference to an answer, only to its time.
+/// For one thread. The field changes only the time of an answer, never the answer.
 class KeptField {
   public:
-    /// The field of this map, in which all that is asked for is told; null where searching costs less than
-    /// bringing it up to date, or it would take more than kBricksMax bricks or than there is memory for. It
-    /// is as it is until the next question.
+    /// The field of this map for the requested space. Null if a search costs less than updating the field, if
+    /// it would need more than kBricksMax bricks, or if memory is insufficient. Valid until the next query.
     [[nodiscard]] const DistanceField* of(const FusedMap& map, const AskedSpace& asked);
-    /// Before its space has been asked about that much, nothing is made.
+    /// Minimum of postures in this space before a field is made.
     static constexpr std::size_t kPosturesMin = 20;
-    /// Some 220 MiB if there were surfaces in all of them; a tenth of it in a room.
+    /// About 220 MiB if all of them contained surfaces; a tenth of that in a room.
     static constexpr std::size_t kBricksMax = std::size_t{1} << 15U;
 
     [[nodiscard]] bool is_there() const noexcept { return field_.has_value(); }

@@ -1,4 +1,4 @@
-// What a map answers.
+// Evaluates a query against a map.
 #pragma once
 
 #include <chrono>
@@ -17,32 +17,32 @@
 
 namespace octoskin {
 
-/// What there is to be asked.
+/// The state against which a request is evaluated.
 struct QueryGround {
     const HostRig* rig = nullptr;
     const RobotModel* robot = nullptr;
-    /// A copy of its own: what is the arm's own space is freed in it.
+    /// A copy, in which the arm's own space is freed.
     FusedMap map;
-    /// The joints as the arm stands; empty: nobody knows. It is what is asked about where the request names
-    /// no path.
+    /// The arm's present joint positions; empty: unknown. They are the query if the request has no path.
     std::vector<double> present;
-    /// For distances; what was asked of it before is kept. Null: they are searched for.
+    /// A distance field that is kept between queries. Null: distances are searched.
     KeptField* field = nullptr;
-    /// The arm stands somewhere now: without `present` nothing is its own space. Else it stands where the
-    /// path begins; of a single posture the answer is then about what that frees itself.
+    /// The arm has a present posture: without `present` no space counts as its own. Otherwise the beginning
+    /// of the path is the arm's posture; for a single posture the answer then includes the space that this
+    /// posture frees.
     bool is_live = false;
-    /// When the map was as it is, by this machine's clock; empty: of a file, which does not say.
+    /// Wall time of the map's state; empty for a file, which does not contain it.
     std::optional<WallTime> map_time = std::nullopt;
-    /// The most processor time for one question: others wait. Empty: as much as it takes.
+    /// The largest processor time of one query, because others wait. Empty: no limit.
     std::optional<std::chrono::milliseconds> work_max = std::nullopt;
 };
 
 /// "ok": true, or false with "error" and "code", the exit code for it, and with "configuration" where the
 /// error is one of the path's. "own_space_m": as in the request, or null. Of postures: "state", the worst,
 /// and "legs", one for each configuration: the way to it from the one before. Of pockets: "pockets". All
-/// keys: docs/planner.md. Some 0.1 ms a posture; `is_ending` is asked before each posture and each few
-/// thousand voxels, and true ends it with an error; so does the end of `work_max`, which says what to make
-/// smaller.
+/// keys: docs/reference/control-socket.md. Some 0.1 ms a posture; `is_ending` is asked before each posture
+/// and each few thousand voxels, and true ends it with an error; so does the end of `work_max`, which says
+/// what to make smaller.
 [[nodiscard]] nlohmann::ordered_json answer_query(
     const QueryRequest& request, QueryGround ground,
     const std::function<bool()>& is_ending = [] { return false; });
@@ -50,11 +50,11 @@ struct QueryGround {
 /// An answer that is an error.
 [[nodiscard]] nlohmann::ordered_json query_refused(const AppError& error);
 
-/// Such an answer back; empty: it is none.
+/// The error of such an answer; empty if the answer is not an error.
 [[nodiscard]] std::optional<AppError> refusal_of(const nlohmann::ordered_json& answer);
 
-/// For a person, several lines. Throws nlohmann::ordered_json::exception if it is not what a daemon of this
-/// version answers.
+/// Text for people, several lines. Throws nlohmann::ordered_json::exception if `answer` is not an answer of a
+/// daemon of this version.
 [[nodiscard]] std::string query_text(const nlohmann::ordered_json& answer);
 
 }  // namespace octoskin

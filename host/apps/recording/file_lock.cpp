@@ -52,7 +52,8 @@ bool FileLock::is_of(const FilePlace& file) const {
 }
 
 std::optional<FileLock> FileLock::take(const OpenFolder& folder, Kind kind) {
-    // Opened anew: a lock belongs to one opening, and the folder's own has copies.
+    // Opened again: a lock belongs to one open file description, and the folder's own descriptor has
+    // duplicates.
     Descriptor again(::openat(folder.descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (!again) return of_nothing();
     return lock(std::move(again), kind);

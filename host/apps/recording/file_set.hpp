@@ -1,4 +1,5 @@
-// Files that come into a folder together: all of them or none, whatever fails or is killed on the way.
+// A set of files that is put into a folder as a whole: all of them or none, even if a step fails or the
+// process is killed.
 #pragma once
 
 #include <filesystem>
@@ -12,50 +13,51 @@
 
 namespace octoskin {
 
-/// A daemon holds this file of the folder of its maps.
+/// A daemon holds a lock on this file in the folder of its maps.
 inline constexpr const char* kDaemonsLock = "lock";
-/// Its map in full, which only a daemon writes.
+/// The whole state of a daemon's map; only a daemon writes it.
 inline constexpr const char* kDaemonsSnapshot = "fused.snapshot";
 
-/// They are written into a hidden folder beside their places. `commit` flushes them to the disk, renames that
-/// folder, which is the one step that decides, and then moves file after file. An error on the way undoes
-/// what was moved. If the process dies on the way, the next one that writes to the folder goes on to the end;
-/// what only reads refuses it. All of it below one descriptor, behind no link, and with names of a fixed list
-/// alone.
+/// The files are written into a hidden folder beside their final places. `commit` flushes them to the disk
+/// and renames that folder, which is the decisive step; then it moves file after file. An error undoes the
+/// moves. If the process dies, the next writer of the folder completes the moves; readers refuse the folder
+/// meanwhile.
+/// Everything happens below one descriptor, without following links, and only with names of a fixed list.
 class FileSet {
   public:
-    /// Makes `folder` if it is not there, locks it against other octoskins, ends or clears away what a killed
-    /// one left, and makes the hidden folder. Errors (cannot_create): another octoskin at work there; a
-    /// daemon's maps, which nothing but a daemon replaces; a folder of somebody else or, below a named one, a
-    /// link (FilePlace); the file system's.
+    /// Creates `folder` if it does not exist, locks it against other octoskin processes, completes or removes
+    /// the remains of a killed one, and creates the hidden folder. Errors (cannot_create): another octoskin
+    /// is working there; the maps of a daemon, which only a daemon replaces; a folder of another user or,
+    /// below a named one, a link (FilePlace); errors of the file system.
     [[nodiscard]] static Result<FileSet, AppError> begin(const FilePlace& folder);
     FileSet(FileSet&& other) noexcept;
     FileSet& operator=(FileSet&&) = delete;
-    /// Leaves nothing of what was not committed, nor a folder that was made for it; nor does a process that
-    /// is told to end (Unfinished).
+    /// Removes everything that was not committed, and a folder that was created for it. A process that ends
+    /// by a signal does the same (Unfinished).
     ~FileSet();
 
-    /// Where to write until then.
+    /// The folder to write into before `commit`.
     [[nodiscard]] const OpenFolder& draft() const noexcept { return draft_; }
     [[nodiscard]] const OpenFolder& folder() const noexcept { return folder_; }
     [[nodiscard]] bool is_new() const noexcept { return is_new_; }
 
-    /// Puts `files`, names in the draft, in their places and removes `retired`, paths relative to the folder
-    /// that may lead to nothing. The last of `files` vouches for all: where it is, the others are whole and
-    /// belong to it; it is the first to go and the last to come. On an error (cannot_create; what is no file
-    /// lies in a place, or a daemon has begun to keep its maps there) the folder is as it was. Asserts at
-    /// least one file, and is_file_of_set() of each.
+    /// Puts `files`, names in the draft, into their places and removes `retired`, paths relative to the
+    /// folder that need not exist. The last of `files` marks the set as complete: where it exists, the others
+    /// are complete and belong to it; it is removed first and put last.
+    /// On an error (cannot_create; something other than a file is in a place, or a daemon has begun to keep
+    /// its maps there) the folder is unchanged. Asserts at least one file, and is_file_of_set() for each.
     [[nodiscard]] Status<AppError> commit(const std::vector<std::filesystem::path>& files,
                                           const std::vector<std::filesystem::path>& retired);
 
-    /// That commit() would find each of `names` free or taken by a file that it can replace. Error
-    /// (cannot_create): what is in the way.
+    /// Checks that each of `names` is free, or a file that commit() can replace. Error (cannot_create): the
+    /// obstacle.
     [[nodiscard]] static Status<AppError> check_places(const OpenFolder& folder,
                                                        const std::vector<std::filesystem::path>& names);
 
-    /// The hidden folder's name: for those who ask whether a folder is empty.
+    /// The name of the hidden folder, for checks whether a folder is empty.
     static constexpr const char* kDraftFolder = ".octoskin-part";
-    /// The same once it is decided that its files come: where it is, a process was killed, or is at it.
+    /// The name of the hidden folder after the decision. Where it exists, a process was killed or is still at
+    /// work.
     static constexpr const char* kReadyFolder = ".octoskin-ready";
 
   private:
@@ -69,15 +71,16 @@ class FileSet {
     FileLock lock_;  ///< of the folder
 };
 
-/// Whether a recording names a mesh of its world so: mesh_01.stl.
+/// Whether a recording uses this name for a mesh of its world: mesh_01.stl.
 [[nodiscard]] bool is_scene_mesh(std::string_view name);
 
-/// A name that octoskin may put into a folder or retire from it: a recording's files, and maps, also in
+/// Whether octoskin may write this name into a folder or remove it: a recording's files, and maps, also in
 /// "maps/".
 [[nodiscard]] bool is_file_of_set(const std::filesystem::path& name);
 
-/// Ends what a process left that was killed while it put files in place; true if there was something. Errors
-/// (cannot_create): another octoskin is at work there; a folder of somebody else; the file system's.
+/// Completes the remains of a process that was killed while it moved files into place; true if there were
+/// any. Errors (cannot_create): another octoskin is working there; a folder of another user; errors of the
+/// file system.
 [[nodiscard]] Result<bool, AppError> settle_file_set(const OpenFolder& folder);
 
 }  // namespace octoskin

@@ -1,4 +1,4 @@
-// A rig that somebody gave, for those who tell the person what is wrong with it.
+// Reads a rig that the user named, with errors for the user.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,13 @@
 
 namespace octoskin {
 
-/// rig::read_rig(), its error with an exit code: one that may not be read (no_permission), or `otherwise`.
+/// rig::read_rig() with an exit code for its error: no_permission if the file may not be read, else
+/// `otherwise`.
 [[nodiscard]] Result<rig::Rig, AppError> read_given_rig(const FilePlace& file,
                                                         const std::filesystem::path& robot = {},
                                                         ExitCode otherwise = ExitCode::bad_config);
 
-/// The text of its robot's URDF. Error (bad_config; no_permission): it cannot be read.
+/// The text of the rig's URDF. Error (bad_config; no_permission): it cannot be read.
 [[nodiscard]] Result<std::string, AppError> robot_text(const rig::Rig& rig);
 
 }  // namespace octoskin

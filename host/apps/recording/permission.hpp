@@ -1,4 +1,4 @@
-// Files that are there and may not be read: not to be taken for absent or broken ones.
+// Distinguishes files that may not be read from missing and broken ones.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,14 @@
 
 namespace octoskin {
 
-/// ExitCode::no_permission if this process may not read the file or directory, or not look for it; empty if
-/// it may, or if nothing is there.
+/// ExitCode::no_permission if this process may not read the file or directory, or may not search its folder;
+/// empty if it may, or if the file does not exist.
 [[nodiscard]] std::optional<AppError> refused_to_read(const FilePlace& file);
 
-/// Why reading `file` failed: that it may not be read, else what `otherwise` says.
+/// The error of a failed read of `file`: no permission, else `otherwise`.
 [[nodiscard]] AppError reading_error(const FilePlace& file, AppError otherwise);
 
-/// The same of an error of a reader, which knows its file.
+/// The same for the error of a reader, which contains the file.
 template <class Error>
 [[nodiscard]] AppError reading_error(ExitCode otherwise, const Error& error) {
     return reading_error(error.file, {otherwise, error.message()});

@@ -1,12 +1,12 @@
-// One lock for everything that reads rigs, robots and worlds: the libraries beneath log through global state.
+// One lock for all readers of rigs, robots and worlds: the libraries they use log through global state.
 #pragma once
 
 #include <mutex>
 
 namespace octoskin {
 
-/// Hold it while calling read_rig, make_host_setup, Arm::read, real_body or World::read, if other threads
-/// may.
+/// Hold it during read_rig, make_host_setup, Arm::read, real_body or World::read if other threads may call
+/// them.
 [[nodiscard]] inline std::unique_lock<std::mutex> lock_reading() {
     static std::mutex mutex;
     return std::unique_lock(mutex);

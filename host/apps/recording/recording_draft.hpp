@@ -1,4 +1,4 @@
-// A recording in the making: whole in its place at the end, or not there at all.
+// A recording while it is made: at the end it is complete in its place, or absent.
 #pragma once
 
 #include <filesystem>
@@ -14,19 +14,20 @@ namespace octoskin {
 
 class RecordingDraft {
   public:
-    /// Makes the directory that is `named`, locks it, and makes in it a hidden folder to write into. Refuses
-    /// a directory that is not empty unless it `may_replace` what is there; always one whose recording is not
-    /// known to be simulated: nobody can make that again; and one that another octoskin writes or reads.
+    /// Creates the directory `named`, locks it, and creates a hidden folder in it to write into. Errors: a
+    /// directory that is not empty, unless it `may_replace` the content; in any case a recording that is not
+    /// known to be simulated, because it cannot be made again; a directory that another octoskin writes or
+    /// reads.
     [[nodiscard]] static Result<RecordingDraft, AppError> create(const FilePlace& named, bool may_replace);
 
-    /// That create() would not refuse, nor commit() find anything in the place of a file that it cannot
-    /// replace; but for what others do meanwhile. Changes nothing.
+    /// Checks that create() would succeed and that commit() could replace every existing file, unless other
+    /// processes interfere meanwhile. Changes nothing.
     [[nodiscard]] static Status<AppError> check(const FilePlace& named, bool may_replace);
 
-    /// Where to write until then. What is not committed leaves nothing.
+    /// The places to write to before commit(). Without a commit nothing remains.
     [[nodiscard]] const RecordingPaths& paths() const noexcept { return draft_; }
-    /// Moves the files into `directory`, in place of a former recording's files and of the maps made of it:
-    /// all or none of them, see FileSet. meta.yaml comes last: where it is, the recording is whole.
+    /// Moves the files into `directory`, in place of a previous recording's files and of the maps made from
+    /// it: all or none, see FileSet. meta.yaml comes last: where it exists, the recording is complete.
     [[nodiscard]] Status<AppError> commit();
 
   private:
@@ -35,11 +36,11 @@ class RecordingDraft {
     RecordingPaths final_;
     RecordingPaths draft_;
     FileSet files_;
-    std::optional<FileLock> former_;  ///< keeps readers from the recording that is replaced
+    std::optional<FileLock> former_;  ///< keeps readers out of the recording that is replaced
 };
 
-/// Keeps a recording from being replaced while it is read. Errors: another octoskin is replacing it now
-/// (bad_data).
+/// Keeps a recording from being replaced while it is read. Error (bad_data): another octoskin is replacing it
+/// now.
 [[nodiscard]] Result<FileLock, AppError> lock_recording(const RecordingPaths& recording);
 
 }  // namespace octoskin

@@ -1,5 +1,5 @@
-// What was thrown because the system, or a limit that was set for this process, has too little of something:
-// that is no defect, and there is something to be done about it.
+// Recognises exceptions from a lack of resources, of the system or by a limit of this process: not an
+// internal error, and the user can do something.
 #pragma once
 
 #include <exception>
@@ -9,8 +9,8 @@
 
 namespace octoskin {
 
-/// What there is too little of, with its limit and what to do (`no_resources`); empty: it was thrown for
-/// another reason. Memory, descriptors, threads, the size of a file.
+/// The missing resource with its limit and remedy (`no_resources`); empty if the exception has another cause.
+/// Resources: memory, descriptors, threads, the size of a file.
 [[nodiscard]] std::optional<AppError> shortage_in(const std::exception& thrown);
 
 }  // namespace octoskin

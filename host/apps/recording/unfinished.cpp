@@ -16,7 +16,7 @@ struct Entry {
     bool is_parent_new;
 };
 
-/// The whole process has one: a signal is told to all of it.
+/// One for the whole process: a signal concerns all of its threads.
 struct Registry {
     std::mutex mutex;
     std::map<std::uint64_t, Entry> entries;
@@ -28,7 +28,7 @@ Registry& registry() {
     return one;
 }
 
-/// A thread that is still at work may add a file between two looks.
+/// A thread that still works may add a file between two attempts.
 void clear_away(const Entry& entry) {
     constexpr int kTries = 10;
     for (int i = 0; i < kTries && entry.parent.kind_of(entry.name) != EntryKind::absent; ++i)
@@ -64,7 +64,7 @@ RemovedUnfinished remove_unfinished() {
         clear_away(entry);
         if (entry.is_parent_new) made.push_back(entry.parent);
     }
-    // What lies in another comes before it: only an empty one goes.
+    // A nested folder comes before its parent: only an empty folder is removed.
     std::sort(made.begin(), made.end(),
               [](const OpenFolder& one, const OpenFolder& other) { return one.shown() > other.shown(); });
     for (const OpenFolder& folder : made) remove_made_folder(folder);

@@ -1,4 +1,4 @@
-// Folders in the making, so that they can be taken away where the process is told to end in the midst of it.
+// Registers unfinished folders, so that they are removed if a signal ends the process.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace octoskin {
 
-/// A folder that is removed, with all that is in it, if the process is told to end while this lives. Any
-/// thread may have some.
+/// A folder that is removed with its content if a signal ends the process during the lifetime of this object.
+/// Any thread may have several.
 class Unfinished {
   public:
-    /// `name`: of the folder, in `parent`. `is_parent_new`: `parent` was made for it, and goes, too, if
-    /// nothing else is in it.
+    /// `name`: of the folder in `parent`. `is_parent_new`: `parent` was created for it, and is removed, too,
+    /// if it is otherwise empty.
     Unfinished(OpenFolder parent, std::string name, bool is_parent_new = false);
     Unfinished(Unfinished&& other) noexcept;
     Unfinished& operator=(Unfinished&&) = delete;
     ~Unfinished();
 
-    /// It is none any more. While the lock is held nobody ends the process: what must not be done by halves
-    /// is done meanwhile.
+    /// The folder is finished. While the returned lock is held, a signal does not end the process: use it for
+    /// steps that must not be interrupted.
     [[nodiscard]] std::unique_lock<std::mutex> finish();
 
   private:
@@ -30,14 +30,14 @@ class Unfinished {
 
 struct RemovedUnfinished {
     bool is_any = false;
-    std::unique_lock<std::mutex> lock;  ///< whoever goes on with an unfinished folder waits for it
+    std::unique_lock<std::mutex> lock;  ///< a thread that continues with an unfinished folder waits for it
 };
 
-/// Removes whatever is unfinished, for a process that ends while it holds the lock. Waits for what must not
-/// be done by halves.
+/// Removes all unfinished folders, for a process that then ends while it holds the lock. Waits for steps that
+/// must not be interrupted.
 [[nodiscard]] RemovedUnfinished remove_unfinished();
 
-/// Removes a folder that was made, if nothing is in it and its name still leads to it.
+/// Removes a folder that this program created, if it is empty and its name still leads to it.
 void remove_made_folder(const OpenFolder& folder);
 
 }  // namespace octoskin

@@ -1,11 +1,11 @@
-// Which octoskin made this: for `--version`, recordings, metrics and reports.
+// Version and commit of this build: for `--version`, recordings, metrics and reports.
 #pragma once
 
 #include <string>
 
 namespace octoskin {
 
-/// The first 12 digits of the commit that was built; "unknown" if the source was no clone.
+/// The first 12 digits of the built commit; "unknown" if the source was not a clone.
 extern const char* const kCommit;
 /// Whether files of the clone differed from that commit.
 extern const bool kIsCommitChanged;

@@ -1,4 +1,4 @@
-// The groups of problems, each in the file of its name. The order of the whole is problems.cpp's.
+// The groups of problems, each in the file of its name. problems.cpp has the order of the whole list.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace octoskin {
 
 using Problems = std::vector<Problem>;
 
-// --- bus_problems.cpp: the CAN link, and the time that is shared on it
+// --- bus_problems.cpp: the CAN link, and the shared time on it
 void add_wall_clock(const DaemonView& view, Problems& problems);
 void add_link(const DaemonView& view, Problems& problems);
 void add_other_hosts(const DaemonView& view, Problems& problems);
@@ -20,19 +20,19 @@ void add_clock(const DaemonView& view, Problems& problems);
 // --- robot_problems.cpp
 void add_links_without_body(const DaemonView& view, Problems& problems);
 
-// --- node_problems.cpp: nodes, their sensors and registers, and what becomes of the readings
+// --- node_problems.cpp: nodes, their sensors and registers, and the fate of their readings
 void add_nodes(const DaemonView& view, Problems& problems);
-/// Whose problem all are that come from a node.
+/// Subject of all problems of a node.
 [[nodiscard]] inline std::string node_subject(wire::NodeId node) {
     return "node " + std::to_string(node);
 }
 void add_joint_node(const DaemonView& view, Problems& problems);
 void add_readings(const DaemonView& view, Problems& problems);
 
-// --- silence_problems.cpp: what does not come of a node that is usable
+// --- silence_problems.cpp: missing data of a node that is usable
 void add_silence(const DaemonView& view, const HostNode& node, Problems& problems);
 
-// --- joint_problems.cpp: joint states and those that send them
+// --- joint_problems.cpp: joint states and their senders
 void add_joints(const DaemonView& view, Problems& problems);
 
 // --- camera_problems.cpp

@@ -1,4 +1,4 @@
-// Of what comes in and is not used: whether it has stopped, and where its reason stands.
+// Inputs that are not used: whether they have stopped, and the reason.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ inline bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
     return last && now - *last > kPatience;
 }
 
-/// The most frequent reason, what it means and what mends it, which is why as often as not.
+/// The most frequent reason, its meaning and its remedy.
 template <class Reject>
 std::string see_counters(const char* unit, const Account<Reject>& account) {
     const auto loss = most_frequent(tabulate(unit, account));
