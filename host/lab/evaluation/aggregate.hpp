@@ -1,5 +1,5 @@
-// Figures over seeds: mean, spread, and differences paired by seed (the spread over seeds is mostly voxel
-// phase, which a paired difference cancels).
+// Figures over seeds: mean, spread, and differences paired by seed. The spread over seeds comes mostly from
+// the voxel phase; a paired difference cancels it.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace octoskin::evaluation {
 
-/// One map of one configuration of one seed, judged.
+/// The metrics of one map of one configuration and one seed.
 struct Run {
     std::string configuration;  ///< "robust"
     std::string map;            ///< "fused"
@@ -21,7 +21,7 @@ struct Run {
     Metrics metrics;
 };
 
-/// One figure over seeds. Seeds where it is undefined stay in `per_seed` as empty and out of the rest.
+/// One figure over seeds. A seed where it is undefined is empty in `per_seed` and left out of the statistics.
 struct Summary {
     std::optional<double> mean;
     std::optional<double> sd;  ///< sample standard deviation (n - 1); empty below two values
@@ -43,8 +43,8 @@ struct MapSummary {
     [[nodiscard]] const Summary& at(std::string_view metric) const;
 };
 
-/// One summary per configuration and map, in the order of their first run. A seed may occur only once for
-/// each (asserted).
+/// One summary per configuration and map, in the order of their first run. Each seed occurs once for each of
+/// them (asserted).
 [[nodiscard]] std::vector<MapSummary> aggregate(std::span<const Run> runs);
 
 /// Empty if there is none.
@@ -59,8 +59,8 @@ struct PairedDifference {
 };
 [[nodiscard]] PairedDifference paired_difference(const MapSummary& minuend, const MapSummary& subtrahend);
 
-/// What the experiment asks: in each configuration fused - depth and fused - proximity, and for every pair of
-/// configurations the later one's fused map minus the earlier one's.
+/// The comparisons of the experiment: in each configuration fused - depth and fused - proximity, and for
+/// every pair of configurations the later one's fused map minus the earlier one's.
 [[nodiscard]] std::vector<PairedDifference> standard_differences(std::span<const MapSummary> summaries);
 
 }  // namespace octoskin::evaluation

@@ -43,9 +43,9 @@ std::optional<KeyBox> box_around(const MapView& view, const VoxelLattice& lattic
     return KeyBox{*min, *max};
 }
 
-/// What one view says of each voxel near it: kPassed, kHit, both or nothing.
+/// The result of one view for each voxel near it: kPassed, kHit, both or neither.
 VoxelGrid<std::uint8_t> mark_rays(const MapView& view, const KeyBox& box, const VoxelLattice& lattice) {
-    // A walk may stray by one voxel from the span between its ends (see `Ray::steps_max`).
+    // A ray may leave the box of its two ends by one voxel (see `Ray::steps_max`).
     VoxelGrid<std::uint8_t> marks(box.padded(1));
     const auto [nx, ny, nz] = marks.box().shape();
     const std::array<std::ptrdiff_t, 3> stride = {1, static_cast<std::ptrdiff_t>(nx),

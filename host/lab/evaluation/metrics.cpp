@@ -7,7 +7,8 @@
 namespace octoskin::evaluation {
 namespace {
 
-/// Log loss of a certain and wrong prediction is infinite; a map with clamps never makes one.
+/// The log loss of a wrong prediction with probability 1 is infinite. A map with clamped log-odds makes no
+/// such prediction.
 constexpr double kProbabilityFloor = 1e-9;
 
 std::optional<double> ratio(double part, double whole) {

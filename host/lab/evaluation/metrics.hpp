@@ -1,5 +1,5 @@
-// One map against the ground truths: every figure by its full name. docs/evaluation.md has the domain of
-// each.
+// One map against the ground truths: every figure by its full name. docs/reference/evaluation.md has the
+// domain of each.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace octoskin::evaluation {
 
-/// What a map says of one voxel; an unknown one has the prior 0.5.
+/// State of one voxel in a map. An unknown voxel has the prior probability 0.5.
 struct MapVoxel {
     Occupancy occupancy = Occupancy::unknown;
     float probability = 0.5F;
@@ -62,7 +62,8 @@ struct Metrics {
 /// `map` must be over the truth's region (asserted).
 [[nodiscard]] Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth);
 
-/// Samples the map over the truth's region and computes. The resolutions must be equal (asserted).
+/// Samples the map over the truth's region and computes the metrics. The resolutions must be equal
+/// (asserted).
 [[nodiscard]] Metrics evaluate(const FusedMap& map, const Truth& truth);
 
 /// A scalar metric by name, for tables and files. `is_count`: print without decimals.

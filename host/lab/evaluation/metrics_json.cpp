@@ -21,7 +21,7 @@ Json summary_json(const Summary& summary) {
     return {{"mean", number(summary.mean)}, {"sd", number(summary.sd)}, {"per_seed", std::move(per_seed)}};
 }
 
-/// In the order of `metric_fields`, which is the order in which a person looks for them.
+/// In the order of `metric_fields`, as in the printed table.
 Json metrics_object(const MetricSummaries& metrics) {
     Json object = Json::object();
     for (const auto& field : metric_fields()) {
@@ -89,7 +89,7 @@ std::string metrics_json(const Results& results) {
         root[map.configuration][map.map] = metrics_object(map.metrics);
     }
     root[std::string(kReservedName)] = run_json(results);
-    // A path or a name may hold any bytes; JSON may not.
+    // A path or a name may hold bytes that are not UTF-8; JSON may not.
     return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -15,7 +15,7 @@ std::string count_text(const std::optional<double>& value) {
     return value ? fmt::format("{:.0f}", *value) : std::string(kUndefined);
 }
 
-/// A difference that rounds to nothing has no sign worth showing.
+/// A difference that rounds to 0 is printed without a sign.
 std::string without_negative_zero(std::string number) {
     const bool is_zero = number.find_first_of("123456789") == std::string::npos;
     if (is_zero && number.starts_with('-')) number.erase(0, 1);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRegionVoxelsMax = 50e6;
 
-/// The keys from the first to the last along one axis: as numbers, before it is known whether they are keys.
+/// First and last key along one axis, as numbers: they may lie outside the range of keys.
 struct Extent {
     double first;
     double last;

@@ -1,4 +1,4 @@
-// The part of the map that is judged.
+// The judged region: the part of the map that is compared with the ground truth.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,18 +14,17 @@ struct RegionConfig {
     Eigen::Vector3d p_map_min{-0.6, -1.2, -0.2};
     Eigen::Vector3d p_map_max{1.4, 1.2, 1.4};
     /// Height of the floor's top in the world frame, metres. The region begins one layer above the layer that
-    /// holds it, so that the floor, which every sensor sees, does not drown what matters. Empty: no floor.
+    /// holds it: every sensor sees the floor, and its voxels would dominate the figures. Empty: no floor.
     std::optional<double> floor_top_m = -0.02;
 };
 
-/// Why there is nothing to be judged in the box at this resolution, with what to do; empty if there is: no
-/// voxel above the floor, outside the map's keys, or over 50 million voxels, which no machine of today judges
-/// in reasonable time.
+/// Why the box cannot be judged at this resolution; empty if it can. Reasons: no voxel above the floor, a box
+/// outside the map's keys, or more than 50 million voxels (too slow). The text has the remedy.
 [[nodiscard]] std::optional<std::string> region_fault(const RegionConfig& config, double resolution_m,
                                                       const Eigen::Isometry3d& T_map_base);
 
-/// The voxels whose centres lie in the box and whose layer is above the floor's. `T_map_base` puts the world
-/// into the map. `region_fault` must find nothing (asserted).
+/// The voxels whose centres lie in the box and whose layer is above the floor's. `T_map_base` transforms the
+/// world into the map frame. `region_fault` must return empty (asserted).
 [[nodiscard]] KeyBox region_of(const RegionConfig& config, double resolution_m,
                                const Eigen::Isometry3d& T_map_base);
 

@@ -1,5 +1,5 @@
-// Everything an evaluation found out, as one value, and its three faces: metrics.json, the printed table, the
-// report (host/lab/report).
+// All results of an evaluation as one value, and its output as metrics.json and as the printed table. The
+// report is in host/lab/report.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +28,9 @@ struct Results {
     std::vector<PartTime> times;
     /// What the figures depend on: program version, world, rig, recording ("key", "value").
     std::vector<std::pair<std::string, std::string>> provenance;
-    /// The paper's experiment, re-enacted: only then do its figures belong beside these.
+    /// The run repeats the paper's experiment. Only then are the paper's figures shown beside its own.
     bool is_papers_experiment = false;
-    /// Of the first seed and the configuration that the report speaks of.
+    /// Of the first seed in the main configuration of the report.
     std::optional<UnknownSpace> unknown_space;
 };
 
@@ -40,7 +40,7 @@ struct Results {
 
 /// JSON text: configuration -> map -> metric -> {mean, sd, per_seed}, and under the one reserved key "run"
 /// the seeds, paired differences, calibration tables, times and provenance. Undefined values are null. No
-/// configuration may be called so (asserted). Equal results give equal text.
+/// configuration may have this name (asserted). Equal results give equal text.
 [[nodiscard]] std::string metrics_json(const Results& results);
 
 /// Text tables for a terminal, about 100 columns: Table I and Lost (beside the paper's figures if the

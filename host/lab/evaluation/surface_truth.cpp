@@ -9,7 +9,7 @@
 namespace octoskin::evaluation {
 namespace {
 
-/// Some five minutes of work, and hundreds of times what the shipped worlds have.
+/// About five minutes of computing; hundreds of times as many as the shipped worlds have.
 constexpr double kSurfacePointsMax = 1e9;
 
 KeyBox with_margins(const KeyBox& region, const TruthConfig& config) {
@@ -70,7 +70,7 @@ VoxelMask seen_mask(const sim::World& world, const TruthConfig& config, const Ke
     return seen;
 }
 
-/// Why surface_truth() would take hours, for a person; empty if it does not.
+/// Why surface_truth() would take hours, as a message; empty if it would not.
 std::optional<std::string> surface_fault(const sim::World& world, const TruthConfig& config,
                                          const KeyBox& region, const Eigen::Isometry3d& T_map_base) {
     const auto bounds =

@@ -37,7 +37,7 @@ void add_top_row(const SurveyPattern& pattern, std::vector<Viewpoint>& viewpoint
     }
 }
 
-/// Where a share of the way from `low` to `high` is, for each share.
+/// For each share (0..1), the value at that share of the way from `low` to `high`.
 std::vector<double> between(double low, double high, const std::vector<double>& shares) {
     std::vector<double> values;
     values.reserve(shares.size());

@@ -1,5 +1,5 @@
-// The ground-truth camera's tour: a noise-free depth camera moved by hand round an empty scene (the robot is
-// away), after Strong et al. 2021, section III.
+// The ground-truth camera's tour: a noise-free depth camera moved round the scene without the robot, after
+// Strong et al. 2021, section III.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,7 +11,7 @@
 
 namespace octoskin::evaluation {
 
-/// One place of the tour, world frame, metres.
+/// One camera position of the tour, world frame, metres.
 struct Viewpoint {
     Eigen::Vector3d p_base_camera = Eigen::Vector3d::Zero();
     Eigen::Vector3d p_base_look_at = Eigen::Vector3d::UnitX();
@@ -21,7 +21,7 @@ struct Viewpoint {
 /// looking straight up or down).
 [[nodiscard]] Eigen::Isometry3d T_base_camera_of(const Viewpoint& viewpoint);
 
-/// The tour of the experiment as numbers. 72 places on three circles, 28 in front of the shelves, 6 above.
+/// Parameters of the experiment's tour: 72 positions on three circles, 28 in front of the shelves, 6 above.
 struct SurveyPattern {
     Eigen::Vector2d orbit_centre{0.6, 0.0};
     double orbit_radius_m = 1.9;
@@ -66,8 +66,8 @@ struct SurveyConfig {
     std::uint32_t pixel_stride = 2;
 };
 
-/// What a camera sees from one place, noise-free: surface points in the world frame, float to halve the
-/// memory (0.1 um at 2 m). Pixels without a value in the camera's depth limits have none.
+/// What a camera sees from one place, noise-free: surface points in the world frame, stored as float to halve
+/// the memory (rounding 0.1 um at 2 m). A pixel outside the camera's depth limits has no point.
 struct DepthView {
     Eigen::Vector3d p_base_camera = Eigen::Vector3d::Zero();
     std::vector<Eigen::Vector3f> p_base_points;
@@ -77,9 +77,9 @@ struct DepthView {
 [[nodiscard]] DepthView render_view(const sim::World& world, const rig::Camera& camera,
                                     const Eigen::Isometry3d& T_base_camera, std::uint32_t pixel_stride);
 
-/// The whole tour, without places inside a solid. Does not depend on the seed (world and camera stay put, the
-/// map's grid moves): render it once and hand it to every `build_truth`. About 0.2 s and 50 MB for the
-/// experiment.
+/// The whole tour, without positions inside a solid. It does not depend on the seed: a seed moves the map's
+/// grid, not world or camera. Render it once and pass it to every `build_truth`. About 0.2 s and 50 MB for
+/// the experiment.
 struct Survey {
     std::vector<DepthView> views;
 };

@@ -1,5 +1,5 @@
-// The two ground truths of one seed: what a noise-free camera would have mapped, and the voxels that the
-// world's surfaces really pass through.
+// The two ground truths of one seed: the map of a noise-free camera, and the voxels that contain a surface of
+// the world.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,7 +17,7 @@
 
 namespace octoskin::evaluation {
 
-/// How the tour's views become a map: OctoMap's own constants, so that the ground truth does not depend on
+/// How the tour's views are mapped. The constants are OctoMap's, so that the ground truth does not depend on
 /// the update under test.
 struct CameraTruthConfig {
     float hit_log_odds = 0.85F;
@@ -32,17 +32,16 @@ struct TruthConfig {
     CameraTruthConfig camera;
     /// Names of the SDF models that the external camera is not supposed to see ("cone", "crate").
     std::vector<std::string> hidden_models;
-    /// The external camera of the rig, where it really stands: decides what is occluded. Empty: everything
-    /// is.
+    /// The external camera of the rig at its true pose. It decides which voxels are occluded. Empty: all are.
     std::optional<rig::Camera> external_camera;
     double surface_pitch_m = 0.008;
     /// A surface voxel is occluded if no voxel that the camera sees is within so many voxels (Chebyshev).
     std::uint16_t occlusion_margin_voxels = 2;
-    /// What `precision_tolerant` forgives, in voxels (Chebyshev).
+    /// Distance to a surface that `precision_tolerant` accepts, in voxels (Chebyshev).
     std::uint16_t tolerance_voxels = 1;
 };
 
-/// What the analytic geometry says of one voxel.
+/// Flags of one voxel by the analytic geometry.
 struct SurfaceVoxel {
     bool is_surface : 1 = false;        ///< holds a point of a surface
     bool is_near_surface : 1 = false;   ///< itself or a neighbour within the tolerance does
@@ -60,20 +59,21 @@ struct Truth {
     [[nodiscard]] const KeyBox& region() const noexcept { return camera.box(); }
 };
 
-/// Occupied, free or unknown as the tour's camera would have it: per view each voxel gets one term, a hit
-/// wins over a miss, clamped each time; occupied at log-odds >= 0. Rays are OctoMap's own. O(points * range).
+/// Occupied, free or unknown by the tour's camera. Each view adds one term to a voxel, a hit before a miss,
+/// and the sum is clamped each time. Occupied: log-odds >= 0. Rays are traced as in OctoMap. O(points *
+/// range).
 [[nodiscard]] VoxelGrid<Occupancy> camera_truth(const Survey& survey, const CameraTruthConfig& config,
                                                 const KeyBox& region, double resolution_m,
                                                 const Eigen::Isometry3d& T_map_base);
 
-/// The surface flags of every voxel of the region. Surfaces and seen points just outside the region (the
-/// floor, for one) count for the margins.
+/// The surface flags of every voxel of the region. Surfaces and seen points just outside the region, such as
+/// the floor, count for the margins.
 [[nodiscard]] VoxelGrid<SurfaceVoxel> surface_truth(const sim::World& world, const TruthConfig& config,
                                                     const KeyBox& region,
                                                     const Eigen::Isometry3d& T_map_base);
 
-/// Both truths for a world that stands at `T_map_base` in the map. Or why that would take hours: a thousand
-/// million points of surfaces in the region, and more.
+/// Both truths for a world placed at `T_map_base` in the map. Error: the region has 1e9 surface points or
+/// more, which would take hours.
 [[nodiscard]] Result<Truth, std::string> build_truth(const sim::World& world, const Survey& survey,
                                                      const TruthConfig& config,
                                                      const Eigen::Isometry3d& T_map_base);

@@ -8,18 +8,18 @@ namespace octoskin::evaluation {
 namespace {
 
 constexpr Nanoseconds kEvery{250'000'000};
-constexpr double kPocketMin_m3 = 1e-3;  // a litre: what is smaller no planner misses
+constexpr double kPocketMin_m3 = 1e-3;  // one litre: smaller pockets do not matter to a planner
 
 double voxel_m3(const FusedMap& map) {
     return std::pow(map.resolution_m(), 3);
 }
 
-/// No pocket is looked for, which would take longer.
+/// Does not search for pockets, which would take longer.
 std::optional<UnknownPockets> count_unknown(const FusedMap& map, const PocketRegion& region) {
     return UnknownPockets::find(map, region, std::numeric_limits<std::size_t>::max());
 }
 
-/// Of a region that lies in the octree.
+/// The region must lie in the octree.
 UnknownColumns columns_of(const FusedMap& map, const PocketRegion& region) {
     const double edge_m = map.resolution_m();
     const auto low = map.key_of(region.centre.array() - region.radius_m);

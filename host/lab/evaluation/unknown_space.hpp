@@ -1,5 +1,5 @@
-// How much of the space about the robot nobody has seen yet, while a recording is played: with the camera
-// alone, and with range sensors on the arm beside it.
+// Volume of unknown space around the robot during a replay: with the camera alone, and with the arm's range
+// sensors added.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ struct UnknownColumns {
     std::size_t side = 0;           ///< columns along x and along y
     double low_x_m = 0.0;           ///< where the first one begins, from the region's centre
     double low_y_m = 0.0;           ///< the same
-    std::vector<double> unknown_m;  ///< how much of each is unknown, x runs fastest; 0 beside the region
+    std::vector<double> unknown_m;  ///< unknown height in each, x runs fastest; 0 outside the region
 };
 
 struct UnknownSpace {
@@ -34,16 +34,16 @@ struct UnknownSpace {
     UnknownColumns fused_columns;
 };
 
-/// Samples maps on their way.
+/// Samples maps while a recording is replayed.
 class UnknownSpaceMeter {
   public:
     /// A region that UnknownPockets refuses gives no samples.
     explicit UnknownSpaceMeter(const PocketRegion& region) { space_.region = region; }
 
-    /// After each measurement that went in: a sample if a quarter of a second has passed. `depth` may be
-    /// null. About 10 ms a sample at 4 cm and 1 m.
+    /// Call after each measurement that entered the map. Takes a sample if 0.25 s have passed since the last
+    /// one. `depth` may be null. About 10 ms a sample at 4 cm and 1 m.
     void see(HostTime captured, const FusedMap* depth, const FusedMap& fused);
-    /// What was sampled, and the state at the end.
+    /// The samples, and the state at the end.
     [[nodiscard]] UnknownSpace finish(const FusedMap* depth, const FusedMap& fused);
 
   private:

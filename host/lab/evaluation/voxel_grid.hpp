@@ -1,4 +1,4 @@
-// A box of voxels, and one value for each of them: what truths and sampled maps are held in.
+// A box of voxels with one value each: the storage of ground truths and sampled maps.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ struct KeyBox {
                 static_cast<std::uint16_t>(min.y + index / nx % ny),
                 static_cast<std::uint16_t>(min.z + index / (nx * ny))};
     }
-    /// The box grown by `voxels` on every side, cut off where the keys end.
+    /// The box grown by `voxels` on every side, clipped to the range of keys.
     [[nodiscard]] KeyBox padded(std::uint16_t voxels) const noexcept;
 
     friend constexpr bool operator==(const KeyBox&, const KeyBox&) = default;
@@ -78,7 +78,8 @@ class VoxelGrid {
 /// A mask over voxels (char, since std::vector<bool> hands out no references).
 using VoxelMask = VoxelGrid<char>;
 
-/// The mask grown by `voxels` in each of the 26 directions (Chebyshev distance). O(size), whatever the reach.
+/// The mask grown by `voxels` in each of the 26 directions (Chebyshev distance). O(size), independent of
+/// `voxels`.
 [[nodiscard]] VoxelMask dilated(const VoxelMask& mask, std::uint16_t voxels);
 
 }  // namespace octoskin::evaluation

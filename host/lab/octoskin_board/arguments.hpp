@@ -1,4 +1,4 @@
-// What the emulated board is asked to do.
+// Command line of octoskin_board.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -29,12 +29,13 @@ class Bench {
     std::unique_ptr<sim::stm32::SensorCarrier> sensors_;
 };
 
-/// The sensors look straight at a wall.
+/// Each sensor faces a wall head-on at its range, metres; the list is repeated.
 [[nodiscard]] Bench::SceneOfSensor wall_at(std::vector<double> range_m);
 
-/// The violations, one a line, with their places in the program; and what the run took.
+/// The violations, one per line, each with its place in the program.
 [[nodiscard]] std::string violation_report(sim::stm32::NucleoBoard& board);
-/// `cpu_s`: of this process. Wall time would measure the other programs of the machine too.
+/// The run's duration, load and counts. `cpu_s`: CPU time of this process; wall time depends on other
+/// programs.
 [[nodiscard]] std::string use_report(Bench& bench, double cpu_s);
 
 }  // namespace octoskin::board

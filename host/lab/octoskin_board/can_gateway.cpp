@@ -7,12 +7,12 @@ namespace octoskin::board {
 namespace {
 
 constexpr std::size_t kMailboxes = 64;
-constexpr int kFramesPerPoll = 64;  // a flood must not hold simulated time
+constexpr int kFramesPerPoll = 64;  // a flood of frames must not stop simulated time
 
 }  // namespace
 
 CanGateway::CanGateway(socketcan::CanSocket socket, sim::SimulatedCanBus& bus) : socket_(std::move(socket)) {
-    // It never hears its own frames: nothing goes round in a circle.
+    // A seat does not receive its own frames, so no frame is sent back to the side it came from.
     seat_ = &bus.attach([this](const wire::CanFrame& frame, sim::SimTime) { forward(frame); }, kMailboxes);
 }
 

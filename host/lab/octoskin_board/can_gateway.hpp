@@ -1,4 +1,4 @@
-// Ties the simulated CAN bus to an interface of this machine: what is said on either is said on the other.
+// Connects the simulated CAN bus to a CAN interface of this machine: forwards frames in both directions.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@ struct GatewayCounts {
 
 class CanGateway {
   public:
-    /// A seat of its own on `bus`, which must outlive this.
+    /// Attaches its own seat to `bus`, which must outlive this.
     CanGateway(socketcan::CanSocket socket, sim::SimulatedCanBus& bus);
     CanGateway(const CanGateway&) = delete;
     CanGateway& operator=(const CanGateway&) = delete;
 
-    /// Takes in what came. Call in every turn. An interface that is down is waited for; any other fault is
-    /// the end.
+    /// Forwards received frames. Call in every turn. Waits for an interface that is down; any other fault is
+    /// an error.
     [[nodiscard]] Status<AppError> poll();
     [[nodiscard]] const GatewayCounts& counts() const noexcept { return counts_; }
 

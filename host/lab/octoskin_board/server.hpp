@@ -1,4 +1,4 @@
-// The board in lock-step with a simulator that plays bus and world.
+// Runs the board in lock-step with a simulator that models bus and world.
 #pragma once
 
 #include <memory>
@@ -8,10 +8,10 @@
 
 namespace octoskin::board {
 
-/// Sensors that ask the simulator what they see. The socket must outlive them.
+/// A scene that asks the simulator for each sensor's view. The socket must outlive them.
 [[nodiscard]] Bench::SceneOfSensor scene_over(sim::LinkSocket& socket);
 
-/// Until the simulator closes the socket. Throws sim::BoardLinkError.
+/// Serves until the simulator closes the socket. Throws sim::BoardLinkError.
 void serve(Bench& bench, sim::LinkSocket& socket);
 
 }  // namespace octoskin::board

@@ -1,4 +1,4 @@
-// Where the models of a world are looked for.
+// The option for the folders in which the models of a world are searched.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
-// The scenario and the world that a recording was made in, found again: judging in another one gives figures
-// that look right and mean nothing.
+// Finds the scenario and the world of a recording. An evaluation against another world gives plausible but
+// meaningless figures.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace octoskin::app {
 
-/// What the command line says; empty: not given.
+/// Paths on the command line; empty: not given.
 struct GivenScene {
     std::filesystem::path scenario;
     std::filesystem::path world;
@@ -21,14 +21,14 @@ struct GivenScene {
 
 struct RecordedScene {
     Scene scene;
-    std::vector<std::string> warnings;  ///< where what was given is not what meta.yaml names
+    std::vector<std::string> warnings;  ///< for each given file that is not the one in meta.yaml
 };
 
-/// The recording's scenario and world: the shipped ones, if they have the CRC-32 that its meta.yaml says;
-/// else those that simulate put into the recording, if they are as it put them; else what lies there under
-/// the recorded name; and nowhere else that the recording names. What is given goes first,
-/// with a warning if it is something else. Refuses what is not there, what has changed, and what meta.yaml
-/// does not name; but a robot's recording names no world: then the scenario's is taken, with a warning.
+/// The recording's scenario and world. Search order: the files in `given`, with a warning if they differ from
+/// the recorded ones; the shipped files, if their CRC-32 is that of meta.yaml; the files that simulate wrote
+/// into the recording, if unchanged; a file of the recorded name in the recording. No other path of the
+/// recording is opened. Errors: a file is missing, changed, or not named in meta.yaml. A recording of a real
+/// robot names no world: the scenario's world is used, with a warning.
 [[nodiscard]] Result<RecordedScene, AppError> read_recorded_scene(const FilePlace& recording,
                                                                   const GivenScene& given);
 

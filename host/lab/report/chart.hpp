@@ -1,5 +1,5 @@
 // Line charts as inline SVG: axes, ticks, labels, lines, dots. Colours come from the page's style sheet by
-// class name, so that charts follow its light or dark theme.
+// class name, for its light and dark themes.
 #pragma once
 
 #include <string>
@@ -13,10 +13,10 @@ namespace octoskin::report {
 /// Round numbers (1, 2 or 5 times a power of ten apart) within [low, high], about `count` of them.
 [[nodiscard]] std::vector<double> round_ticks(double low, double high, int count);
 
-/// The decimals that tell neighbouring ticks apart, 0 to 6; 2 for fewer than two ticks.
+/// Number of decimals that distinguishes neighbouring ticks, 0 to 6; 2 for fewer than two ticks.
 [[nodiscard]] int tick_digits(const std::vector<double>& ticks);
 
-/// What a chart is wider and higher than the area between its axes, pixels.
+/// Width and height of a chart beyond the area between its axes, pixels.
 inline constexpr double kChartMarginX_px = 82.0;
 inline constexpr double kChartMarginY_px = 68.0;
 
@@ -47,7 +47,7 @@ class Chart {
     /// A picture (PNG) over the area between two corners, its pixels as squares.
     void image(ChartPoint low, ChartPoint high, const Image& picture);
 
-    /// The whole <svg> element. `title` is read out to whoever cannot see it.
+    /// The whole <svg> element. `title`: for screen readers.
     [[nodiscard]] std::string svg(std::string_view title) const;
 
   private:

@@ -17,12 +17,12 @@ namespace octoskin::report {
 /// The style sheet's class of a map: "depth", "proximity", "fused", or "other".
 [[nodiscard]] std::string_view css_class_of(std::string_view map) noexcept;
 
-/// Probability of a voxel after one hit, over the range, for the camera and, if some are, for range sensors
-/// that are rays: Strong et al. 2021, Fig. 2.
+/// Probability of a voxel after one hit, over the range, for the camera, and for range sensors that are ideal
+/// rays if there are any. As Strong et al. 2021, Fig. 2.
 [[nodiscard]] std::string update_curves_svg(const UpdateModel& model, bool has_rays = true);
 
-/// Probability of a voxel of which nothing else is known, over how many ranges hit it alone or passed it, of
-/// whole cones and of zones, whichever there are. There is one (asserted).
+/// Probability of a voxel over the number of ranges that hit it or passed it, without other measurements; for
+/// whole cones and for zones. There must be one of the two (asserted).
 [[nodiscard]] std::string counting_curves_svg(const RangeCounting& counting);
 
 /// Reliability diagram of the maps of one configuration: observed share of surface voxels over predicted
@@ -34,14 +34,14 @@ namespace octoskin::report {
 [[nodiscard]] std::string paired_svg(const evaluation::PairedDifference& difference,
                                      const std::vector<std::string_view>& metrics, std::string_view unit);
 
-/// Unknown volume over time. There is a sample (asserted).
+/// Unknown volume over time. There must be a sample (asserted).
 [[nodiscard]] std::string unknown_curves_svg(const evaluation::UnknownSpace& space);
 
-/// The most that any column of any map has of the unknown, metres.
+/// The greatest unknown height of any column of any map, metres.
 [[nodiscard]] double unknown_column_max_m(const evaluation::UnknownSpace& space) noexcept;
-/// What is unknown at the end, seen from above, in metres from the robot's base: with the camera alone, if
-/// there is such a map (asserted), and fused, with the numbers of the first `count` pockets. The more of a
-/// column is unknown, the less transparent it is, up to `unknown_column_max_m`.
+/// Unknown space at the end, from above, in metres from the robot's base: with the camera alone (such a map
+/// must exist, asserted), and fused with the numbers of the first `count` pockets. Opacity grows with the
+/// unknown height of a column, up to `unknown_column_max_m`.
 [[nodiscard]] std::string depth_columns_svg(const evaluation::UnknownSpace& space);
 [[nodiscard]] std::string fused_columns_svg(const evaluation::UnknownSpace& space, std::size_t count);
 

@@ -1,5 +1,5 @@
-// Colours of the report's pictures: linear light, and a palette that the common forms of colour blindness
-// tell apart (after Okabe and Ito 2008: blue, yellow and vermilion differ in lightness as well as in hue).
+// Colours of the report's pictures: linear light, and a palette for the common forms of colour blindness
+// (after Okabe and Ito 2008: blue, yellow and vermilion differ in lightness as well as in hue).
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ struct Colour {
     return share <= 0.04045F ? share / 12.92F : std::pow((share + 0.055F) / 1.055F, 2.4F);
 }
 
-/// Light above 1 is cut off.
+/// Values above 1 are clamped.
 [[nodiscard]] inline std::uint8_t srgb_of_linear(float linear) noexcept {
     const float light = linear < 0.0F ? 0.0F : linear > 1.0F ? 1.0F : linear;
     const float share = light <= 0.0031308F ? 12.92F * light : 1.055F * std::pow(light, 1.0F / 2.4F) - 0.055F;

@@ -1,4 +1,4 @@
-// What a picture is made of: painted faces, triangles and rods.
+// The geometry of a picture: painted faces, triangles and rods.
 #pragma once
 
 #include <Eigen/Geometry>

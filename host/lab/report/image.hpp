@@ -7,8 +7,8 @@
 
 namespace octoskin::report {
 
-/// 8-bit sRGB and opacity, row-major, 4 bytes a pixel. Where nothing is drawn it is transparent, so that the
-/// page's own background, light or dark, shows through.
+/// 8-bit sRGB and opacity, row-major, 4 bytes a pixel. Transparent where nothing is drawn: the page's
+/// background, light or dark, is visible there.
 struct Image {
     std::uint32_t width = 0;
     std::uint32_t height = 0;

@@ -34,7 +34,7 @@ std::vector<Row> rows_of(const evaluation::PairedDifference& difference,
     return rows;
 }
 
-/// From values to columns; 0 is always in it.
+/// Maps values to columns; always includes 0.
 struct Scale {
     double low = 0.0;
     double high = 0.0;
@@ -55,7 +55,7 @@ Scale scale_of(const std::vector<Row>& rows) {
     return {scale.low - margin, scale.high + margin};
 }
 
-/// The rows are metrics that the difference has, so that each has its field.
+/// `metric` must exist: the rows are metrics of the difference.
 const evaluation::MetricField& field_of(std::string_view metric) {
     const auto fields = evaluation::metric_fields();
     const auto found = std::ranges::find(fields, metric, &evaluation::MetricField::name);
@@ -63,7 +63,7 @@ const evaluation::MetricField& field_of(std::string_view metric) {
     return *found;
 }
 
-/// The colour speaks of the change's worth, not of its sign: fewer missed voxels are better.
+/// The colour shows whether the change is an improvement, not its sign: fewer missed voxels are better.
 std::string_view worth_of(const evaluation::MetricField& field, double change) {
     return (change >= 0.0) == field.is_more_better ? "better" : "worse";
 }

@@ -1,4 +1,4 @@
-// Pictures of a map and of the scene, ray-cast: what the report shows as Fig. 1.
+// Ray-cast pictures of a map and of the scene: Fig. 1 of the report.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,12 +23,12 @@ struct ImagePair {
     Image back;
 };
 
-/// What an occupied voxel of a map turns out to be.
+/// Class of a voxel of a map by the ground truth.
 enum class VoxelKind : std::uint8_t {
     right,          ///< a surface passes through it (or it is interior to a solid)
-    hidden_object,  ///< a surface of a hidden object does
-    wrong,          ///< nothing is there
-    lost,           ///< not occupied: a surface that the map calls free, drawn as a frame
+    hidden_object,  ///< a surface of a hidden object passes through it
+    wrong,          ///< no surface is there
+    lost,           ///< a surface voxel that is free in the map, drawn as a frame
     floor,          ///< outside the judged region, drawn subdued
 };
 struct PaintedVoxel {
@@ -36,14 +36,13 @@ struct PaintedVoxel {
     VoxelKind kind = VoxelKind::right;
 };
 
-/// The map's occupied voxels of the judged region and of the layers down to the floor's, and the lost ones,
-/// by the analytic surfaces.
+/// The map's occupied voxels in the judged region and in the layers down to the floor's, and the lost ones,
+/// classified by the analytic surfaces.
 [[nodiscard]] std::vector<PaintedVoxel> paint_map(const FusedMap& map, const evaluation::Truth& truth);
-/// The analytic surface voxels themselves: what a perfect map would look like.
+/// The analytic surface voxels: the picture of a perfect map.
 [[nodiscard]] std::vector<PaintedVoxel> paint_truth(const evaluation::Truth& truth);
 
-/// What is worth a look of several lists of voxels: the box round all of them but the floor, map frame. Empty
-/// if there is none.
+/// Bounding box of several lists of voxels without the floor, map frame. Empty if there is no voxel.
 [[nodiscard]] Eigen::AlignedBox3d content_of(std::span<const std::vector<PaintedVoxel>> lists,
                                              double resolution_m);
 
@@ -63,9 +62,9 @@ struct Segment {
     Eigen::Vector3d p_base_to = Eigen::Vector3d::Zero();
 };
 
-/// What stands in the scene picture besides the world.
+/// Content of the scene picture besides the world.
 struct SceneDressing {
-    /// Base frame: of floors and beams only what lies within is drawn.
+    /// Base frame. Floors and beams are clipped to this box.
     Eigen::AlignedBox3d stage;
     std::vector<PosedCapsule> robot;
     std::optional<rig::Camera> camera;  ///< drawn with the edges of its view
@@ -74,7 +73,7 @@ struct SceneDressing {
     PictureSize size;
 };
 
-/// The world itself, base frame: the stage, and from behind the camera too. About 3 s of CPU time.
+/// The world in the base frame, from the front and from behind the camera. About 3 s of CPU time.
 [[nodiscard]] ImagePair render_scene(const sim::World& world, const SceneDressing& dressing);
 
 }  // namespace octoskin::report

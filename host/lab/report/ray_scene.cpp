@@ -36,7 +36,7 @@ EmbreeGeometry polygons(RTCDevice device, RTCGeometryType type, const std::vecto
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, kCorners == 4 ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
         kCorners * sizeof(std::uint32_t), list.size()));
-    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();  // all else is as it must be
+    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();  // no other failure is possible
     for (std::size_t i = 0; i < count; ++i) {
         put(vertices + 3 * i, list[i / kCorners].corners[i % kCorners]);
         indices[i] = static_cast<std::uint32_t>(i);
@@ -51,7 +51,7 @@ EmbreeGeometry rods(RTCDevice device, const std::vector<Rod>& list) {
         geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 2 * list.size()));
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(std::uint32_t), list.size()));
-    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();  // all else is as it must be
+    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();  // no other failure is possible
     for (std::size_t i = 0; i < list.size(); ++i) {
         put(vertices + 8 * i, list[i].a);
         put(vertices + 8 * i + 4, list[i].b);
@@ -71,7 +71,7 @@ struct RayScene::Impl {
     Scene visible{rtcNewScene(device.get())};
     Scene opaque{rtcNewScene(device.get())};
 
-    /// Geometries are numbered by their shape. `make` is asked only if there is anything to make.
+    /// Geometries are numbered by their shape. `make` is called only for a list that is not empty.
     template <class List, class Make>
     void add(Shape shape, const List& list, const Make& make) {
         if (list.empty()) {

@@ -1,4 +1,4 @@
-// A picture's geometry as Embree sees it: the only file of the report that includes Embree.
+// A picture's geometry in Embree. The only file of the report that includes Embree.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,7 +12,7 @@ namespace octoskin::report {
 
 enum class Shape : std::uint8_t { face, triangle, body, line };
 
-/// Where a ray first meets the geometry.
+/// The first intersection of a ray with the geometry.
 struct SceneHit {
     float range_m = 0.0F;
     Shape shape = Shape::face;
@@ -23,7 +23,7 @@ struct SceneHit {
     Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< unit, towards the ray's origin
 };
 
-/// Safe to ask from several threads at once.
+/// Queries are safe from several threads at once.
 class RayScene {
   public:
     explicit RayScene(const Geometry& geometry);
@@ -34,8 +34,8 @@ class RayScene {
     /// Lines included. About 0.2 us.
     [[nodiscard]] std::optional<SceneHit> first_hit(const Eigen::Vector3f& origin,
                                                     const Eigen::Vector3f& direction) const;
-    /// Distance to the first thing that stops light within `range_max_m`; empty if nothing does. Lines do
-    /// not.
+    /// Distance to the first obstacle for light within `range_max_m`; empty if there is none. Lines are not
+    /// obstacles.
     [[nodiscard]] std::optional<float> obstacle(const Eigen::Vector3f& origin,
                                                 const Eigen::Vector3f& direction, float range_max_m) const;
 

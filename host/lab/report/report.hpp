@@ -1,4 +1,4 @@
-// report.html: one self-contained file that shows what the fused map knows and the camera cannot.
+// report.html: one self-contained file that shows what the fused map contains beyond the camera's map.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ namespace octoskin::report {
 /// One map or the scene, from the robot's side and from the camera's.
 struct PicturePair {
     std::string title;    ///< "Depth camera only"
-    std::string caption;  ///< what one sees, one or two sentences
+    std::string caption;  ///< description, one or two sentences
     Image front;
     Image back;
 };
 
-/// The account of one kind of input: in = used + sum of rejected.
+/// The input counters of one kind of input: received = used + sum of rejected.
 struct Account {
     std::string input;  ///< "ranges"
     std::uint64_t received = 0;
@@ -30,7 +30,7 @@ struct Account {
     std::vector<std::pair<std::string, std::uint64_t>> rejected;  ///< counter name, count
 };
 
-/// How the ranges of a run came into its map.
+/// How the ranges of a run were mapped.
 struct RangeCounting {
     bool has_rays = true;           ///< some are rays, with the update model's terms
     std::optional<ConeModel> cone;  ///< of beams that were counted, if there are any, and are whole cones
@@ -41,7 +41,7 @@ struct RangeCounting {
 struct ReportInput {
     std::string title = "octoskin: what the camera cannot see";
     evaluation::Results results;
-    /// The configuration that the headline and the pictures speak of.
+    /// The configuration of the headline and the pictures.
     std::string main_configuration = "fast";
     std::uint64_t picture_seed = 0;
     std::vector<PicturePair> pictures;  ///< scene first, then the maps
@@ -53,9 +53,9 @@ struct ReportInput {
     std::vector<std::string> reproduce;       ///< shell commands
 };
 
-/// What the input has nothing of is left out: the camera's share if no map of it was judged, the paper's
-/// figures if the experiment is another. The whole document, UTF-8, no reference to anything outside itself.
-/// Text in the input may hold any characters: it is escaped. Equal inputs give equal bytes.
+/// The whole document, UTF-8, without references to other files. Sections without input are left out: the
+/// camera's figures if no camera map was judged, the paper's figures if this is another experiment. Text in
+/// the input may hold any characters: it is escaped. Equal inputs give equal bytes.
 [[nodiscard]] std::string report_html(const ReportInput& input);
 
 }  // namespace octoskin::report

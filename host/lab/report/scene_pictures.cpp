@@ -40,7 +40,7 @@ void add_world(Geometry& geometry, const sim::World& world, const std::vector<st
     }
 }
 
-/// A camera as it is drawn: its housing, and the edges of what it sees as far as `kReach_m`.
+/// A camera as drawn: its housing, and the edges of its view up to `kReach_m`.
 struct CameraGlyph {
     Eigen::Vector3d eye;
     Eigen::Vector3d right;
@@ -63,7 +63,7 @@ CameraGlyph glyph_of(const rig::Camera& camera) {
              corner(0, camera.height)}};
 }
 
-/// What must be in the picture for the camera not to be cut off.
+/// Points that must be in the picture so that the camera is drawn whole.
 std::vector<Eigen::Vector3d> outline_of(const CameraGlyph& glyph) {
     std::vector<Eigen::Vector3d> points(glyph.corners.begin(), glyph.corners.end());
     const Eigen::Vector3d housing =
@@ -82,12 +82,12 @@ void add_camera(Geometry& geometry, const CameraGlyph& glyph) {
         geometry.lines.push_back({corner, next, kLineRadius_m, colour});
     }
     const Eigen::Vector3f half = (CameraGlyph::kHousingHalf_m * glyph.right).cast<float>();
-    // A line, since the shadow of a camera on the floor would puzzle whoever does not see it.
+    // Drawn as lines, which cast no shadow: the shadow of a camera outside the picture would be confusing.
     geometry.lines.push_back(
         {eye - half, eye + half, static_cast<float>(CameraGlyph::kHousingRadius_m), colour});
 }
 
-/// The part of a beam that begins in the stage and stays there.
+/// The part of a beam from its start, if that is in the stage, to where it leaves the stage.
 void add_beam(Geometry& geometry, const Segment& beam, const Eigen::AlignedBox3d& stage) {
     const Eigen::Vector3d whole = beam.p_base_to - beam.p_base_from;
     double share = 1.0;
@@ -104,7 +104,7 @@ void add_beam(Geometry& geometry, const Segment& beam, const Eigen::AlignedBox3d
     }
 }
 
-/// The part of the stage that the furniture and the robot take up; all of it if that is empty.
+/// The part of the stage that furniture and robot occupy; the whole stage if they are not in it.
 Eigen::AlignedBox3d occupied_part(const sim::World& world, const SceneDressing& dressing) {
     Eigen::AlignedBox3d content;
     for (const auto& solid : world.solids()) {
@@ -137,7 +137,7 @@ ViewPair scene_views(const sim::World& world, const SceneDressing& dressing) {
     const auto outline = outline_of(glyph_of(*dressing.camera));
     const bool is_in_front =
         std::ranges::any_of(outline, [&](const auto& point) { return shows(views.front, point); });
-    // Usually it stands behind what the front shows; the back always makes room for it.
+    // From the front the camera is usually out of view; the view from behind always includes it.
     std::ranges::copy(outline, std::back_inserter(shown));
     const ViewPair with_camera = views_of(shown, dressing.size);
     return {is_in_front ? with_camera.front : views.front, with_camera.back};
@@ -148,7 +148,7 @@ ViewPair scene_views(const sim::World& world, const SceneDressing& dressing) {
 ImagePair render_scene(const sim::World& world, const SceneDressing& dressing) {
     Geometry geometry;
     add_world(geometry, world, dressing.hidden_models);
-    // Upwards and downwards everything is drawn: the stage is what a floor is cut to.
+    // The stage clips floors in x and y only; in z everything is drawn.
     Eigen::AlignedBox3d stage = dressing.stage;
     stage.min().z() -= 1.0;
     stage.max().z() += 1.0;

@@ -1,4 +1,4 @@
-// The report's parts, each as HTML, in the order in which they are read.
+// The sections of the report as HTML, in their order.
 #pragma once
 
 #include <string>
@@ -23,9 +23,9 @@ namespace octoskin::report {
 /// "cone, crate", escaped.
 [[nodiscard]] std::string hidden_objects_text(const ReportInput& input);
 
-/// A chart with what there is to see in it; empty if there is no chart. `caption`: HTML.
+/// A chart with its caption; empty if there is no chart. `caption`: HTML.
 [[nodiscard]] std::string chart_figure(const std::string& svg, std::string_view caption);
-/// Of a legend of lines.
+/// One entry of a legend of lines.
 [[nodiscard]] std::string legend_entry(std::string_view map, std::string_view title);
 
 /// "the fused map" in the words of the report; unknown names as they are, escaped.

@@ -16,7 +16,7 @@ constexpr std::string_view kNoBreakSpace = "\u00a0";
 constexpr std::string_view kReplacement = "\ufffd";
 constexpr std::string_view kUndefined = "\u2013";
 
-/// XML knows no control characters but these three.
+/// XML allows only these three control characters.
 bool is_printable(unsigned char byte) {
     return byte >= 0x20 || byte == '\n' || byte == '\t' || byte == '\r';
 }
@@ -42,7 +42,7 @@ std::string with_minus(const std::string& number) {
     return number.starts_with('-') ? std::string(kMinus) + number.substr(1) : number;
 }
 
-/// No "-0" or "-0.000": a difference too small to be printed has no sign.
+/// Never "-0" or "-0.000": a difference that rounds to 0 has no sign.
 std::string fixed(double value, int digits) {
     const double scale = std::pow(10.0, digits);
     const double rounded = std::round(value * scale) / scale;

@@ -18,7 +18,7 @@ namespace octoskin::report {
 [[nodiscard]] std::string ratio_text(double ratio, int digits = 3);
 /// "10.9 %" with a no-break space.
 [[nodiscard]] std::string percent_text(double share, int digits = 1);
-/// The same with a plus where it is not negative.
+/// `number` with a plus sign if it is not negative.
 [[nodiscard]] std::string signed_text(const std::string& number);
 
 /// How a figure is written: as a count, or with three decimals; as a difference with its sign.
@@ -28,7 +28,7 @@ struct Style {
 };
 /// "–" if it is undefined.
 [[nodiscard]] std::string value_text(const std::optional<double>& value, Style style);
-/// "0.620 ± 0.045"; without spread of a single seed.
+/// "0.620 ± 0.045"; for a single seed without the spread.
 [[nodiscard]] std::string summary_text(const evaluation::Summary& summary, Style style);
 
 }  // namespace octoskin::report

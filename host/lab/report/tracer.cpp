@@ -11,14 +11,14 @@
 namespace octoskin::report {
 namespace {
 
-/// Light that comes from within this distance of a surface counts as blocked, less so the further away.
+/// Range of the ambient occlusion: an obstacle nearer than this blocks light, less the further away it is.
 constexpr float kOcclusionRange_m = 0.7F;
 constexpr float kSkyLight = 0.70F;
 constexpr float kSunLight = 0.55F;
-/// A ray leaves a surface this far from it: more than rounding, less than anybody sees.
+/// A ray leaves a surface this far from it: more than the rounding error, and not visible.
 constexpr float kStart_m = 5e-4F;
 
-/// Directions round +z, as dense as the cosine: the i-th of `count`, all turned by `turn` (0..1).
+/// Directions round +z, distributed as the cosine: the i-th of `count`, all turned by `turn` (0..1).
 Eigen::Vector3f hemisphere_direction(int i, int count, float turn) {
     constexpr float kGoldenRatio = std::numbers::phi_v<float>;
     const float azimuth = 2.0F * std::numbers::pi_v<float> * (static_cast<float>(i) / kGoldenRatio + turn);
@@ -107,7 +107,7 @@ struct Tracer::Impl {
     std::vector<FaceOpenness> face_openness;
 };
 
-/// The paint of what was hit; near a face's edge, within half a pixel or a fiftieth of the face, darker.
+/// The colour of the hit geometry; near a face's edge, within half a pixel or a fiftieth of the face, darker.
 Colour Tracer::Impl::albedo(const SceneHit& hit, float pixel_m) const {
     switch (hit.shape) {
         case Shape::triangle:

@@ -1,4 +1,4 @@
-// Ray-casts a picture's geometry with Embree: sun with shadows, ambient occlusion, edges of voxels.
+// Ray-casts a picture's geometry with Embree: sunlight with shadows, ambient occlusion, voxel edges.
 #pragma once
 
 #include <memory>

@@ -11,11 +11,11 @@
 namespace octoskin::report {
 namespace {
 
-// The style sheet's, of the light theme.
+// Colours of the style sheet's light theme.
 constexpr std::uint32_t kDepth = 0x2b6cb0;
 constexpr std::uint32_t kFused = 0x4b7f2b;
 
-/// One scale along both axes.
+/// A chart with the same scale along both axes.
 Chart chart_from_above(const evaluation::UnknownSpace& space) {
     constexpr double kSide_px = 420.0;
     const double radius_m = space.region.radius_m;
@@ -43,7 +43,7 @@ void paint(Chart& chart, const evaluation::UnknownColumns& columns, std::uint32_
                 image);
 }
 
-/// With the region's edge and the base, over what is there.
+/// Adds the region's edge and the base, and returns the <svg> element.
 std::string finished(Chart& chart, std::string_view title, double radius_m) {
     std::vector<ChartPoint> edge;
     constexpr int kCorners = 72;

@@ -17,7 +17,7 @@ double probability_of(double log_odds) {
     return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
-/// The curve from where hits begin to count, and along 0.5 before.
+/// The curve from the range at which hits begin to count; before it, a line at 0.5.
 struct Curve {
     std::vector<ChartPoint> silent;
     std::vector<ChartPoint> counting;
@@ -55,7 +55,7 @@ void label_ends(Chart& chart, const Curve& curve, std::string_view css_class, do
 
 constexpr int kReadings = 10;
 
-/// Of readings that all hit, or all passed, up to what a voxel's counts may be.
+/// Probability after readings that all hit or all passed, up to the limit of a voxel's counts.
 std::vector<ChartPoint> counted(const CountModel& counts, float mass, bool is_hit) {
     std::vector<ChartPoint> points;
     for (int n = 0; n <= kReadings; ++n) {

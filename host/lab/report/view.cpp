@@ -8,10 +8,10 @@ namespace octoskin::report {
 namespace {
 
 constexpr double kMargin = 1.04;
-// A single point fits from any distance.
+// For a single point: it is in the picture from any distance.
 constexpr double kDistanceMinM = 0.1;
 
-/// Where the middle is looked at from, as a unit vector.
+/// Direction from the middle to the eye, as a unit vector.
 struct Bearing {
     double azimuth_rad;
     double elevation_rad;
@@ -41,7 +41,7 @@ double distance_for(std::span<const Eigen::Vector3d> points, const View& view, c
     return distance_m;
 }
 
-/// Turns towards the middle of what the picture shows, and steps up to it; settles in a few rounds.
+/// Aims at the middle of the projected points and adjusts the distance; converges in a few iterations.
 View framed(std::span<const Eigen::Vector3d> points, PictureSize size, const Bearing& bearing) {
     Eigen::Matrix3d axes;  // right, down, forward
     axes.col(2) = -bearing.unit();

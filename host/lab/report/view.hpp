@@ -1,4 +1,4 @@
-// From where a picture is taken.
+// The viewpoint of a picture.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@ struct PictureSize {
     std::uint32_t height = 650;
 };
 
-/// Metres, in the frame of what is drawn; z is up.
+/// Metres, in the frame of the drawn geometry; z is up.
 struct View {
     Eigen::Vector3d eye = Eigen::Vector3d::Zero();
     Eigen::Vector3d target = Eigen::Vector3d::UnitX();
@@ -22,15 +22,15 @@ struct View {
     PictureSize size;
 };
 
-/// Two pictures of one thing: from the robot's side (low x), above and a little to one side, and from the
-/// camera's (high x).
+/// Two views of the same content: from the robot's side (low x), from above and a little to one side, and
+/// from the camera's side (high x).
 struct ViewPair {
     View front;
     View back;
 };
-/// Both just hold all the points.
+/// Views that just contain all the points.
 [[nodiscard]] ViewPair views_of(std::span<const Eigen::Vector3d> points, PictureSize size = {});
-/// Whether a point lies within the picture, whatever may stand before it.
+/// Whether a point lies within the picture; occlusion is ignored.
 [[nodiscard]] bool shows(const View& view, const Eigen::Vector3d& point);
 
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_of(const Eigen::AlignedBox3d& box);
@@ -44,7 +44,7 @@ class ViewRays {
     [[nodiscard]] Eigen::Vector3f direction(double column, double row) const;
     /// Width of a pixel at a distance of 1 m, in metres.
     [[nodiscard]] double pixel_size() const noexcept { return pixel_size_; }
-    /// Towards the sun, which stands behind the viewer's left shoulder.
+    /// Unit direction to the sun, which is behind the viewer on the left.
     [[nodiscard]] Eigen::Vector3f sun() const;
 
   private:

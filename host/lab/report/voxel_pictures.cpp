@@ -53,7 +53,7 @@ Face face_of(const Eigen::Vector3f& centre, float edge_m, int axis, int side, Co
             colour};
 }
 
-/// The outer faces only: between two drawn voxels there is nothing to see.
+/// Adds outer faces only: a face between two drawn voxels is not visible.
 void add_cube(Geometry& geometry, const PaintedVoxel& voxel, const KeySet& drawn,
               const VoxelLattice& lattice) {
     const Eigen::Vector3f centre = lattice.centre_of(voxel.key).cast<float>();

@@ -1,4 +1,4 @@
-// What a simulation happens in and an evaluation judges in: a scenario, and its world or another one.
+// The scene of a simulation or an evaluation: a scenario, and its world or a replacement.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +16,17 @@ namespace octoskin {
 struct Scene {
     sim::Scenario scenario;
     sim::World world;
-    std::vector<sim::ModelMotion> motions;  ///< of models of the world's; most often none
-    FilePlace world_place;                  ///< that it was read from
-    SourceFile scenario_file;               ///< its CRC-32 is over the files that it extends, too
+    std::vector<sim::ModelMotion> motions;  ///< of models of the world; usually none
+    FilePlace world_place;                  ///< the file it was read from
+    SourceFile scenario_file;               ///< its CRC-32 includes the files that it extends
     SourceFile world_file;                  ///< its CRC-32 leaves out the files of meshes
 };
 
-/// What moves has no one place to be judged by: refuses a scene in which something does.
+/// Refuses a scene with moving models: a model that moves has no single place to judge a map by.
 [[nodiscard]] Status<AppError> check_stands_still(const Scene& scene);
 
-/// Reads both, and checks that one fits the other. `world_instead`: in place of the scenario's; empty: the
-/// scenario's. Under lock_reading(), if other threads may read.
+/// Reads scenario and world, and checks that they match. `world_instead`: in place of the scenario's; empty:
+/// the scenario's. Under lock_reading(), if other threads may read.
 [[nodiscard]] Result<Scene, AppError> read_scene(const FilePlace& scenario, const FilePlace& world_instead);
 
 }  // namespace octoskin

@@ -1,4 +1,4 @@
-// The scene of a simulation as files of its recording, which is judged with them alone.
+// The scene of a simulation as files of its recording. An evaluation needs no other files.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace octoskin {
 
-/// Why a recording goes without its scene; empty: it has it.
+/// Why a recording does not contain its scene; empty: it does.
 using SceneGap = std::optional<std::string>;
 
 /// Writes scenario.yaml, world.sdf, the meshes and motion.yaml into the recording, whose folder is open to
-/// write to, and reads them again: they are the same scene, triangle by triangle, or none of them is left
-/// there. Error (cannot_create): they cannot be written. Under lock_reading(), if other threads may read.
-/// `on_warning`: is called once if meshes are left out, which no sensor sees.
+/// write to, and reads them back. They must be the same scene, triangle by triangle; else all are removed and
+/// the gap is returned. Error (cannot_create): they cannot be written. Call under lock_reading() if other
+/// threads may read. `on_warning`: called once if meshes are left out that no sensor sees.
 [[nodiscard]] Result<SceneGap, AppError> write_scene(
     const Scene& scene, const RecordingPaths& recording,
     const std::function<void(const std::string&)>& on_warning = {});

@@ -19,12 +19,12 @@
 namespace octoskin {
 namespace {
 
-/// Everything that is read before anything is simulated.
+/// The input files, read before the simulation starts.
 struct Inputs {
     Scene scene;
     rig::Rig rig;
     sim::Arm arm;
-    std::vector<rig::Capsule> body;  ///< the real one: without the rig's padding
+    std::vector<rig::Capsule> body;  ///< the true body: without the rig's padding
 };
 
 Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
@@ -47,7 +47,7 @@ std::string describe(const sim::ExperimentError& error, const sim::Scenario& sce
     return scenario.error(error.scenario_key, error.what).message();
 }
 
-/// The files of the recording that is being made; the first error stops the writing and is kept.
+/// Writes the files of the recording. After the first error it writes nothing more and keeps the error.
 class Recorder {
   public:
     static Result<Recorder, AppError> create(const RecordingPaths& paths, const rig::Rig& rig) {
@@ -95,7 +95,7 @@ class Recorder {
     std::optional<std::string> error_;
 };
 
-/// The checksum of its files; empty: it cannot be had as files of a recording.
+/// The checksum of the scene's files; empty: the recording does not contain the scene.
 Result<std::optional<std::uint32_t>, AppError> record_scene(const Scene& scene, const RecordingPaths& paths,
                                                             const SimulationRequest& request) {
     const auto lock = lock_reading();

@@ -25,20 +25,20 @@ struct SimulationRequest {
     bool is_depth_noise_free = false;
     std::optional<sim::EmulatedBoards> emulated{};  ///< boards run the flashed image
     std::vector<sim::BoardStart> board_starts{};    ///< of boards in this process; see there
-    FilePlace out{};                                ///< made if it is not there
-    /// Is told why the recording goes without its scene, if it does.
+    FilePlace out{};                                ///< created if it does not exist
+    /// Called with the reason if the recording does not contain its scene.
     std::function<void(const std::string& why)> on_scene_gap{};
-    /// Of each thing that was passed over when the world was read.
+    /// Called for each element that was skipped when the world was read.
     std::function<void(const std::string& warning)> on_world_warning{};
-    bool may_replace = false;  ///< what is in `out`, if that is a simulated recording
+    bool may_replace = false;  ///< the content of `out`, if that is a simulated recording
 };
 
-/// Hands each of the world's warnings to on_world_warning, if there is one.
+/// Calls on_world_warning, if set, with each of the world's warnings.
 void tell_world_warnings(const SimulationRequest& request, const sim::World& world);
 
-/// Simulates and records; unless it succeeds, `out` stays as it was. The recording's rig has the seed's shift
-/// in T_map_base. Several threads may each make a recording. state: not to be called while another thread
-/// reads a rig, world or robot, except for `read_lock` below.
+/// Simulates and records. On failure `out` is unchanged. The recording's rig has the seed's shift in
+/// T_map_base. Several threads may each make a recording. state: not to be called while another thread reads
+/// a rig, world or robot, except for `read_lock` below.
 [[nodiscard]] Result<sim::ExperimentSummary, AppError> simulate_recording(
     const SimulationRequest& request, const std::function<void(double)>& on_progress = {});
 

@@ -1,5 +1,5 @@
-// What the report says of one run in words: captions, idealisations, the command. All of it follows from the
-// rig, the scenario and the request.
+// The texts of the report on one run: captions, idealisations, the command. They depend on the rig, the
+// scenario and the request only.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,17 @@
 
 namespace octoskin {
 
-/// What the scene picture shows. `beams`: of how many range sensors a beam is drawn.
+/// Caption of the scene picture. `beams`: number of range sensors whose beam is drawn.
 [[nodiscard]] std::string scene_caption(const rig::Rig& rig, const sim::Scenario& scenario,
                                         std::size_t beams);
 
-/// What this simulation leaves out or makes kinder than a robot cell, one sentence each.
+/// What this simulation leaves out or simplifies compared with a robot cell, one sentence each.
 [[nodiscard]] std::vector<std::string> idealisations_of(const rig::Rig& rig, const sim::Scenario& scenario);
 
-/// How the ranges of this rig's sensors come into the map: which as rays, which as counts.
+/// How the ranges of this rig's sensors are mapped: which as rays, which as counts.
 [[nodiscard]] report::RangeCounting range_counting_of(const rig::Rig& rig, const MappingConfig& mapping);
 
-/// The shell command that does a study again, every choice written out.
+/// The shell command that repeats a study, with every option written out.
 [[nodiscard]] std::string command_of(const StudyRequest& request);
 
 }  // namespace octoskin

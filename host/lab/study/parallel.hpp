@@ -1,4 +1,4 @@
-// Independent pieces of work on several threads, their results in order.
+// Runs independent tasks on several threads and returns their results in order.
 #pragma once
 
 #include <algorithm>
@@ -16,13 +16,13 @@
 
 namespace octoskin {
 
-/// The results of `work(0)` to `work(count - 1)`, in that order, done by up to `jobs` threads at once (at
-/// least one). After the first error, or the first exception, nothing new is begun; it is returned, or thrown
-/// again here, once what was under way has ended.
+/// The results of `work(0)` to `work(count - 1)`, in that order, computed by up to `jobs` threads (at least
+/// one). After the first error or exception no new task begins. It is returned, or rethrown here, after the
+/// running tasks have ended.
 template <class T, class E>
 [[nodiscard]] Result<std::vector<T>, E> work_in_parallel(
     std::size_t count, unsigned jobs, const std::function<Result<T, E>(std::size_t index)>& work) {
-    std::mutex mutex;  // guards all below but `next`
+    std::mutex mutex;  // guards all below except `next`
     std::vector<std::optional<T>> results(count);
     std::optional<E> error;
     std::exception_ptr exception;

@@ -1,4 +1,4 @@
-// Wall and CPU time of one part of the work, on the thread that does it.
+// Wall and CPU time of one part of the work, measured on the thread that does it.
 #pragma once
 
 #include <ctime>

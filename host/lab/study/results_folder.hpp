@@ -1,4 +1,5 @@
-// Where an experiment's results go: what an experiment left there may be replaced, anything else may not.
+// The folder of an experiment's results. Results of an earlier experiment may be replaced, other files may
+// not.
 #pragma once
 
 #include <string>
@@ -9,15 +10,15 @@
 
 namespace octoskin {
 
-/// That an experiment may write its results into `folder`: nothing is in it, or the results of one before,
-/// each file byte for byte as it was left and noted, and beside them what no experiment writes; and in the
-/// place of each file lies nothing that cannot be replaced. Changes nothing. To be called while the folder is
-/// locked (MapFolder), and once before, as to lock it clears away what a killed octoskin left. Error:
-/// cannot_create, which names what would be lost or is in the way. Reads all that would be replaced.
+/// Checks that an experiment may write its results into `folder`: it is empty, or the result files in it are
+/// byte for byte as an earlier experiment noted them (other files may be beside them), and each place can be
+/// replaced. Changes nothing. Call it while the folder is locked (MapFolder), and once before: locking
+/// removes leftovers of a killed octoskin. Error: cannot_create, with the name of the file in the way. Reads
+/// all files that would be replaced.
 [[nodiscard]] Status<AppError> check_results_folder(const OpenFolder& folder);
 
-/// Notes in `folder` that its `name` (metrics.json, report.html, maps.yaml, or each file of the directory
-/// recording) is there as this experiment made it. The maps are noted by maps.yaml (MapOrigin). Error:
+/// Notes in `folder` the CRC-32 of `name` (metrics.json, report.html, maps.yaml, or each file of the
+/// directory recording) as a result of this experiment. maps.yaml notes the maps (MapOrigin). Error:
 /// cannot_create.
 [[nodiscard]] Status<AppError> note_result(const OpenFolder& folder, const std::string& name);
 

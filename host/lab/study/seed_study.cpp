@@ -14,7 +14,7 @@ namespace {
 
 using Say = std::function<void(const std::string&)>;
 
-/// Says how far a long part is, every quarter.
+/// Reports the progress of a long part at every quarter.
 class Quarters {
   public:
     Quarters(const Say& say, std::string part) : say_(say), part_(std::move(part)) {}
@@ -59,13 +59,13 @@ RecordingPaths recording_of(const SeedRequest& request, const NamedMapping& conf
     return RecordingPaths(configuration.is_depth_noise_free ? request.scratch : request.recording);
 }
 
-/// Where the arm may come: the ball that `octoskin query --unknown` asks about by default.
+/// The default region of `octoskin query --unknown`: a ball around the arm's reach.
 PocketRegion region_about_arm(const rig::Rig& rig) {
     const Eigen::Vector3d base = rig.T_map_base.translation();
     return {.centre = base, .radius_m = 1.0, .z_min_m = base.z()};
 }
 
-/// Shows the maps to a meter, with the time of what went in last.
+/// Passes the maps to a meter, with the time of the last measurement in them.
 class UnknownSpaceWatch final : public CommitListener {
   public:
     explicit UnknownSpaceWatch(const rig::Rig& rig)
@@ -115,7 +115,7 @@ void judge(const Playback& playback, const std::string& configuration, const eva
            SeedOutcome& outcome) {
     const PartTimer timer("evaluate");
     for (const auto& [feed, map] : playback.pipeline.maps()) {
-        // Without a camera there is one map only, whatever it is called.
+        // Without a camera there is only the map of the ranges.
         if (!playback.rig.camera && feed != MapFeed::ranges) continue;
         outcome.runs.push_back(
             {configuration, std::string(name_of(feed)), outcome.seed, evaluation::evaluate(map, truth)});
@@ -138,7 +138,7 @@ Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const 
     return std::move(*truth);
 }
 
-/// What is left over goes with the work folder.
+/// Leftovers are removed with the work folder.
 void remove(const FilePlace& folder) {
     if (const auto parent = folder.parent_to_write())
         static_cast<void>(parent->remove_all(folder.filename()));

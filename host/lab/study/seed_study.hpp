@@ -19,21 +19,21 @@
 
 namespace octoskin {
 
-/// What all seeds share.
+/// Input shared by all seeds.
 struct StudyGround {
     const sim::World& world;
     const sim::Scenario& scenario;
     const evaluation::Survey& survey;
-    const evaluation::TruthConfig& truth;  ///< without the external camera, which the seed's rig knows
+    const evaluation::TruthConfig& truth;  ///< without the external camera, which the seed's rig defines
 };
 
 struct SeedRequest {
-    SimulationRequest simulation;  ///< `seed` set; `out` and the noise are chosen here
+    SimulationRequest simulation;  ///< `seed` must be set; `out` and the noise are set here
     std::vector<NamedMapping> configurations;
     FilePlace recording;  ///< where the noisy recording goes
     FilePlace scratch;    ///< for the noise-free one; removed afterwards
     bool keeps_recording = false;
-    std::string main_configuration;  ///< whose maps are handed back
+    std::string main_configuration;  ///< whose maps are returned
     bool keeps_maps = false;
 };
 
@@ -47,7 +47,7 @@ struct SeedOutcome {
     std::optional<evaluation::UnknownSpace> unknown_space;
 };
 
-/// `say`: one line for a person about what has just been done.
+/// `say`: called with one line of progress after each part.
 [[nodiscard]] Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const StudyGround& ground,
                                                        const std::function<void(const std::string&)>& say);
 

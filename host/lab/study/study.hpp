@@ -21,30 +21,30 @@ struct StudyRequest {
     std::vector<std::uint64_t> seeds;
     std::vector<std::string> configurations;
     unsigned jobs = 1;
-    /// The scenario that re-enacts the paper's experiment, to tell whether this is it.
+    /// The scenario of the paper's experiment, to detect whether this run repeats it.
     std::filesystem::path papers_scenario;
     std::filesystem::path out;
 };
 
-/// Writes into `out`: metrics.json, report.html, the maps depth (if the rig has a camera), proximity
-/// and fused (.ot .bt .ply) and
-/// recording/ of the first seed in its main configuration (the default if it is among them). `say`: progress,
-/// one line each, called under a lock. What cannot
-/// be judged is refused first; so is an `out` with anything to lose (check_results_folder()).
+/// Writes into `out`: metrics.json, report.html, the maps depth (if the rig has a camera), proximity and
+/// fused (.ot .bt .ply) and recording/ of the first seed in its main configuration (the default if it is
+/// among them). `say`: progress, one line each, called under a lock. Inputs that cannot be judged are refused
+/// first, and so is an `out` whose content would be lost (check_results_folder()).
 [[nodiscard]] Result<evaluation::Results, AppError> run_study(
     const StudyRequest& request, const std::function<void(const std::string&)>& say);
 
-/// Whether a run is the paper's experiment, so that the paper's table belongs beside it: one of the shipped
-/// rigs experiment*.yaml by its name, in `papers_scenario` itself and in its world (`world` empty).
+/// Whether a run repeats the paper's experiment, so that the paper's table is shown beside it: the rig's name
+/// is one of the shipped experiment*.yaml, the scenario is `papers_scenario` itself, and the world is the
+/// scenario's (`world` empty).
 [[nodiscard]] bool is_papers_experiment(const rig::Rig& rig, const std::filesystem::path& scenario,
                                         const std::filesystem::path& world,
                                         const std::filesystem::path& papers_scenario);
 
-/// What figures depend on, for `evaluation::Results`: this program, and the files with their CRC-32.
+/// The provenance of the figures, for `evaluation::Results`: this program, and the files with their CRC-32.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(const Scene& scene,
                                                                              const SourceFile& rig);
 
-/// The judged region and what else the evaluation takes from a scenario.
+/// The judged region and the other settings that the evaluation takes from a scenario.
 [[nodiscard]] evaluation::TruthConfig truth_config_of(const sim::Scenario& scenario, double resolution_m);
 /// The ground-truth camera's tour round the scenario's region.
 [[nodiscard]] evaluation::SurveyConfig survey_config_of(const sim::Scenario& scenario);

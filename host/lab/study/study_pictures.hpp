@@ -12,8 +12,8 @@
 
 namespace octoskin {
 
-/// Scene first, then depth, proximity and fused; of a rig without camera only the scene and proximity. About
-/// 10 s on one core.
+/// Scene first, then depth, proximity and fused; for a rig without a camera only the scene and proximity.
+/// About 10 s on one core.
 [[nodiscard]] std::vector<report::PicturePair> draw_pictures(const sim::World& world,
                                                              const sim::Scenario& scenario,
                                                              const rig::Rig& rig,

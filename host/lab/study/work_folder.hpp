@@ -1,4 +1,4 @@
-// A folder of one run's own for what is removed afterwards: nothing that anybody else put somewhere is in it.
+// A temporary folder of one run. It contains only files of this run.
 #pragma once
 
 #include "common/result.hpp"
@@ -8,10 +8,10 @@
 
 namespace octoskin {
 
-/// Removed, with all that is in it, at the end of its life, and if the process is told to end before.
+/// Removed with its content by the destructor, and when a signal ends the process.
 class WorkFolder {
   public:
-    /// A new folder in `parent`, which is open to write to. Error: cannot_create.
+    /// Creates a new folder in `parent`, which must be open for writing. Error: cannot_create.
     [[nodiscard]] static Result<WorkFolder, AppError> create(const OpenFolder& parent);
     WorkFolder(WorkFolder&& other) noexcept;
     WorkFolder& operator=(WorkFolder&&) = delete;

@@ -1,4 +1,4 @@
-// The files of a folder, opened beneath its descriptor, for libraries that want a path.
+// Opens files beneath the descriptor of a folder, for libraries that need a path.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ class FolderFiles final : public WorldFiles {
     [[nodiscard]] static Result<std::unique_ptr<FolderFiles>, std::string> open(
         const std::filesystem::path& folder);
 
-    /// `file`: relative to the folder. What was opened stays open.
+    /// `file`: relative to the folder. Opened files stay open.
     [[nodiscard]] Result<std::filesystem::path, std::string> openable(
         const std::filesystem::path& file) const override;
 

@@ -19,7 +19,7 @@ struct Refused {
     std::string text;
 };
 
-/// The libraries open files before main() begins.
+/// A function-local static: the libraries open files before main() begins.
 Refused& refused() {
     static Refused one;
     return one;
@@ -38,7 +38,7 @@ std::FILE* open_ordinary(const char* path, const char* mode) {
         return nullptr;
     }
     if (const auto kind = rig::other_than_a_file(path); !kind.empty()) return refuse(path, kind);
-    // It may have been exchanged since.
+    // The file may have been replaced since the check.
     const int file = ::open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (file < 0) return nullptr;
     struct stat status {};
@@ -56,7 +56,7 @@ std::string refused_file() {
 
 }  // namespace octoskin::sim
 
-// The C library's own are not called any more: not by this program and not by a library that it loads.
+// These replace the C library's functions for this program and for every library that it loads.
 extern "C" {
 [[gnu::visibility("default")]] std::FILE* fopen(const char* path, const char* mode) {
     return octoskin::sim::open_ordinary(path, mode);

@@ -1,4 +1,4 @@
-// The checks of an SDF file that need no sdformat, and the module that has it.
+// Checks of an SDF file that do not need sdformat, and loading of the module that contains sdformat.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace octoskin::sim {
 
-/// The solids of an SDF file. `files`: all that it may refer to; nullptr: any. The module is loaded only for
-/// a file that is XML and has the root of an SDF file: that takes 35 ms.
+/// The solids of an SDF file. `files`: the files that it may refer to; nullptr: any. The module is loaded
+/// only for an XML file with the root element of SDF: loading takes 35 ms.
 [[nodiscard]] SolidsOrError load_solids(const std::filesystem::path& sdf, const WorldFiles* files);
 
 }  // namespace octoskin::sim
