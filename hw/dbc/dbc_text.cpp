@@ -20,7 +20,7 @@ using wire::Unit;
 
 constexpr const char* kHostName = "Host";
 
-/// One identifier on the bus.
+/// A message with one identifier on the bus.
 struct BusMessage {
     std::string name;
     std::uint32_t can_id = 0;
@@ -125,12 +125,12 @@ std::string multiplexing_of(const Signal& signal) {
     return signal.only_if ? fmt::format(" m{}", signal.only_if->min) : "";
 }
 
-/// DBC names a signal by its lowest bit, but one whose high byte comes first by its highest.
+/// The start bit of a signal in DBC: its lowest bit or, for one with the high byte first, its highest.
 unsigned dbc_start(const Signal& signal) {
     return signal.is_high_byte_first ? signal.start + 7 : signal.start;
 }
 
-/// 15 digits are exact for every factor and limit here, and show no binary fraction's tail.
+/// 15 digits are exact for every factor and limit here, without binary rounding digits.
 std::string limits_text(const Signal& signal, double factor) {
     if (!signal.is_signed) {
         return fmt::format("[{:.15g}|{:.15g}]", static_cast<double>(signal.min) * factor,
@@ -162,8 +162,8 @@ bool is_wide(const Signal& signal) {
     return signal.only_if && signal.only_if->min != signal.only_if->max;
 }
 
-/// A signal that is there for several values of the selector needs the extended way to say so, and then so do
-/// all that depend on the same selector.
+/// A signal that is present for several values of the selector needs extended multiplexing. All other signals
+/// of that selector then need it, too.
 std::string ranges_text(const BusMessage& message) {
     const std::vector<Signal> signals = signals_of(message.spec->type);
     if (std::ranges::none_of(signals, is_wide)) {
@@ -205,7 +205,7 @@ constexpr std::string_view kComment =
     "docs/protocol.md. "
     "Take the bytes beyond the end of a RANGE_FD frame of less than 64 bytes as zero.\";\n";
 
-// The names and numbers that CAN tools know: 0 is a classical frame, 14 one in CAN FD format.
+// Attribute names and numbers used by CAN tools: 0 is a classical frame, 14 a CAN FD frame.
 constexpr std::string_view kAttributes =
     "BA_DEF_ \"BusType\" STRING ;\n"
     "BA_DEF_ BO_ \"VFrameFormat\" ENUM "

@@ -1,5 +1,5 @@
-// The wire as a DBC file, the format that CAN tools read (candump's companions, SavvyCAN, canmatrix,
-// cantools).
+// The protocol as a DBC file, the format of CAN tools (SavvyCAN, canmatrix, cantools, and tools for candump's
+// logs).
 #pragma once
 
 #include <optional>
@@ -19,15 +19,15 @@ struct Node {
     std::string name;  ///< a C identifier, at most 32 characters
 };
 
-/// The two sensor boards and the joint source of the rigs in hw/rigs/: what hw/octoskin.dbc is made of.
+/// The two sensor boards and the joint source of the rigs in hw/rigs/: the nodes of hw/octoskin.dbc.
 [[nodiscard]] std::vector<Node> shipped_nodes();
 
-/// "9:board" or "10:joints": a sensor board or a joint source by its id, named "Board9" or "Joints10". Empty
-/// for any other text, and for an id that no node may have.
+/// "9:board" or "10:joints": a sensor board or a joint source with its id, named "Board9" or "Joints10".
+/// Empty for any other text, and for an id outside 1..62.
 [[nodiscard]] std::optional<Node> node_from_text(std::string_view text);
 
-/// The DBC of a bus with the host and `nodes`, whose ids differ: one message for each identifier that may be
-/// on it. Equal nodes give equal text.
+/// The DBC of a bus with the host and `nodes`, whose ids must differ: one message per identifier. Equal nodes
+/// give equal text.
 [[nodiscard]] std::string dbc_text(const std::vector<Node>& nodes);
 
 }  // namespace octoskin::dbc

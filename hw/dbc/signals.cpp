@@ -17,7 +17,7 @@ namespace {
 
 using namespace wire;
 
-/// The walker that describes: see common/wire/layout.hpp.
+/// Visits the fields of a message and lists them as signals: see common/wire/layout.hpp.
 class SignalLister {
   public:
     static constexpr bool kFillsIn = false;
@@ -77,7 +77,7 @@ class SignalLister {
         return signals_.back();
     }
 
-    /// Numbers of which some or all values have names.
+    /// Names for numeric fields, some or all of whose values have one.
     static Names names_of_numbers(std::string_view field) {
         Names names;
         if (field == "zone") {
@@ -114,9 +114,9 @@ void widen(Signal& signal, const Signal& other) {
     }
 }
 
-/// What several of `layouts` alternatives have in the same place becomes one signal; what all have depends on
-/// nothing. Here alternatives that share a field always follow one another, so that a range of the selector
-/// tells which.
+/// Merges the signals of `layouts` alternative layouts. A signal that several layouts have in the same place
+/// becomes one; a signal of all layouts no longer depends on the selector. Layouts that share a field must
+/// have consecutive selector values, so that one range identifies them.
 std::vector<Signal> merge_alternatives(const std::vector<Signal>& all, std::ptrdiff_t layouts) {
     std::vector<Signal> merged;
     for (const Signal& signal : all) {

@@ -1,5 +1,5 @@
-// Every message's fields as a list of named bits: the same walk over common/wire/layout.hpp as the codec's,
-// written down instead of carried out.
+// The fields of each message as a list of named bits, from the same declaration as the codec
+// (common/wire/layout.hpp).
 #pragma once
 
 #include <cstdint>
@@ -15,26 +15,28 @@ namespace octoskin::dbc {
 
 struct Signal {
     std::string name;
-    /// Linear bit number of the lowest bit; of a high-byte-first signal, of its first byte's lowest bit.
+    /// Linear bit number of the lowest bit. For a high-byte-first signal: of the lowest bit of its first
+    /// byte.
     unsigned start = 0;
     unsigned bits = 0;
     bool is_signed = false;
     bool is_high_byte_first = false;  ///< a CRC-16
     wire::Unit unit = wire::Unit::none;
-    std::uint64_t min = 0;  ///< smallest and largest raw value that is valid, if unsigned
+    std::uint64_t min = 0;  ///< `min` and `max`: smallest and largest valid raw value of an unsigned signal
     std::uint64_t max = 0;
-    bool is_selector = false;  ///< its value tells which of the others are there
+    bool is_selector = false;  ///< its value selects which other signals are present
 
     struct SelectorRange {
         unsigned min = 0;
         unsigned max = 0;
     };
-    std::optional<SelectorRange> only_if = std::nullopt;        ///< there only while the selector is within
+    std::optional<SelectorRange> only_if =
+        std::nullopt;  ///< present only while the selector is in this range
     std::vector<std::pair<unsigned, std::string>> values = {};  ///< raw value -> name
 };
 
-/// All signals of an assigned type in wire order, version first, checksum last. What several layouts of one
-/// type have in the same place is one signal. The checksum of a RANGE_FD is another signal for each length.
+/// All signals of a frame type in wire order: version first, checksum last. A field that several layouts of
+/// one type have in the same place is one signal. RANGE_FD has one checksum signal per length.
 [[nodiscard]] std::vector<Signal> signals_of(wire::FrameType type);
 
 }  // namespace octoskin::dbc

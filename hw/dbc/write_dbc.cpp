@@ -1,4 +1,4 @@
-// Writes a DBC to standard output: of the shipped rigs, or of the nodes named.
+// Writes a DBC to standard output, for the shipped rigs or for the given nodes.
 //     build/host-release/bin/write_dbc > hw/octoskin.dbc
 //     build/host-release/bin/write_dbc 1:board 10:joints > bench.dbc
 #include <algorithm>

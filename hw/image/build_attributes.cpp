@@ -15,7 +15,7 @@ constexpr std::uint32_t kTagCpuRawName = 4;
 constexpr std::uint32_t kTagCpuName = 5;
 constexpr std::uint32_t kTagCompatibility = 32;
 
-/// Takes things from the front; remembers that one was not there.
+/// Reads values from the front. A read past the end sets `has_failed`.
 class Reader {
   public:
     explicit Reader(Bytes bytes) : bytes_(bytes) {}
@@ -70,7 +70,7 @@ class Reader {
     bool has_failed_ = false;
 };
 
-/// Names are texts; of the tags from 32 the odd ones are too.
+/// The name tags have text values, and so do odd tags above 32.
 bool is_text(std::uint32_t tag) {
     return tag == kTagCpuRawName || tag == kTagCpuName || (tag > kTagCompatibility && tag % 2 == 1);
 }
@@ -89,12 +89,12 @@ bool read_file_attributes(Bytes bytes, Attributes& attributes) {
     return !reader.has_failed();
 }
 
-/// One vendor's part: sub-subsections for the file, for sections, for symbols.
+/// One vendor's part: sub-subsections for the file, sections and symbols. Only those of the file are used.
 bool read_vendor(Bytes bytes, Attributes& attributes) {
     Reader reader(bytes);
     while (!reader.is_at_end()) {
         const std::uint32_t tag = reader.uleb();
-        const std::uint32_t size = reader.u32();  // of tag and size, too
+        const std::uint32_t size = reader.u32();  // includes tag and size
         constexpr std::uint32_t kHeaderBytes = 5;
         if (reader.has_failed() || size < kHeaderBytes) return false;
         const Bytes contents = reader.take(size - kHeaderBytes);
@@ -112,7 +112,7 @@ std::optional<Attributes> build_attributes(Bytes section) {
     if (version.empty() || version[0] != kFormatVersion) return std::nullopt;
     Attributes attributes;
     while (!reader.is_at_end()) {
-        const std::uint32_t size = reader.u32();  // its own four bytes, too
+        const std::uint32_t size = reader.u32();  // includes its own four bytes
         if (reader.has_failed() || size < 4) return std::nullopt;
         Reader part(reader.take(size - 4));
         const std::string vendor = part.text();

@@ -14,10 +14,10 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr std::size_t kFileBytesMax = std::size_t{64} << 20U;  ///< with debug information ours have 2 MiB
+constexpr std::size_t kFileBytesMax = std::size_t{64} << 20U;  ///< an image with debug information has 2 MiB
 constexpr std::size_t kPieceBytes = std::size_t{1} << 16U;
 
-/// The structure at `offset`, if it is within the file.
+/// The structure at `offset`; empty if it is not within the file.
 template <class T>
 std::optional<T> at(Bytes file, std::uint64_t offset) {
     if (offset > file.size() || file.size() - offset < sizeof(T)) return std::nullopt;
@@ -26,16 +26,16 @@ std::optional<T> at(Bytes file, std::uint64_t offset) {
     return value;
 }
 
-/// `size` bytes at `offset`, if they are within the file.
+/// `size` bytes at `offset`; empty if they are not within the file.
 std::optional<Bytes> part(Bytes file, std::uint64_t offset, std::uint64_t size) {
     if (offset > file.size() || file.size() - offset < size) return std::nullopt;
     return file.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
 }
 
-/// Symbols' names are short; a file that says otherwise is not believed.
+/// Longest symbol name; longer ones are cut off, against malformed files.
 constexpr std::size_t kNameLengthMax = 4096;
 
-/// Nor one with more segments, each of which could be the whole file.
+/// Most segments, against malformed files: each segment could be as large as the file.
 constexpr std::uint32_t kSegmentsMax = 64;
 
 std::string text_at(Bytes file, std::uint64_t offset) {
@@ -114,7 +114,7 @@ void ElfImage::take_sections(Bytes file) {
             const auto bytes = part(file, found->sh_offset, found->sh_size);
             if (bytes) attributes_.assign(bytes->begin(), bytes->end());
         }
-        // There is one table of symbols at most (System V ABI, "Sections").
+        // There is at most one symbol table (System V ABI, "Sections").
         if (!found || found->sh_type != SHT_SYMTAB || has_symbols) continue;
         has_symbols = true;
         const auto names = section(found->sh_link);

@@ -1,5 +1,4 @@
-// The program for a board: an ELF file as a flashing tool takes it, what it says about itself, and its
-// symbols.
+// The program for a board: the segments, build attributes and symbols of an ELF file.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 namespace octoskin::image {
 
 struct ElfSegment {
-    std::uint32_t physical_address;  ///< where the flashing tool puts it
+    std::uint32_t physical_address;  ///< address for the flashing tool
     std::vector<std::uint8_t> bytes;
 };
 
@@ -24,21 +23,21 @@ struct ElfError {
 
 class ElfImage {
   public:
-    /// A little-endian 32-bit ARM executable; segments without file contents are left out. Errors: the file
-    /// cannot be read, or has over 64 MiB, and those of `parse`; the message names the file.
+    /// Loads a little-endian 32-bit ARM executable; segments without file contents are left out. Errors: the
+    /// file cannot be read, or has over 64 MiB, and those of `parse`. The message contains the path.
     [[nodiscard]] static Result<ElfImage, ElfError> load(const std::string& path);
     /// `file`: the whole ELF file. Errors: not such an executable; over 64 segments; a header or a segment
-    /// reaches past the end.
+    /// extends past the end.
     [[nodiscard]] static Result<ElfImage, ElfError> parse(std::span<const std::uint8_t> file);
 
     [[nodiscard]] const std::vector<ElfSegment>& segments() const noexcept { return segments_; }
-    /// Where execution starts, the Thumb bit included.
+    /// Entry address, including the Thumb bit.
     [[nodiscard]] std::uint32_t entry() const noexcept { return entry_; }
     /// The contents of `.ARM.attributes`, for `build_attributes`; empty if there are none.
     [[nodiscard]] std::span<const std::uint8_t> attributes() const noexcept { return attributes_; }
-    /// Address of a function (without the Thumb bit) or object.
+    /// Address of a function (without the Thumb bit) or object; empty if there is no such symbol.
     [[nodiscard]] std::optional<std::uint32_t> address_of(const std::string& symbol) const;
-    /// "function+0x12", or the bare address where no function is known.
+    /// "function+0x12", or the bare address if it precedes every known function.
     [[nodiscard]] std::string place(std::uint32_t address) const;
 
   private:

@@ -40,7 +40,7 @@ void append_part(std::string& text, const FlashPart& part) {
                                                        static_cast<std::uint8_t>(address >> 16U & 0xFFU)};
             append_record(text, HexRecord::extended_linear_address, 0, upper);
         }
-        // No record crosses a 64 KiB line: the upper half of the address would change within it.
+        // No record crosses a 64 KiB boundary, where the upper half of the address changes.
         const std::size_t to_line = 0x1'0000U - (address & 0xFFFFU);
         const std::size_t count = std::min({kBytesPerRecord, part.bytes.size() - at, to_line});
         append_record(text, HexRecord::data, static_cast<std::uint16_t>(address & 0xFFFFU),

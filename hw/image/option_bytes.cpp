@@ -12,9 +12,8 @@ struct Field {
     std::uint32_t lowest_bit;
     std::uint32_t bits;
     std::uint32_t wanted;
-    bool is_written;  ///< by `--write-option-bytes`; a chip in use cannot change the others without being
-                      ///< erased
-    const char* otherwise;  ///< what the board may do if it has another value
+    bool is_written;        ///< by `--write-option-bytes`; the others can change only on an erased chip
+    const char* otherwise;  ///< effect on the board of another value
 
     [[nodiscard]] constexpr std::uint32_t mask() const { return ((1U << bits) - 1U) << lowest_bit; }
     [[nodiscard]] constexpr std::uint32_t value_in(std::uint32_t word) const {
@@ -22,8 +21,8 @@ struct Field {
     }
 };
 
-// 2.8 V, the highest level: the sensors are specified from 2.6 V up, so the controller stops before they do.
-// Starting from flash is fixed here and not left to the level of BOOT0, which is PB8 on the connector.
+// BOR_LEV 4 is 2.8 V, the highest level: the sensors are specified from 2.6 V, so the controller stops before
+// they do. The start from flash is fixed, since BOOT0 is PB8 on the connector and its level could change it.
 constexpr auto kFields = std::to_array<Field>({
     {"BOR_LEV", 8, 3, 4, true,
      "a dip of the supply is noticed too late: the sensors fail before the controller resets"},

@@ -1,5 +1,5 @@
-// The option bytes of the STM32G474 that decide whether a board starts and stays sound: FLASH_OPTR. RM0440,
-// "Option bytes"; bit positions as in ST's CMSIS header.
+// The option bytes of the STM32G474 that a board depends on: FLASH_OPTR. RM0440, "Option bytes"; bit
+// positions as in ST's CMSIS header.
 #pragma once
 
 #include <cstdint>
@@ -8,27 +8,27 @@
 
 namespace octoskin::image {
 
-/// FLASH_OPTR itself, and its offset from the flash interface's base, as OpenOCD wants it.
+/// Address of FLASH_OPTR, and its offset from the flash interface's base, as OpenOCD expects it.
 inline constexpr std::uint32_t kOptionRegister = 0x4002'2020;
 inline constexpr std::uint32_t kOptionRegisterOffset = 0x20;
 
-/// The fields that a board must have, and their values: what `--write-option-bytes` writes. The read
-/// protection is not among them: changing it would erase the chip, or close it for ever.
+/// The required fields and their values, as `--write-option-bytes` writes them. The read protection is not
+/// among them: changing it would erase the chip or lock it permanently.
 struct MaskedWord {
     std::uint32_t mask = 0;
     std::uint32_t value = 0;
 };
 [[nodiscard]] MaskedWord wanted_option_bytes();
 
-/// All fields that are checked, with their values: "BOR_LEV 4, BFB2 0, ..."; and those of them that
-/// `--write-option-bytes` does not write.
+/// All checked fields with their values: "BOR_LEV 4, BFB2 0, ...". Then those that `--write-option-bytes`
+/// does not write.
 [[nodiscard]] std::string wanted_text();
 [[nodiscard]] std::string unwritten_text();
 
-/// A sentence for each field that differs from what a board must have; empty if none does.
+/// One message per field that differs from its required value; empty if none does.
 [[nodiscard]] std::vector<std::string> option_byte_faults(std::uint32_t flash_optr);
 
-/// Whether the chip refuses to be programmed (read protection level 1 or 2).
+/// Whether the chip refuses programming (read protection level 1 or 2).
 [[nodiscard]] constexpr bool is_read_protected(std::uint32_t flash_optr) {
     return (flash_optr & 0xFFU) != 0xAA;
 }

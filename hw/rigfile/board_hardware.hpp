@@ -1,4 +1,4 @@
-// What a type of board is made of, beyond the limits that a rig is checked against: memory, clocks, pins.
+// The hardware of a type of board: memory, clocks, pins. The limits for the check of a rig are in rig.hpp.
 #pragma once
 
 #include <cstdint>
@@ -30,19 +30,19 @@ struct BoardPin {
 };
 
 struct BoardSignal {
-    std::string signal;  ///< what we call it
+    std::string signal;  ///< octoskin's name
     BoardPin pin;
     std::string connector;  ///< "CN7-17"
     std::string function;   ///< the datasheet's name of the pin's role; "input" or "output" for a plain one
     std::optional<std::uint8_t> alternate;  ///< number of the alternate function, 0..15
-    bool is_open_drain = false;             ///< what drives the pin, if anything does
-    bool is_pulled_up = false;              ///< an input, by the chip's own resistor
+    bool is_open_drain = false;             ///< for an output
+    bool is_pulled_up = false;              ///< for an input, by the chip's own resistor
 };
 
 struct BoardHardware {
     std::string name;
     std::string openocd_board;    ///< a script that OpenOCD ships
-    std::uint32_t device_id = 0;  ///< of the chip, as its debug port tells it
+    std::uint32_t device_id = 0;  ///< of the chip, as read by its debug port
     MemoryRange flash;
     MemoryRange configuration_page;  ///< within flash, up to its end
     MemoryRange ram;
@@ -59,7 +59,7 @@ struct BoardHardware {
 [[nodiscard]] std::string text(const BoardPin& pin);
 
 /// Reads `hw/boards/<name>.hardware.yaml`. Refused, with file, line and key: unknown keys, values out of
-/// range, memory that does not nest, a pin or a signal twice, a signal on a reserved pin.
+/// range, memory that does not nest, a pin or a signal that occurs twice, a signal on a reserved pin.
 [[nodiscard]] Result<BoardHardware, RigError> read_board_hardware(const std::filesystem::path& file);
 
 }  // namespace octoskin::rig

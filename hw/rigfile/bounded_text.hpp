@@ -1,4 +1,4 @@
-// A file's text, read no further than a limit: what a name leads to may be endless.
+// Reads a file's text up to a limit: a path may lead to an endless file.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace octoskin::rig {
 
-/// What is left in `stream`, but at most `bytes_max` + 1 bytes: more than `bytes_max` says that it was too
-/// much. Takes memory as the text grows.
+/// The rest of `stream`, at most `bytes_max` + 1 bytes: a result longer than `bytes_max` means that the text
+/// is too long. Memory grows with the text.
 [[nodiscard]] inline std::string read_bounded(std::istream& stream, std::size_t bytes_max) {
     constexpr std::size_t kStep = 16'384;
     std::string text;

@@ -9,7 +9,7 @@ namespace octoskin::rig {
 namespace {
 
 LensDistortion read_distortion(const Value& value, const std::string& path) {
-    // Of cameras that see 60 degrees |k| is below 4 and |p| below 0.02; a long lens has larger ones.
+    // For cameras with a view of 60 degrees |k| is below 4 and |p| below 0.02; a long lens has larger values.
     constexpr Range<double> kRadial{-1000.0, 1000.0};
     constexpr Range<double> kTangential{-1.0, 1.0};
     const Table table(value, path, {"k1", "k2", "p1", "p2", "k3"});
@@ -20,7 +20,8 @@ LensDistortion read_distortion(const Value& value, const std::string& path) {
             .k3 = table.number("k3", kRadial, 0.0)};
 }
 
-/// The first pixel of the picture's rim that has no ray. What the rim encloses lies within that of the rays.
+/// The first pixel on the image border without a ray. If the border pixels have rays, the enclosed pixels
+/// have them too.
 struct Pixel {
     std::uint32_t u;
     std::uint32_t v;
@@ -43,7 +44,7 @@ std::optional<Pixel> pixel_without_ray(const Camera& camera) {
     return std::nullopt;
 }
 
-/// Once the intrinsics are known.
+/// Call after the intrinsics are read.
 void read_lens(const Table& table, Camera& camera) {
     const Value* const distortion = table.find("distortion");
     if (distortion == nullptr) return;

@@ -1,4 +1,4 @@
-// From a rig file to its camera.
+// Reads the camera of a rig file.
 #pragma once
 
 #include "hw/rigfile/document.hpp"
@@ -6,10 +6,11 @@
 
 namespace octoskin::rig {
 
-/// Nothing of a rig is further from its base than this.
+/// Greatest distance of a part of the rig from its base, per coordinate.
 inline constexpr double kRoomReachM = 100.0;
 
-/// `camera` of a rig. Throws Fault: a key, a type, a range, or a lens for which a pixel has no ray or two.
+/// `camera` of a rig. Throws Fault: a key, a type, a range, or a lens for which a pixel has no ray or two
+/// rays.
 [[nodiscard]] Camera read_camera(const Value& value);
 
 }  // namespace octoskin::rig

@@ -1,5 +1,4 @@
-// The canonical text of a rig: every key, none by default, in one order, numbers in their shortest exact
-// form.
+// The canonical text of a rig: every key written out, in a fixed order, numbers in their shortest exact form.
 #include <fmt/format.h>
 
 #include <iterator>
@@ -33,7 +32,7 @@ std::string list(const Eigen::Vector3d& v) {
     return fmt::format("[{}, {}, {}]", number(v.x()), number(v.y()), number(v.z()));
 }
 
-/// The rotation as a matrix: a quaternion made from it would not read back to the last bit.
+/// The rotation as a matrix: a quaternion would not read back to the same matrix bit for bit.
 std::string pose(const Eigen::Isometry3d& T) {
     const Eigen::Matrix3d rows = T.linear().transpose();
     return fmt::format("{{xyz_m: {}, rotation_rows: [{}, {}, {}]}}", list(T.translation()), list(rows.col(0)),
@@ -73,7 +72,8 @@ void write_robot(Writer& out, const Rig& rig, const std::string& urdf) {
     if (!rig.link_padding_m.empty()) out.line("  link_padding_m:");
     for (const auto& [link, padding_m] : rig.link_padding_m)
         out.line("    {}: {}", quoted(link), number(padding_m));
-    // Left out where they are the default: rigs without them keep the hash that they had before these keys.
+    // Left out if they have their default: rigs without these keys keep the hash from before the keys
+    // existed.
     if (rig.fits_capsules) out.line("  fits_capsules: true");
     if (!rig.attached_capsules.empty()) out.line("  attached_capsules:");
     for (const AttachedCapsule& capsule : rig.attached_capsules) {
@@ -119,8 +119,8 @@ void write_camera(Writer& out, const Camera& camera) {
     out.line("  rate_hz: {}", number(camera.rate_hz));
     out.line("  depth_min_m: {}", number(camera.depth_min_m));
     out.line("  depth_max_m: {}", number(camera.depth_max_m));
-    // Left out where they are the default, as the lens is where it is none: rigs that say nothing of them
-    // keep the hash that they had before these keys were.
+    // Left out if they have their default, as is a lens without distortion: rigs without these keys keep the
+    // hash from before the keys existed.
     const DataSetDepth depth = camera.data_set.depth();
     const double gap_ms = camera.data_set.pose_gap_max_ms;
     const bool has_gap = gap_ms != DataSetKeys{}.pose_gap_max_ms;
@@ -175,7 +175,7 @@ void write_sensor(Writer& out, const Sensor& sensor, const SensorConfig& config)
     }
 }
 
-/// Left out where it is the default, as all of these: rigs keep the hash that they had before these keys.
+/// Left out if it has its default: rigs without these keys keep the hash from before the keys existed.
 void write_verification(Writer& out, const NodeConfig& config) {
     if (config.verifies_registers && config.left_out_count == 0) return;
     out.line("    verification:");

@@ -1,4 +1,5 @@
-// What a data set's images and poses mean: a rig file says it, the reader of the data set needs it.
+// The meaning of a data set's depth images and poses, as the rig file defines it for the reader of the data
+// set.
 #pragma once
 
 #include <cstdint>
@@ -6,21 +7,21 @@
 
 namespace octoskin::rig {
 
-/// What a number in a depth image means. By default as in the TUM RGB-D benchmark: a pixel of 5000 is 1 m, 0
-/// no value. A camera that is plugged in says it itself.
-/// https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats
+/// The scale of a depth image. Default as in the TUM RGB-D benchmark: 5000 is 1 m, 0 is no value. A connected
+/// camera reports its own scale. https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats
 struct DataSetDepth {
     double units_per_m = 5000.0;  ///< positive
     std::uint16_t no_value = 0;
     friend bool operator==(const DataSetDepth&, const DataSetDepth&) = default;
 };
 
-/// What a rig says of a data set. What it leaves out is as the layout of the data set has it.
+/// The rig's keys for a data set. A missing key has the default of the data set's layout.
 struct DataSetKeys {
     std::optional<double> units_per_m = {};
     std::optional<std::uint16_t> no_value = {};
-    /// Between poses farther apart there is none. By default five periods of the benchmark's motion capture
-    /// at 100 Hz: a camera that accelerates at 5 m/s^2 leaves the straight line by 1.6 mm meanwhile.
+    /// No pose is interpolated between poses farther apart than this. Default: five periods of the
+    /// benchmark's motion capture at 100 Hz: a camera that accelerates at 5 m/s^2 deviates from a straight
+    /// line by 1.6 mm in that time.
     double pose_gap_max_ms = 50.0;
 
     [[nodiscard]] DataSetDepth depth(const DataSetDepth& layout = {}) const noexcept {

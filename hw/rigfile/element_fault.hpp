@@ -1,4 +1,4 @@
-// What is wrong with several elements of one file, in one error.
+// Combines the faults of several elements of one file into one error.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace octoskin::rig {
 
-/// A link or joint that cannot be taken.
+/// A link or joint that is refused.
 struct ElementFault {
     RigError error;
     std::string kind;  ///< in a word or two: "mesh", "planar"
 };
 
-/// The first element in the file with what is wrong and the remedy, and after it where the others are: the
-/// first twenty of them, and how many more there are. Of at least one (asserted).
+/// The error of the first element in the file, with the remedy, then the places of the first twenty others
+/// and the number of the rest. `faults` must not be empty (asserted).
 [[nodiscard]] RigError one_error_of(std::vector<ElementFault> faults);
 
 }  // namespace octoskin::rig

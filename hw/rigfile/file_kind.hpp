@@ -1,4 +1,4 @@
-// What a path leads to: whoever opens a named pipe may wait for ever, and a device may have no end.
+// The kind of file at a path. To open a named pipe may block for ever, and a device may have no end.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace octoskin::rig {
 
-/// "a directory", "a named pipe" and so on; empty for an ordinary file, and for nothing at all.
+/// "a directory", "a named pipe" and so on; empty for an ordinary file and for a missing one.
 [[nodiscard]] inline std::string_view other_than_a_file(const std::filesystem::path& path) {
     std::error_code error;
     switch (std::filesystem::status(path, error).type()) {
@@ -19,7 +19,7 @@ namespace octoskin::rig {
             return "a device";
         case std::filesystem::file_type::socket:
             return "a socket";
-        case std::filesystem::file_type::unknown:  // nobody may look at it
+        case std::filesystem::file_type::unknown:  // no permission to read its kind
         case std::filesystem::file_type::none:
         case std::filesystem::file_type::not_found:
         case std::filesystem::file_type::regular:

@@ -22,18 +22,19 @@ constexpr unsigned read_bits(unsigned bytes) {
 constexpr unsigned kPollBits = read_bits(1);
 constexpr unsigned kResultBits = read_bits(17);
 constexpr unsigned kClearBits = write_bits(1);
-constexpr unsigned kReadBackBits = read_bits(1);  ///< one register of the configuration with every reading
+constexpr unsigned kReadBackBits =
+    read_bits(1);  ///< one configuration register is read back with every reading
 constexpr unsigned kZoneBits = write_bits(1);
 static_assert(kPollBits + 2 * kResultBits + kClearBits + kReadBackBits == 518);
 
-/// Microseconds by which ranges may differ in length.
+/// Greatest difference in the length of ranges, microseconds.
 unsigned length_spread_us(const NodeConfig& node) {
     return node.ready_jitter_us - kReadyJitterMinUs;
 }
 
-/// Where ranges differ in length a sensor is asked over and over until it is ready: a quarter of what they
-/// differ by from one poll's end to the next one's begin, over twice as much time; on average over half of
-/// that, and a little more where periods are only just being learnt.
+/// If ranges differ in length, a sensor is polled repeatedly until it is ready. The pause between polls is a
+/// quarter of the difference, over at most twice the difference; on average polling takes half of that time,
+/// and a little more while the node still measures the periods.
 unsigned further_polls(const NodeConfig& node) {
     const double spread_us = length_spread_us(node);
     const double poll_us = 1e6 * kPollBits / node.i2c_hz;
@@ -54,10 +55,11 @@ double reading_s(const NodeConfig& node, const SensorConfig& sensor) {
 }
 
 Microseconds zone_pause(const NodeConfig& node, const SensorConfig& sensor) {
-    constexpr std::int64_t kPeriodOffPermille = 5;  // the node trims periods that are further off
+    constexpr std::int64_t kPeriodOffPermille = 5;  // the node corrects periods that differ by more
     const auto reading = Microseconds{static_cast<std::int64_t>(1e6 * reading_s(node, sensor))};
     const Microseconds period_off{sensor.inter_measurement_ms * kPeriodOffPermille};
-    // One range may end late, and the next begin early; and so may what is known of either.
+    // One range may end late, the next may begin early, and the estimate of either has an error of the same
+    // size.
     const Microseconds jitter{3 * length_spread_us(node)};
     return jitter + kRangeOverheadMax + Microseconds{node.zone_guard_us} + kZoneWriteMax + reading +
            period_off;

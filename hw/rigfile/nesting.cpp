@@ -14,15 +14,15 @@ int line_of(std::string_view text, std::size_t at) {
     return 1 + static_cast<int>(std::ranges::count(text.substr(0, at), '\n'));
 }
 
-/// Behind what begins here, if it begins with `begin` and ends with `end`; npos: it begins with something
-/// else. One that does not end takes the rest.
+/// The position after the construct at `at`, which begins with `begin` and ends with `end`; npos if it does
+/// not begin so. A construct without an end extends to the end of the text.
 std::size_t behind(std::string_view text, std::size_t at, std::string_view begin, std::string_view end) {
     if (!text.substr(at).starts_with(begin)) return std::string_view::npos;
     const std::size_t found = text.find(end, at + begin.size());
     return found == std::string_view::npos ? text.size() : found + end.size();
 }
 
-/// Behind a comment, a CDATA section or a declaration that begins here; npos: none does.
+/// The position after a comment, a CDATA section or a declaration at `at`; npos if there is none.
 std::size_t behind_no_element(std::string_view text, std::size_t at) {
     for (const auto& [begin, end] :
          {std::pair<std::string_view, std::string_view>{"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}}) {
@@ -32,7 +32,7 @@ std::size_t behind_no_element(std::string_view text, std::size_t at) {
     return std::string_view::npos;
 }
 
-/// Behind the tag that begins here; `attributes` of it.
+/// The position after the tag at `at`; `attributes` is set to its number of attributes.
 std::size_t behind_tag(std::string_view text, std::size_t at, int& attributes) {
     attributes = 0;
     for (; at < text.size() && text[at] != '>'; ++at) {

@@ -1,4 +1,4 @@
-// What takes yaml-cpp and tinyxml2 time that grows with the square of a file: known before they see it.
+// Detects text for which yaml-cpp or tinyxml2 need time quadratic in its length, before they parse it.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ struct TextFault {
     std::string what;
 };
 
-/// The first place where more brackets are open at once than any file of ours has: 64. Brackets in quotes and
-/// comments count, too: no such text has that many. O(text).
+/// The first place where more than 64 brackets are open at once; no octoskin file has that many. Brackets in
+/// quotes and comments are counted, too. O(text).
 [[nodiscard]] std::optional<TextFault> deep_brackets(std::string_view yaml);
 
 /// The first element with more than 100 attributes. O(text).

@@ -1,4 +1,4 @@
-// The `nodes:` of a rig: boards, sensors, and what makes a set of them possible.
+// Reads the `nodes:` of a rig: boards and sensors, and checks that they can work together.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace octoskin::rig {
 
-/// What a node's checks need to know of the rest of the rig.
+/// The parts of the rig that a node's checks need.
 struct NodeContext {
     const UrdfDocument& robot;
     const std::string& base_link;
     const Bus& bus;
-    const Value* sensor_defaults;  ///< laid under every sensor; nullptr if the rig has none
+    const Value* sensor_defaults;  ///< defaults of every sensor; nullptr if the rig has none
 };
 
-/// Every node with its sensors and its complete configuration. Throws Fault for whatever is wrong in a node,
-/// for names and addresses used twice, and for an I2C bus loaded above 70 %.
+/// Every node with its sensors and its complete configuration. Throws Fault for an error in a node, for names
+/// and addresses used twice, and for an I2C bus loaded above 70 %.
 [[nodiscard]] std::vector<Node> read_nodes(const Value& value, const std::string& path,
                                            const NodeContext& context);
 

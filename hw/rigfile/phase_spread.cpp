@@ -34,7 +34,7 @@ std::int64_t repeat_ms(const NodeConfig& node, std::uint8_t bus) {
     return repeat;
 }
 
-/// A reading is due a budget after its sensor's start, whose budgets may differ.
+/// A reading is due one budget after its sensor's start. Sensors may have different budgets.
 std::vector<Turn> turns_of(const NodeConfig& node, std::uint8_t bus, double repeat_us) {
     std::vector<Turn> turns;
     for (std::size_t i = 0; i < node.sensor_count; ++i) {
@@ -50,7 +50,7 @@ std::vector<Turn> turns_of(const NodeConfig& node, std::uint8_t bus, double repe
     return turns;
 }
 
-/// How much of [begin, begin + length) lies in [0, window), both repeating.
+/// Overlap of [begin, begin + length) with [0, window), both periodic.
 double overlap_us(double begin, double length, double window, double repeat) {
     double sum = 0.0;
     for (const double shift : {-repeat, 0.0, repeat}) {
@@ -70,7 +70,7 @@ double busy_us(const std::vector<Turn>& turns, double window_begin, double repea
     return sum;
 }
 
-/// On one link: do their fields of view overlap, or does each lie in the other's?
+/// For two sensors on one link: whether their fields of view overlap or each is in the other's view.
 bool are_in_each_others_light(const Sensor& a, const Sensor& b) {
     if (a.link != b.link) return false;
     const Eigen::Vector3d axis_a = a.T_link_sensor.linear().col(2);
@@ -85,7 +85,7 @@ bool are_in_each_others_light(const Sensor& a, const Sensor& b) {
 }
 
 bool range_together(const SensorConfig& a, const SensorConfig& b) {
-    if (a.inter_measurement_ms != b.inter_measurement_ms) return false;  // they drift past each other
+    if (a.inter_measurement_ms != b.inter_measurement_ms) return false;  // their phases drift
     const double period = 1'000.0 * a.inter_measurement_ms;
     const double budget_a = 1'000.0 * a.timing_budget_ms;
     const double budget_b = 1'000.0 * b.timing_budget_ms;
@@ -108,7 +108,7 @@ PhaseSpread phase_spread(const NodeConfig& node, std::uint8_t bus) {
     for (const Turn& turn : turns) {
         spread.mean += turn.length_us / repeat_us;
         spread.reading = std::max(spread.reading, std::min(turn.length_us / kWindowUs, 1.0));
-        // The busiest window begins with a turn or ends with one.
+        // The busiest window begins at the begin of a turn or ends at the end of one.
         for (const double begin : {turn.begin_us, turn.begin_us + turn.length_us - kWindowUs}) {
             spread.peak = std::max(spread.peak, busy_us(turns, begin, repeat_us) / kWindowUs);
         }

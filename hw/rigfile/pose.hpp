@@ -1,4 +1,4 @@
-// Poses in the rig file: a position and one of several ways to write an orientation.
+// Reads poses of the rig file: a position and an orientation in one of several notations.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,8 +9,8 @@
 namespace octoskin::rig {
 
 struct PoseRules {
-    double reach_m = 2.0;            ///< each coordinate's magnitude; beyond it, somebody wrote millimetres
-    bool may_look_at_point = false;  ///< a camera may say what its optical axis goes through
+    double reach_m = 2.0;            ///< limit of each coordinate; a larger value is probably in millimetres
+    bool may_look_at_point = false;  ///< allows `looking_at_m` (cameras)
 };
 
 /// A list of three numbers within the reach, metres.
@@ -20,8 +20,7 @@ struct PoseRules {
 /// - `rpy_deg`: roll, pitch, yaw about the parent's fixed x, y, z, as in URDF;
 /// - `quaternion_wxyz`: of length 1 within 1e-6;
 /// - `rotation_rows`: the rotation matrix row by row, orthonormal within 1e-9; kept to the last bit;
-/// - `looking_at_m` (cameras): the point that the optical axis goes through; the picture's top is up (+z of
-/// base).
+/// - `looking_at_m` (cameras): a point on the optical axis; the picture's top is up (+z of base).
 [[nodiscard]] Eigen::Isometry3d read_pose(const Value& value, const std::string& path,
                                           const PoseRules& rules);
 

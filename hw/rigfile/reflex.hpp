@@ -1,4 +1,4 @@
-// What a rig asks of its nodes about things that are too close.
+// The REFLEX limits of a rig: its nodes send REFLEX for ranges below them.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace octoskin::rig {
 
-/// Below which range each sensor of the node makes it send REFLEX, for a person: a line for each limit, in
-/// the order of the first sensor that has it, and one for those that have none.
+/// The REFLEX limit of each sensor of the node as text: a line for each limit, in the order of the first
+/// sensor that has it, and a line for the sensors without a limit.
 [[nodiscard]] std::vector<std::string> reflex_lines(const Node& node);
 
-/// Limits that are hardly meant, a sentence each: farther than the distance mode measures, or closer than
-/// `range_limits` lets count.
+/// Warnings about limits that are probably errors, one sentence each: beyond the range of the distance mode,
+/// or below `range_limits`.
 [[nodiscard]] std::vector<std::string> reflex_warnings(const Rig& rig);
 
 }  // namespace octoskin::rig

@@ -1,5 +1,4 @@
-// The rig as a value: which boards, which sensor where, which robot and camera. Read by read_rig() and by
-// nothing else.
+// The rig as a value: boards, sensors, robot and camera. Only read_rig() reads it from a file.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,16 +18,17 @@
 
 namespace octoskin::rig {
 
-/// The optics of a sensor that sees a cone. Degrees, as written: what reads them back is the same to the bit.
+/// The optics of a sensor that sees a cone. In degrees as written, so that the canonical text reads back bit
+/// for bit.
 struct Cone {
     std::uint8_t sub_rays = 16;    ///< across the cone, for the simulator: their grid's side
     double half_angle_deg = 13.5;  ///< from the axis to the edge
-    double sigma_deg = 7.0;        ///< signal falls off from the axis as a Gaussian of this deviation
-    double blur_deg = 2.5;         ///< deviation of the lens's blur, which widens a zone's view
+    double sigma_deg = 7.0;  ///< standard deviation of the Gaussian fall-off of the signal from the axis
+    double blur_deg = 2.5;   ///< standard deviation of the lens's blur, which widens a zone's view
     friend bool operator==(const Cone&, const Cone&) = default;
 };
 
-/// A sensor of a node: its extrinsics and what the host must know to use its ranges.
+/// A sensor of a node: its extrinsics and the data that the host needs to use its ranges.
 struct Sensor {
     std::string name;
     std::string link;                                                 ///< URDF link that carries it
@@ -37,7 +37,7 @@ struct Sensor {
     std::optional<Cone> cone;  ///< none: one ideal ray along the middle of each zone
 };
 
-/// What a type of board can do: the limits that a rig is checked against.
+/// Limits of a type of board, for the check of a rig.
 struct Board {
     std::string name;
     std::uint8_t board_type = 0;  ///< the number that NODE_INFO reports
@@ -52,13 +52,13 @@ struct Board {
 struct Node {
     std::string name;
     Board board;
-    NodeConfig config;  ///< complete, sensors included: what is compiled into the block
+    NodeConfig config;  ///< complete, with sensors: the content of the configuration block
     std::optional<std::uint32_t> pinned_build_id;
     std::vector<Sensor> sensors;  ///< in the order of the local index
 };
 
 struct JointSource {
-    std::uint8_t node_id = 0;         ///< who sends joint states
+    std::uint8_t node_id = 0;         ///< of the node that sends joint states
     std::vector<std::string> joints;  ///< URDF joint names in the order on the wire, 1..7
     double rate_hz = 100.0;
 };
@@ -70,7 +70,7 @@ struct Camera {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
-    LensDistortion lens = {};  ///< that every pixel has one ray is checked on load
+    LensDistortion lens = {};  ///< checked on load: every pixel has one ray
     double rate_hz = 0.0;
     double depth_min_m = 0.5;
     double depth_max_m = 4.5;
@@ -87,7 +87,8 @@ struct AttachedCapsule {
     Eigen::Vector3d p_link_a = Eigen::Vector3d::Zero();
     Eigen::Vector3d p_link_b = Eigen::Vector3d::Zero();
     double radius_m = 0.0;
-    double padding_m = 0.0;  ///< added to the radius, beside its link's: a cable swings, a grasp slips
+    double padding_m =
+        0.0;  ///< added to the radius in addition to the link's padding, such as for a cable that swings
 };
 
 struct Bus {
@@ -96,27 +97,27 @@ struct Bus {
     std::uint32_t data_bitrate = 5'000'000;
 };
 
-/// The limits that acceptance applies to every range.
+/// Limits for every range; the acceptance check rejects others.
 struct RangeLimits {
     double min_m = 0.04;
     double max_m = 4.0;
     double sigma_max_m = 0.2;
     double time_uncertainty_max_ms =
-        5.0;  ///< of a capture time: the clock map's bound and the node's together
+        5.0;  ///< of a capture time: the sum of the clock map's bound and the node's
 };
 
 struct Rig {
-    std::vector<FilePlace> extended_files;  ///< that its file extends, the nearest first
+    std::vector<FilePlace> extended_files;  ///< the files that its file extends, the nearest first
     std::string name;
     FilePlace urdf;  ///< absolute, or below the folder of a recording
     std::string base_link;
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
     std::map<std::string, double> link_padding_m;  ///< added to the capsules of a link
-    bool fits_capsules = false;                    ///< a box of the URDF is the capsule around it
+    bool fits_capsules = false;                    ///< a box of the URDF is replaced by the capsule around it
     std::vector<AttachedCapsule> attached_capsules;
-    /// Links that have no body on purpose: an answer about the robot says nothing of them.
+    /// Links without a body on purpose: answers about the robot do not include them.
     std::vector<std::string> links_without_body;
-    /// Links left out when a sensor on them predicts where its beam meets the robot (its own mount).
+    /// Links ignored when the host predicts where a sensor's beam meets the robot (the sensor's own mount).
     std::vector<std::string> links_ignored_by_sensors;
     double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot
     double range_self_margin_m = 0.12;  ///< ranges beyond (predicted self-hit - this) are the robot
@@ -127,32 +128,32 @@ struct Rig {
     RangeLimits range_limits;
 };
 
-/// What is wrong, where: "rig.yaml:12: nodes[0].sensors[3].pose.xyz_m: expected 3 numbers, found 'left'".
+/// An error with its place: "rig.yaml:12: nodes[0].sensors[3].pose.xyz_m: expected 3 numbers, found 'left'".
 struct RigError {
     std::filesystem::path file;
     int line = 0;  ///< 1-based; 0 if it concerns the whole file
     std::string key;
     std::string what;
-    int column = 0;  ///< 1-based; 0 unless the parser could not go on there
+    int column = 0;  ///< 1-based; 0 unless the parser stopped there
     [[nodiscard]] std::string message() const;
 };
 
 /// Reads and checks a rig: unknown keys, types, units, ranges, references, unique ids and addresses, I2C
 /// capacity, and the computed CAN load (refused above 70 %). Paths in it are relative to the file. A
-/// top-level `extends: other.yaml` takes that file first and lays this one's keys over it. `urdf_instead`: a
-/// robot to use in place of the one the rig names. A rig below a folder that was named, or in a recording
-/// however it was named (confined_to_recording()), refers to files of that folder alone, behind no link. Not
-/// to be called from two threads at once (urdfdom's log is global).
+/// top-level `extends: other.yaml` reads that file first and overrides it with this file's keys.
+/// `urdf_instead`: a robot to use in place of the one the rig names. A rig below a named folder, or in a
+/// recording however it was named (confined_to_recording()), may refer only to files of that folder, without
+/// links. Not to be called from two threads at once (urdfdom's log is global).
 [[nodiscard]] Result<Rig, RigError> read_rig(const FilePlace& file,
                                              const std::filesystem::path& urdf_instead = {});
 
 /// The canonical YAML text of a rig: reading it gives an equal rig, and equal rigs give equal text. `urdf` is
 /// written as given.
 [[nodiscard]] std::string canonical_text(const Rig& rig, const std::string& urdf);
-/// CRC-32 of the canonical text; where the URDF lies does not count.
+/// CRC-32 of the canonical text without the path of the URDF.
 [[nodiscard]] std::uint32_t rig_hash(const Rig& rig);
-/// CRC-32 of all that says where in the map a measurement lies: the robot's base, its joints, poses and
-/// optics of sensors and camera, and `robot`, the text of its URDF.
+/// CRC-32 of everything that determines where a measurement lies in the map: the robot's base, its joints,
+/// poses and optics of sensors and camera, and `robot`, the text of its URDF.
 [[nodiscard]] std::uint32_t placement_crc32(const Rig& rig, std::string_view robot);
 
 }  // namespace octoskin::rig

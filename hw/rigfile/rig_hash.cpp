@@ -11,7 +11,7 @@ std::uint32_t crc32_of(std::string_view text) {
     return crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-/// All of a rig but what places measurements is as in a rig that says nothing.
+/// The rig with defaults for every key that does not affect where measurements lie.
 Rig placing_part(const Rig& rig) {
     Rig placing;
     placing.base_link = rig.base_link;

@@ -30,7 +30,7 @@ struct Place {
     std::size_t end = 0;
 };
 
-/// Where a scalar on one line is written; empty for one that is written in any other way.
+/// The position of a scalar on one line; empty for any other notation.
 std::optional<Place> place_of(const YAML::Node& scalar, const std::string& text) {
     const auto begin = static_cast<std::size_t>(scalar.Mark().pos);
     if (!scalar.IsScalar() || begin >= text.size()) return std::nullopt;
@@ -67,7 +67,7 @@ Unexpected<RigError> failed(const std::filesystem::path& file, std::string what)
     return unexpected(RigError{.file = file, .line = 0, .key = {}, .what = std::move(what)});
 }
 
-/// Empty if it cannot be read: then no sensor is in it.
+/// Empty if the file cannot be read.
 std::string content_of(const FilePlace& file) {
     constexpr std::size_t kBytesMax = std::size_t{16} << 20U;
     const auto opened = file.open();
@@ -75,7 +75,7 @@ std::string content_of(const FilePlace& file) {
     return text && text->size() <= kBytesMax ? std::move(*text) : std::string();
 }
 
-/// A file that is extended may have sensors that the rig has no more.
+/// An extended file may contain sensors that the rig no longer has.
 bool has_sensor(const Rig& rig, const SensorEdit& edit) {
     for (const Node& node : rig.nodes) {
         if (node.name != edit.node) continue;
@@ -85,7 +85,7 @@ bool has_sensor(const Rig& rig, const SensorEdit& edit) {
     return false;
 }
 
-/// With the one sensor as it is in `other`.
+/// The rig with this one sensor replaced by that of `other`.
 Rig with_sensor_of(Rig rig, const Rig& other, const SensorEdit& edit) {
     for (std::size_t n = 0; n < rig.nodes.size() && n < other.nodes.size(); ++n) {
         const auto& sensors = rig.nodes[n].sensors;

@@ -1,4 +1,4 @@
-// Writes what was found of one sensor into the rig file that a person keeps: comments, order and layout stay.
+// Writes one value of a sensor into a hand-written rig file: comments, order and layout are kept.
 #pragma once
 
 #include <functional>
@@ -16,17 +16,16 @@ struct SensorEdit {
     std::string value;  ///< as YAML
 };
 
-/// The text of a rig file in which the sensor's key has the value: replaced where it stood, or added after
-/// the name. Empty if the text is no YAML or has no such sensor written out (the file that it extends may
-/// have).
+/// The text of a rig file with the sensor's key set to the value: replaced in place, or added after the name.
+/// Empty if the text is not YAML or does not contain the sensor (the file that it extends may).
 [[nodiscard]] std::optional<std::string> edited(const std::string& text, const SensorEdit& edit);
 
-/// Puts `text` in the place of all that the file holds, whole or not at all; else says why not.
+/// Replaces the content of the file by `text` atomically. Returns the reason if it fails.
 using SaveText = std::function<std::optional<std::string>(const FilePlace& file, const std::string& text)>;
 
-/// Edits the rig's file, or the one it extends in which the sensor stands; returns which. The rig is read
-/// again afterwards and must be what it was but for that one value, else the file is put back as it was.
-/// Errors: no file has the sensor, `save` fails, or the rig would not be a rig any more.
+/// Edits the rig's file, or the extended file that contains the sensor; returns its path. Reads the rig again
+/// afterwards: it must differ in that one value only, else the file is restored. Errors: no file has the
+/// sensor, `save` fails, or the edited rig is not valid.
 [[nodiscard]] Result<std::filesystem::path, RigError> edit_sensor(const std::filesystem::path& file,
                                                                   const SensorEdit& edit,
                                                                   const SaveText& save);

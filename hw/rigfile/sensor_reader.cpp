@@ -85,7 +85,7 @@ T fixed_point(const Table& table, std::string_view key, Range<double> range, dou
     return static_cast<T>(std::lround(number * steps_per_unit));
 }
 
-/// Exactly, and not the nearest step: a limit of 0.4 mm would become none at all.
+/// Exact, not rounded to the nearest step: a limit of 0.4 mm would become 0, which means no limit.
 std::uint16_t read_reflex_limit_mm(const Table& table) {
     constexpr double kRoundingMm = 1e-6;  // of a decimal fraction times 1000
     const double limit_m = table.number("reflex_below_m", {0.0, kReflexLimitMaxMm / 1000.0}, 0.0);

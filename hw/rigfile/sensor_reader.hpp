@@ -1,4 +1,4 @@
-// One sensor of a node.
+// Reads one sensor of a node.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace octoskin::rig {
 
-/// A sensor as written: what the host keeps, and what its node is told.
+/// A sensor of the file: the host's part, and the node's configuration.
 struct SensorEntry {
     Sensor sensor;
     SensorConfig config;
@@ -16,7 +16,7 @@ struct SensorEntry {
 
 /// The table of one sensor, its keys checked.
 [[nodiscard]] Table sensor_table(const Value& value, const std::string& path);
-/// Throws Fault for whatever is wrong in this sensor alone, the board's limits included.
+/// Throws Fault for an error in this sensor, including the board's limits.
 [[nodiscard]] SensorEntry read_sensor(const Table& table, const UrdfDocument& robot,
                                       const std::string& base_link, const Board& board);
 

@@ -31,7 +31,7 @@ bool is_xacro(const Element& element) {
     return std::string_view(element.Name()).starts_with("xacro:");
 }
 
-/// Removes all else; a xacro element stays, so that it is found.
+/// Removes all other children, except xacro elements, which are reported later.
 void keep_children(Element& parent, Names names) {
     for (tinyxml2::XMLNode* child = parent.FirstChild(); child != nullptr;) {
         tinyxml2::XMLNode* const next = child->NextSibling();
@@ -42,7 +42,7 @@ void keep_children(Element& parent, Names names) {
     }
 }
 
-/// Whether an attribute has so many finite numbers and nothing else.
+/// Whether an attribute has exactly `count` finite numbers.
 bool has_numbers(const Element& element, const char* name, std::size_t count) {
     const char* const text = element.Attribute(name);
     std::istringstream numbers(text == nullptr ? "" : text);
@@ -75,7 +75,7 @@ void make_mesh(Element& geometry) {
     geometry.InsertNewChildElement("mesh")->SetAttribute("filename", "not read");
 }
 
-/// A visual decides what is warned of, never what the robot is.
+/// A visual only affects warnings, not the robot's body.
 void simplify_visual(Element& visual) {
     visual.DeleteAttribute("name");
     keep_children(visual, {"origin", "geometry"});
@@ -86,8 +86,8 @@ void simplify_visual(Element& visual) {
     make_mesh(*visual.InsertNewChildElement("geometry"));
 }
 
-/// That it is a mesh is all that is said about one. A capsule, which urdfdom does not know, is a cylinder
-/// with half a ball at either end: just the body that a cylinder becomes.
+/// A mesh keeps no data but its kind. A capsule, which urdfdom does not know, is a cylinder with a half-ball
+/// at each end: the same body that a cylinder becomes here.
 void simplify_collision(Element& collision) {
     keep_children(collision, {"origin", "geometry"});
     Element* const geometry = collision.FirstChildElement("geometry");
@@ -97,8 +97,8 @@ void simplify_collision(Element& collision) {
     if (shape != nullptr && std::string_view(shape->Name()) == "capsule") shape->SetName("cylinder");
 }
 
-/// The first shape of a link's body that is none or has no size, by its line: urdfdom says neither that nor
-/// what would help.
+/// The first shape of a link's body that is unknown or has no size, with its line: urdfdom reports neither
+/// the line nor a remedy.
 std::optional<ElementFault> find_shape_fault(const std::filesystem::path& file, const Element& link) {
     for (const auto* body = link.FirstChildElement("collision"); body != nullptr;
          body = body->NextSiblingElement("collision")) {
@@ -136,7 +136,7 @@ void simplify(Element& element) {
     }
 }
 
-/// Elements and attributes, and nothing between them.
+/// Prints elements and attributes only.
 class PlainPrinter final : public tinyxml2::XMLPrinter {
   public:
     PlainPrinter() : XMLPrinter(nullptr, true) {}
@@ -152,7 +152,7 @@ std::string printed_anew(const tinyxml2::XMLElement& robot) {
     return printer.CStr();
 }
 
-/// What xacro has not made plain at or below an element of a link or joint.
+/// Unexpanded xacro at or below an element of a link or joint.
 std::optional<RigError> find_xacro(const std::filesystem::path& file, const Element& part) {
     std::vector<const Element*> left{&part};
     while (!left.empty()) {

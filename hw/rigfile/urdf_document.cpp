@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kFileBytesMax = 16U << 20U;
 
-/// Takes over console_bridge's output while it lives: urdfdom tells what is wrong only there.
+/// Captures console_bridge's output during its lifetime: urdfdom reports errors only there.
 class CapturedLog final : public console_bridge::OutputHandler {
   public:
     CapturedLog() : previous_(console_bridge::getOutputHandler()) { console_bridge::useOutputHandler(this); }
@@ -59,7 +59,7 @@ Result<std::string, RigError> read_text(const FilePlace& file) {
     return std::move(*text);
 }
 
-/// By its mark, or by the zero in the first character that XML begins with.
+/// Whether the text is UTF-16: by its byte order mark, or by the zero byte in the first character.
 bool is_utf16(std::string_view text) {
     using namespace std::string_view_literals;
     const std::string_view beginning = text.substr(0, 2);
@@ -67,12 +67,12 @@ bool is_utf16(std::string_view text) {
            beginning == "\0<"sv;
 }
 
-/// The model, or urdfdom's words for why there is none.
+/// The model, or urdfdom's messages if it has none.
 std::pair<urdf::ModelInterfaceSharedPtr, std::string> parse(const std::string& text) {
     CapturedLog log;
     try {
         auto model = urdf::parseURDF(text);
-        // urdfdom returns a model with parts left out for some errors that it only logs.
+        // For some errors urdfdom only logs a message and returns an incomplete model.
         if (!log.errors().empty()) model = nullptr;
         return {std::move(model), log.errors()};
     } catch (const std::exception& exception) {
@@ -84,17 +84,17 @@ constexpr double kOriginMax_m = 10.0;             ///< no arm's link is longer
 constexpr double kTurnMax_rad = 4.0 * 3.1415927;  ///< no arm's joint turns further than twice round
 
 bool is_within(double value, double max) {
-    return std::abs(value) <= max;  // false for what is no number
+    return std::abs(value) <= max;  // false for NaN
 }
 
-/// An axis of a length that is 1 to three digits, as a person writes one, gets that length.
+/// Normalises an axis whose length is 1 to three digits, as in hand-written files.
 void make_exact(urdf::Vector3& axis) {
     constexpr double kWritten = 1e-3;
     const double length = std::hypot(axis.x, axis.y, axis.z);
     if (is_within(length - 1.0, kWritten)) axis = {axis.x / length, axis.y / length, axis.z / length};
 }
 
-/// What gives away that a joint is written in millimetres or degrees; empty if nothing does.
+/// A message if a joint seems to be in millimetres or degrees; else empty.
 std::string unit_fault(const urdf::Joint& joint) {
     const urdf::Vector3& at = joint.parent_to_joint_origin_transform.position;
     if (!is_within(at.x, kOriginMax_m) || !is_within(at.y, kOriginMax_m) || !is_within(at.z, kOriginMax_m)) {
@@ -129,7 +129,7 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
         return unexpected(RigError{
             file, 0, "", "is in UTF-16: save it as UTF-8 (`iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`)"});
     }
-    // What is no robot at all may be any file that a foreign rig names: nothing of it is shown.
+    // An untrusted rig may name any file of this machine: its content is not shown.
     if (text->find("<robot") == std::string::npos)
         return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
     tinyxml2::XMLDocument xml;
@@ -160,7 +160,7 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
 
 bool UrdfDocument::is_below(const std::string& base_link, const std::string& link) const {
     const auto& links = model_->links_;
-    // The outline has made sure that every way up ends.
+    // The outline guarantees that every path to the root ends.
     for (auto at = links.find(link); at != links.end();) {
         if (at->first == base_link) return true;
         const auto& joint = at->second->parent_joint;

@@ -1,5 +1,5 @@
-// A robot description through urdfdom, with urdfdom's complaints turned into our errors. The only place that
-// calls its parser.
+// Reads a robot description with urdfdom and converts urdfdom's messages into errors. The only caller of its
+// parser.
 #pragma once
 
 #include <filesystem>
@@ -21,27 +21,27 @@ namespace octoskin::rig {
 
 class UrdfDocument {
   public:
-    /// Errors: unreadable, in UTF-16, over 16 MiB, those of UrdfOutline and counted_urdf(), and all that
-    /// urdfdom refuses of what counts (a joint without
-    /// its link, two roots, a repeated name), and what gives away millimetres (an origin or a sliding limit
-    /// beyond 10 m) or degrees (a limit beyond two turns); the message carries urdfdom's own words. urdfdom
-    /// prints nothing. Not to be called from two threads at once: urdfdom's log is global.
+    /// Errors: unreadable, in UTF-16, over 16 MiB, those of UrdfOutline and counted_urdf(), errors of urdfdom
+    /// in the elements used (a joint without its link, two roots, a repeated name), signs of millimetres (an
+    /// origin or a sliding limit beyond 10 m) or of degrees (a limit beyond two turns). The message contains
+    /// urdfdom's text. urdfdom prints nothing. Not to be called from two threads at once: urdfdom's log is
+    /// global.
     [[nodiscard]] static Result<UrdfDocument, RigError> read(const FilePlace& file);
 
     [[nodiscard]] const urdf::ModelInterface& model() const noexcept { return *model_; }
     [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
-    /// True if `link` is `base_link` or hangs below it; false also if the robot has no such links.
+    /// True if `link` is `base_link` or below it; false also if the robot has no such links.
     [[nodiscard]] bool is_below(const std::string& base_link, const std::string& link) const;
     /// At or below `base_link`, by name; all of them if that is empty.
     [[nodiscard]] std::vector<std::string> link_names(const std::string& base_link = {}) const;
     /// The joints below `base_link` that are not fixed, by name.
     [[nodiscard]] std::vector<std::string> moving_joints(const std::string& base_link) const;
-    /// An error about one element ("joint", "panda_joint3"), with its line if there is such an element.
+    /// An error about one element ("joint", "panda_joint3"), with its line if the element exists.
     [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const {
         return outline_.error(tag, name, std::move(what));
     }
 
-    /// Whether a joint has a <limit> that says no `upper`, for which urdfdom takes 0.
+    /// Whether a joint has a <limit> without `upper`, for which urdfdom uses 0.
     [[nodiscard]] bool is_upper_missing(std::string_view joint) const {
         return outline_.is_upper_missing(joint);
     }

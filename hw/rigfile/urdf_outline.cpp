@@ -14,7 +14,7 @@
 namespace octoskin::rig {
 namespace {
 
-/// A robot has a few dozen; urdfdom lets go of a chain of links by a recursion as deep as the chain.
+/// A robot has a few dozen. urdfdom frees a chain of links by recursion as deep as the chain.
 constexpr std::size_t kElementsMax = 4'000;
 
 std::string attribute(const tinyxml2::XMLElement* element, const char* name) {
@@ -22,10 +22,9 @@ std::string attribute(const tinyxml2::XMLElement* element, const char* name) {
     return text ? text : "";
 }
 
-/// What gives away that an `<origin rpy>` is written in degrees; empty if nothing does. urdfdom keeps no
-/// angles.
+/// A message if an `<origin rpy>` seems to be in degrees; else empty. urdfdom does not keep the angles.
 std::string turn_fault(const tinyxml2::XMLElement* origin) {
-    constexpr double kOriginTurnMax_rad = 6.29;  // once round, and what rounding adds
+    constexpr double kOriginTurnMax_rad = 6.29;  // one turn, plus rounding
     std::istringstream turns(attribute(origin, "rpy"));
     for (double turn = 0.0; turns >> turn;) {
         if (std::abs(turn) > kOriginTurnMax_rad) {
@@ -36,7 +35,7 @@ std::string turn_fault(const tinyxml2::XMLElement* origin) {
     return "";
 }
 
-/// The first element of a link or joint whose place we use and that is turned by too much.
+/// The error of the first element of a link or joint whose pose is used and whose rotation is too large.
 std::optional<RigError> find_turn_fault(const std::filesystem::path& file,
                                         const tinyxml2::XMLElement& element) {
     const auto fault_at = [&](const tinyxml2::XMLElement* origin) -> std::optional<RigError> {
@@ -95,7 +94,7 @@ std::optional<RigError> UrdfOutline::find_loop() const {
                      fmt::format("expected one joint to hang from, found {} and {}: remove one",
                                  first->second->name, joint.name));
     }
-    // Every way up ends at a root or at a link that an earlier way has passed: each link is passed once.
+    // Every path upwards ends at a root or at a link of an earlier path: each link is visited once.
     std::map<std::string_view, const Element*> passed_from;
     for (const Element& link : elements_) {
         if (link.tag != "link") continue;

@@ -1,5 +1,5 @@
-// The names in a URDF file and the lines they stand at, read before urdfdom sees the file: urdfdom knows no
-// lines, leaks what hangs in a loop, and its XML reader recurses as deep as the file goes.
+// The names in a URDF file with their lines, read before urdfdom parses it: urdfdom reports no lines, leaks
+// links in a loop, and its XML reader recurses as deep as the file is nested.
 #pragma once
 
 #include <filesystem>
@@ -20,14 +20,14 @@ namespace octoskin::rig {
 class UrdfOutline {
   public:
     /// Errors, each with its line: a xacro element, more than 4,000 links and joints, an <origin rpy> of more
-    /// than a turn, a link that hangs from two joints, a loop. O(n log n). `file` is for the messages only.
+    /// than a turn, a link with two parent joints, a loop. O(n log n). `file` is for the messages only.
     [[nodiscard]] static Result<UrdfOutline, RigError> read(const std::filesystem::path& file,
                                                             const tinyxml2::XMLElement& robot);
 
-    /// An error about one element ("joint", "panda_joint3"), with its line if there is such an element.
+    /// An error about one element ("joint", "panda_joint3"), with its line if the element exists.
     [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const;
 
-    /// Whether a joint has a <limit> that says no `upper`, for which urdfdom takes 0.
+    /// Whether a joint has a <limit> without `upper`, for which urdfdom uses 0.
     [[nodiscard]] bool is_upper_missing(std::string_view joint) const;
 
   private:

@@ -11,7 +11,7 @@
 namespace octoskin::rig {
 namespace {
 
-/// The element that tinyxml2 tells with its error, if any: "...: XMLElement name=link".
+/// The element that tinyxml2's error names, if any: "...: XMLElement name=link".
 std::string element_of(const tinyxml2::XMLDocument& document) {
     constexpr std::string_view kMark = "XMLElement name=";
     const std::string text = document.ErrorStr();

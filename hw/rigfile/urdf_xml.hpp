@@ -14,8 +14,8 @@ class XMLElement;
 
 namespace octoskin::rig {
 
-/// The <robot> of `text`, which `xml` has from then on. Errors, with the line: not XML, nested deeper than
-/// 100, an element with more than 100 attributes, no <robot>. `file` is for the messages only.
+/// Parses `text` into `xml` and returns its <robot>. Errors, with the line: not XML, nested deeper than 100,
+/// an element with more than 100 attributes, no <robot>. `file` is for the messages only.
 [[nodiscard]] Result<tinyxml2::XMLElement*, RigError> parse_robot(const std::filesystem::path& file,
                                                                   const std::string& text,
                                                                   tinyxml2::XMLDocument& xml);

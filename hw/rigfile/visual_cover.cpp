@@ -17,7 +17,7 @@ struct Interval {
     double to = 0.0;
 };
 
-/// Of the capsule along `direction`, seen from `p_group_zero`.
+/// The interval of the capsule along `direction`, measured from `p_group_zero`.
 Interval extent(const Capsule& capsule, const Eigen::Vector3d& p_group_zero,
                 const Eigen::Vector3d& direction) {
     const double a = direction.dot(capsule.p_link_a - p_group_zero);
@@ -25,7 +25,7 @@ Interval extent(const Capsule& capsule, const Eigen::Vector3d& p_group_zero,
     return {std::min(a, b) - capsule.radius_m, std::max(a, b) + capsule.radius_m};
 }
 
-/// What the intervals have of `within` together. Sorts them.
+/// The total length of `within` that the intervals cover. Sorts the intervals.
 double union_length(std::vector<Interval>& intervals, const Interval& within) {
     std::ranges::sort(intervals, {}, &Interval::from);
     double length = 0.0;

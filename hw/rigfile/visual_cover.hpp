@@ -1,4 +1,4 @@
-// How much of what can be seen of a rigid group of links lies beside its body: lengths along straight lines.
+// The part of a rigid group's visible links that its body covers, as lengths along straight lines.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -29,25 +29,25 @@ struct Stretch {
     [[nodiscard]] double length_m() const noexcept { return (p_group_to - p_group_from).norm(); }
 };
 
-/// A line that something turns about.
+/// An axis of rotation.
 struct Axis {
     Eigen::Vector3d p_group = Eigen::Vector3d::Zero();  ///< a point on it
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
 };
 
-/// Of a mesh nothing: a recording has the URDF, and not the files that it points to, and an answer must not
-/// depend on whether they are there. Of a size that is no finite number neither.
+/// None for a mesh: a recording contains the URDF but not the files that it names, and an answer must not
+/// depend on them. None for a size that is not finite.
 [[nodiscard]] std::optional<VisualBox> visual_box(const urdf::Visual& visual,
                                                   const Eigen::Isometry3d& T_group_link);
 
-/// The shortest line from one axis to the other. Of axes within a degree of parallel it begins at the first
-/// one's point.
+/// The shortest line from one axis to the other. For axes that are parallel within a degree, it begins at the
+/// point of the first.
 [[nodiscard]] Stretch between(const Axis& from, const Axis& to);
 
-/// Metres of the box's longest side, of which `length_m()` are all, that have a capsule beside them which
-/// reaches into the box. `body`: in the group's frame. O(capsules log capsules).
+/// Length of the box's longest side (`length_m()` in total) that is beside a capsule which reaches into the
+/// box, metres. `body`: in the group's frame. O(capsules log capsules).
 [[nodiscard]] double covered_m(const VisualBox& box, std::span<const Capsule> body);
-/// Metres of the line that have a capsule beside them, however far from it.
+/// Length of the line that is beside a capsule, at any distance from it, metres.
 [[nodiscard]] double covered_m(const Stretch& stretch, std::span<const Capsule> body);
 
 }  // namespace octoskin::rig

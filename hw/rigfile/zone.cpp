@@ -38,7 +38,7 @@ Eigen::Vector3d zone_direction(const Roi& roi) noexcept {
 }
 
 ZoneSpan zone_span_x(const Roi& roi) noexcept {
-    // The lens inverts: the zone's right edge looks furthest to the left.
+    // The lens inverts: the zone's right edge has the leftmost view.
     const double left_spads = corner_of(roi).left - kSide / 2.0;
     return {-(left_spads + roi.width) * kSpadPitch_rad, -left_spads * kSpadPitch_rad};
 }

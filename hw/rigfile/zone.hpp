@@ -18,9 +18,9 @@ namespace octoskin::rig {
 /// diagonal (datasheet DS12385 rev 7).
 [[nodiscard]] Eigen::Vector3d zone_direction(const Roi& roi) noexcept;
 
-/// What a SPAD sees across: 27 degrees over the diagonal of 16.
+/// Angle across one SPAD: 27 degrees over the diagonal of 16.
 inline constexpr double kSpadPitch_rad = 27.0 / (16 * std::numbers::sqrt2) * std::numbers::pi / 180.0;
-/// From the array's middle to its side.
+/// Angle from the array's middle to its side.
 inline constexpr double kArrayHalfWidth_rad = 8 * kSpadPitch_rad;
 
 /// Angles to the sensor's axis, min below max.
@@ -28,8 +28,8 @@ struct ZoneSpan {
     double min_rad = 0.0;
     double max_rad = 0.0;
 };
-/// Between which angles towards +x, and towards +y, a zone looks, in the frame of zone_direction(), if the
-/// lens were sharp. A ray's angle towards x is atan2(x, z).
+/// The angles towards +x and towards +y between which a zone looks with a sharp lens, in the frame of
+/// zone_direction(). A ray's angle towards x is atan2(x, z).
 [[nodiscard]] ZoneSpan zone_span_x(const Roi& roi) noexcept;
 [[nodiscard]] ZoneSpan zone_span_y(const Roi& roi) noexcept;
 

@@ -9,8 +9,8 @@
 
 namespace octoskin::sim {
 
-/// A node's free-running microsecond counter: some value at the start of the simulation, and a crystal that
-/// is off by `drift_ppm`.
+/// A node's free-running microsecond counter: an arbitrary value at the start of the simulation, and a
+/// crystal error of `drift_ppm`.
 class NodeClock {
   public:
     constexpr NodeClock() = default;
@@ -28,8 +28,7 @@ class NodeClock {
     double drift_ppm_ = 0.0;
 };
 
-/// The present of a simulation: one instance, advanced by whoever runs it, read by the models that need to
-/// know.
+/// The present time of a simulation: one instance, advanced by the simulation's loop and read by the models.
 struct Present {
     SimTime time{};
 };

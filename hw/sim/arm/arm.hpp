@@ -1,5 +1,5 @@
-// The simulated arm: forward kinematics of its own (the host's KDL chain has it as oracle, and the reverse)
-// and inverse kinematics for the scripted motion.
+// The simulated arm: its own forward kinematics, tested against the host's KDL chain and the reverse, and
+// inverse kinematics for the scripted motion.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,9 +17,8 @@ namespace octoskin::sim {
 class Arm {
   public:
     /// The part of the robot that `base_link` carries. `joints`: its moving joints in the order of every
-    /// joint vector. Errors name file and element: whatever makes the URDF unreadable; no such base link; a
-    /// joint that is not there, is named twice, does not move, or moves in another way than turning about or
-    /// sliding along one axis; a joint that moves but is not named.
+    /// joint vector. Errors name file and element: the URDF cannot be read; no such base link; a named joint
+    /// is missing, named twice, fixed, or neither revolute nor prismatic; a moving joint is not named.
     [[nodiscard]] static Result<Arm, rig::RigError> read(const FilePlace& urdf, const std::string& base_link,
                                                          const std::vector<std::string>& joints);
 
@@ -34,8 +33,8 @@ class Arm {
     [[nodiscard]] Eigen::Isometry3d forward(const Eigen::VectorXd& position, const std::string& link) const;
 
     /// Joint positions that bring `link` to `T_base_link`, from `start`; damped least squares. Empty if it
-    /// does not get within `tolerance` (m and rad) in 200 steps, or if there is no such link. Joint limits
-    /// are not regarded: ask joint_outside_limits().
+    /// does not get within `tolerance` (m and rad) in 200 steps, or if there is no such link. Ignores joint
+    /// limits: see joint_outside_limits().
     [[nodiscard]] std::optional<Eigen::VectorXd> inverse(const std::string& link,
                                                          const Eigen::Isometry3d& T_base_link,
                                                          const Eigen::VectorXd& start,

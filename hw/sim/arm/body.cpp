@@ -6,7 +6,7 @@
 namespace octoskin::sim {
 namespace {
 
-/// The smaller root of a t^2 + 2 b t + c = 0 (a > 0), if it has roots and that one is not negative.
+/// The smaller root of a t^2 + 2 b t + c = 0 (a > 0); empty if there is none or if it is negative.
 std::optional<double> entry_of(double a, double b, double c) {
     const double discriminant = b * b - a * c;
     if (discriminant < 0.0) {
@@ -23,7 +23,7 @@ std::optional<double> cast_sphere(const Eigen::Vector3d& centre, double radius_m
                     offset.squaredNorm() - radius_m * radius_m);
 }
 
-/// The lateral surface only: what lies between the capsule's two ends.
+/// Intersects the lateral surface between the capsule's two ends.
 std::optional<double> cast_wall(const BodyCapsule& capsule, const Eigen::Vector3d& origin,
                                 const Eigen::Vector3d& direction) {
     const Eigen::Vector3d along = capsule.p_base_b - capsule.p_base_a;
@@ -33,12 +33,12 @@ std::optional<double> cast_wall(const BodyCapsule& capsule, const Eigen::Vector3
     }
     const Eigen::Vector3d axis = along / length;
     const Eigen::Vector3d offset = origin - capsule.p_base_a;
-    // The ray seen along the axis: a circle and a line in the plane.
+    // Projected along the axis: a circle and a line in the plane.
     const Eigen::Vector3d flat_direction = direction - axis.dot(direction) * axis;
     const Eigen::Vector3d flat_offset = offset - axis.dot(offset) * axis;
     const double speed = flat_direction.squaredNorm();
     if (speed <= 1e-24 * direction.squaredNorm()) {
-        return std::nullopt;  // along the axis: it can only enter through an end
+        return std::nullopt;  // parallel to the axis: it can only enter through an end
     }
     const auto t = entry_of(speed, flat_direction.dot(flat_offset),
                             flat_offset.squaredNorm() - capsule.radius_m * capsule.radius_m);

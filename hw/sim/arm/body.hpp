@@ -1,4 +1,4 @@
-// The arm's body at one instant, to be ray-cast: its collision capsules in the base frame.
+// The arm's body at one instant for ray-casting: its collision capsules in the base frame.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,7 +18,7 @@ struct BodyCapsule {
     double radius_m = 0.0;
 };
 
-/// The capsules where the links are. Links in `ignored`, and links that the arm does not have, are left out.
+/// The capsules at the links' poses. Leaves out links in `ignored` and links that the arm does not have.
 [[nodiscard]] std::vector<BodyCapsule> posed_body(const std::vector<rig::Capsule>& capsules,
                                                   const Arm::LinkPoses& poses,
                                                   const std::vector<std::string>& ignored = {});
@@ -28,7 +28,7 @@ struct BodyCapsule {
 [[nodiscard]] std::optional<double> cast_capsule(const BodyCapsule& capsule, const Eigen::Vector3d& origin,
                                                  const Eigen::Vector3d& direction);
 
-/// The unit vector out of a capsule at a point of its surface.
+/// The outward unit normal of a capsule at a point of its surface.
 [[nodiscard]] Eigen::Vector3d outward_normal(const BodyCapsule& capsule, const Eigen::Vector3d& p_base);
 
 /// The nearest of cast_capsule() over a body.

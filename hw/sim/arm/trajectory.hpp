@@ -12,7 +12,7 @@
 
 namespace octoskin::sim {
 
-/// A link carried round a circle at constant speed and orientation, base frame, metres. At angle a the link's
+/// A link moved round a circle at constant speed and orientation, base frame, metres. At angle a the link's
 /// origin is at p_base_centre + radius_m (cos a towards_start + sin a towards_quarter).
 struct CircleMotion {
     std::string link;
@@ -32,15 +32,15 @@ struct CircleMotion {
     [[nodiscard]] std::uint32_t ticks() const noexcept { return ticks_per_revolution * revolutions; }
 };
 
-/// Why an arm cannot do a motion: what, where, what to do.
+/// Why an arm cannot perform a motion: the fault, its place, the remedy.
 struct MotionError {
-    std::string scenario_key;  ///< whose value it is about: "motion.circle.link"
+    std::string scenario_key;  ///< of the value at fault: "motion.circle.link"
     std::string what;
 };
 
 /// Joint positions at rest before the motion, through the inverse kinematics of each tick during it, and at
 /// rest after it. Between two ticks each joint moves at constant speed: on the experiment's circle the link
-/// then leaves the arc by 16 um.
+/// then deviates from the arc by 16 um.
 class Trajectory {
   public:
     /// Solves every tick from the one before. Errors: no such link; a tick out of reach (residual over 2e-7 m

@@ -1,4 +1,4 @@
-// An emulated board in a process of its own, seen from the simulator.
+// An emulated board in a separate process: the simulator's side.
 #pragma once
 
 #include <sys/types.h>
@@ -15,17 +15,17 @@ namespace octoskin::sim {
 class BoardProcess {
   public:
     using Eyes = std::function<RangingReturn(const WhatIsSeen& question)>;
-    /// Starts `program` with `arguments` and the option that hands it its end of the socket. `eyes` answers
-    /// what sensors see. Throws BoardLinkError if it cannot be started.
+    /// Starts `program` with `arguments` and the option that passes its end of the socket. `eyes` returns the
+    /// sensors' views. Throws BoardLinkError if it cannot be started.
     BoardProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments, Eyes eyes);
     /// Closes the socket, which ends the process, and waits for it.
     ~BoardProcess();
     BoardProcess(const BoardProcess&) = delete;
     BoardProcess& operator=(const BoardProcess&) = delete;
 
-    /// The board runs from here on, while others may too.
+    /// Starts a turn of the board. Several boards may run at once.
     void begin(const RunUntil& turn);
-    /// Waits for its end, answering questions meanwhile.
+    /// Waits for the end of the turn and answers the board's questions.
     [[nodiscard]] HasRun finish();
     [[nodiscard]] BoardSummary summary();
 

@@ -1,4 +1,4 @@
-// One end of a Unix socket that keeps messages apart.
+// One end of a Unix socket that preserves message boundaries.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,8 @@ class LinkSocket {
 
     /// Throws BoardLinkError if the other side is gone.
     void send(const BoardMessage& message);
-    /// The next message; empty if the other side closed. Throws BoardLinkError after 60 s of silence: the
-    /// longest turn takes milliseconds.
+    /// The next message; empty if the other side closed the socket. Throws BoardLinkError after 60 s without
+    /// a message; the longest turn takes milliseconds.
     [[nodiscard]] std::optional<BoardMessage> receive();
 
   private:

@@ -63,7 +63,7 @@ class Reader {
     std::size_t at_ = 0;
 };
 
-/// std::optional<double> is not promised to be trivially copyable; this is.
+/// Trivially copyable, which std::optional<double> is not guaranteed to be.
 struct FlatReturn {
     bool has_range;
     double range_m, sigma_m, peak_signal_mcps, ambient_mcps;

@@ -1,5 +1,5 @@
-// What a simulator and an emulated board in a process of its own say to each other, in lock-step. Both ends
-// are built together on one machine: values go as they are in memory.
+// Messages between a simulator and an emulated board in a separate process, in lock-step. Both ends are of
+// one build on one machine: values are sent as in memory.
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@
 
 namespace octoskin::sim {
 
-/// The other side is gone, or says what it should not.
+/// The other side closed the socket, or sent an unexpected message.
 struct BoardLinkError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
 enum class BusEventKind : std::uint8_t {
     received,   ///< a frame of another controller ended
-    started,    ///< this frame, on offer or so a moment ago, is under way
-    sent,       ///< and ended
-    disturbed,  ///< and was destroyed
+    started,    ///< this frame, on offer now or until just before, is being sent
+    sent,       ///< the frame ended
+    disturbed,  ///< the frame was destroyed
 };
 struct BusEvent {
     BusEventKind kind = BusEventKind::received;
@@ -32,16 +32,16 @@ struct BusEvent {
     wire::CanFrame frame{};
 };
 
-/// To the board: run until then; this happens on its bus meanwhile, in the order of time.
+/// To the board: run until `time`; contains the events on its bus until then, in the order of time.
 struct RunUntil {
     SimTime time{};
     std::vector<BusEvent> events;
 };
-/// To the simulator: done; this is what the CAN controller wants to send next.
+/// To the simulator: the turn is done; contains the frame that the CAN controller offers next.
 struct HasRun {
     std::optional<wire::CanFrame> offer;
 };
-/// To the simulator, before `HasRun`: what does this sensor see?
+/// To the simulator, before `HasRun`: asks for the view of a sensor.
 struct WhatIsSeen {
     std::uint8_t sensor = 0;
     std::uint32_t ranging_index = 0;
@@ -51,7 +51,7 @@ struct WhatIsSeen {
 struct Seen {
     RangingReturn what;
 };
-/// To the board: how was it?
+/// To the board: asks for the summary of the run.
 struct AskSummary {};
 struct BoardSummary {
     std::uint64_t instructions = 0;
@@ -59,14 +59,14 @@ struct BoardSummary {
     std::array<double, 4> i2c_busy_s{};
     double longest_awake_us = 0.0;
     SimTime counter_zero{};   ///< when the program last set its microsecond counter to 0
-    SimTime first_address{};  ///< when the first address of all had passed on an I2C bus; 0: none has
+    SimTime first_address{};  ///< end of the first address on any I2C bus; 0: none yet
     std::string report;       ///< violations, one a line
 };
 
 using BoardMessage = std::variant<RunUntil, HasRun, WhatIsSeen, Seen, AskSummary, BoardSummary>;
 
 [[nodiscard]] std::vector<std::uint8_t> encode_message(const BoardMessage& message);
-/// Throws BoardLinkError if it is none.
+/// Throws BoardLinkError if the bytes are not a message.
 [[nodiscard]] BoardMessage decode_message(const std::vector<std::uint8_t>& bytes);
 
 }  // namespace octoskin::sim

@@ -14,17 +14,17 @@ constexpr double kPeakWidth_m = 0.15;
 constexpr double kPeakShare = 0.3;
 constexpr double kNearest_m = 0.01;
 
-/// How much of what a point's Gaussian blur spreads over a line falls between two places of it.
+/// The share of a Gaussian blur centred at `place` that falls between two places on a line.
 double caught(double from, double to, double place, double blur) {
     const double scale = 1.0 / (blur * std::numbers::sqrt2);
     return 0.5 * (std::erf((to - place) * scale) - std::erf((from - place) * scale));
 }
 
-/// Of what arrives under each angle and falls on the array, the part that falls on the zone.
+/// For each angle: the share of the light on the array that falls on the zone.
 std::vector<double> shares(const std::vector<double>& angles_rad, rig::ZoneSpan zone, double blur_rad) {
     const double edge = rig::kArrayHalfWidth_rad;
     const double outermost =
-        edge + 4.0 * blur_rad;  // beyond it all falls on the edge, and next to nothing does
+        edge + 4.0 * blur_rad;  // beyond it all light falls on the edge, and it is negligible
     std::vector<double> shares;
     shares.reserve(angles_rad.size());
     for (const double angle : angles_rad) {
@@ -74,7 +74,7 @@ double echo_signal(double weight, double reflectivity, double cos_incidence, dou
 std::optional<Echo> nearest_peak(std::vector<Echo>& echoes) {
     std::sort(echoes.begin(), echoes.end(),
               [](const Echo& a, const Echo& b) { return a.range_m < b.range_m; });
-    struct Stretch {  ///< of range, from one echo on
+    struct Stretch {  ///< an interval of range that begins at an echo
         double signal = 0.0;
         double moment = 0.0;
     };

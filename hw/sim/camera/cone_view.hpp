@@ -1,4 +1,4 @@
-// The field of view of a VL53L1X as a bundle of sub-rays, and how their echoes become one range.
+// The field of view of a VL53L1X as a bundle of sub-rays, and the range computed from their echoes.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,10 +19,10 @@ class ConeView {
 
     /// Unit vectors, row by row, neighbours beside each other.
     [[nodiscard]] std::span<const Eigen::Vector3d> directions_sensor() const noexcept { return directions_; }
-    /// What each sub-ray contributes to a zone. Over the whole array they sum to 1. A zone gets of each
-    /// sub-ray the part that the lens, whose blur is Gaussian, lets fall on the zone rather than on the rest
-    /// of the array: zones that tile the array share its signal without a remainder, and what arrives from
-    /// beyond the array's edge falls on the zones at that edge. About 3 us.
+    /// What each sub-ray contributes to a zone. Over the whole array they sum to 1. A zone gets the share of
+    /// each sub-ray that the lens, with its Gaussian blur, projects on the zone rather than on the rest of
+    /// the array. The shares of zones that tile the array add up to the whole signal; light from beyond the
+    /// array's edge falls on the zones at that edge. About 3 us.
     [[nodiscard]] std::vector<double> weights(const Roi& zone) const;
 
   private:
@@ -38,18 +38,18 @@ class ConeView {
     std::vector<double> weights_;  ///< of the whole array
 };
 
-/// What one sub-ray brings back: its share of the signal, in the units of echo_signal().
+/// The echo of one sub-ray: its share of the signal, in the units of echo_signal().
 struct Echo {
     double range_m = 0.0;
     double signal = 0.0;
 };
 
-/// weight * reflectivity * cos(incidence) / range^2, of a surface that scatters as Lambert's; a plane that
-/// fills the whole array's view at 1 m, head-on, gives its reflectivity. Nearer than 1 cm it grows no more.
+/// weight * reflectivity * cos(incidence) / range^2, for a Lambertian surface. A plane that fills the whole
+/// array's view at 1 m, head-on, gives its reflectivity. Below 1 cm the value is that of 1 cm.
 [[nodiscard]] double echo_signal(double weight, double reflectivity, double cos_incidence, double range_m);
 
-/// The nearest 15 cm of range that hold at least 30 % of the signal of those 15 cm that hold most: their
-/// signal, and the mean of their ranges weighted by it. Empty if there is no signal. Sorts `echoes`.
+/// The nearest 15 cm of range with at least 30 % of the signal of the strongest 15 cm: their signal, and the
+/// mean of their ranges weighted by signal. Empty if there is no signal. Sorts `echoes`.
 [[nodiscard]] std::optional<Echo> nearest_peak(std::vector<Echo>& echoes);
 
 }  // namespace octoskin::sim

@@ -9,13 +9,13 @@
 namespace octoskin::sim {
 namespace {
 
-/// Tangents of the angles, in one plane through the optical axis, under which a disc is seen.
+/// Tangents of the angles to the edges of a disc, in one plane through the optical axis.
 struct Span {
     double low;
     double high;
 };
 
-/// `across`, `depth`: the disc's centre. Empty if part of it may lie beside or behind the camera.
+/// `across`, `depth`: the disc's centre. Empty if a part of it may be beside or behind the camera.
 std::optional<Span> span_of(double across, double depth, double radius) {
     const double distance = std::hypot(across, depth);
     if (distance <= radius) {
@@ -70,7 +70,7 @@ DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, double s
         }
     }
     background_m_.resize(directions_base.size());
-    // Noise may bring a surface back into reach: cast well beyond it.
+    // Noise may bring a surface back into the depth limits: cast well beyond them.
     world.cast_fan(camera.T_base_camera.translation(), directions_base, camera.depth_max_m + 10.0 * sigma_m,
                    background_m_);
 }
@@ -84,10 +84,11 @@ Eigen::Vector3d DepthCamera::direction_camera(std::uint32_t u, std::uint32_t v) 
 DepthCamera::Rectangle DepthCamera::bounds_of(const BodyCapsule& capsule) const {
     const Rectangle everything{0, camera_.width, 0, camera_.height};
     if (!rays_.empty()) {
-        return everything;  // the lens bends the hull, too
+        return everything;  // a lens distorts the hull, too
     }
     Rectangle bounds{camera_.width, 0, camera_.height, 0};
-    // A capsule is the convex hull of its two end spheres, so the hull of their pictures holds its picture.
+    // A capsule is the convex hull of its two end spheres, so the hull of their projections contains its
+    // projection.
     for (const Eigen::Vector3d* end : {&capsule.p_base_a, &capsule.p_base_b}) {
         const auto across = span_of(end->x(), end->z(), capsule.radius_m);
         const auto down = span_of(end->y(), end->z(), capsule.radius_m);

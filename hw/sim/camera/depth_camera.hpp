@@ -1,4 +1,4 @@
-// The simulated depth camera: a picture of the world with the robot in it, and noise.
+// The simulated depth camera: depth images of the world with the robot, and noise.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,17 @@
 
 namespace octoskin::sim {
 
-/// A camera that stands still in a world that stands still: the world is cast once, the robot per frame. Its
-/// lens bends the picture as the rig says.
+/// A stationary camera in a static world: the world is cast once, the robot per frame. The lens distortion is
+/// that of the rig.
 class DepthCamera {
   public:
     /// `camera`: depth_max_m below 65.5 m (asserted). `sigma_m`: deviation of each pixel's depth. One ray a
     /// pixel: about 5 ms for 512 x 424.
     DepthCamera(const World& world, const rig::Camera& camera, double sigma_m, std::uint64_t seed);
 
-    /// Depth along the optical axis in millimetres, height x width row-major; 0 where nothing, or nothing
-    /// between depth_min_m and depth_max_m, is measured. A ray goes through a pixel's centre. `body`: the
-    /// robot at the instant of the frame. Noise is a function of (seed, frame index, pixel). About 10 ms for
-    /// 512 x 424.
+    /// Depth along the optical axis in millimetres, height x width row-major; 0 where no depth between
+    /// depth_min_m and depth_max_m is measured. A ray goes through a pixel's centre. `body`: the robot at the
+    /// instant of the frame. Noise is a function of (seed, frame index, pixel). About 10 ms for 512 x 424.
     [[nodiscard]] std::vector<std::uint16_t> render(const std::vector<BodyCapsule>& body,
                                                     std::uint32_t frame_index) const;
 

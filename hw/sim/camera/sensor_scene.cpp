@@ -17,10 +17,10 @@ namespace {
 constexpr double kAmbient_mcps = 0.05;  ///< of the whole array
 constexpr double kArraySpads = 256.0;
 
-/// What a zone counts of its signal. By the datasheet (DS12385 rev 7, table 9) one of 4 x 4 SPADs sees a dark
-/// target, grey of 17 %, up to 45 cm: with a third of the signal that it needs of brighter ones further
-/// away, which no law of signal and SPADs gives. So this is fitted: all from 8 x 8 SPADs or grey of 50 % on,
-/// and less in proportion to the logarithms of both.
+/// The share of its signal that a zone counts. By the datasheet (DS12385 rev 7, table 9) a zone of 4 x 4
+/// SPADs sees a dark target, grey of 17 %, up to 45 cm: with a third of the signal that it needs for brighter
+/// targets further away. No law of signal and SPADs gives this, so the share is fitted: 1 from 8 x 8 SPADs or
+/// grey of 50 % on, and below that less in proportion to the logarithms of both.
 double counted_share(const Roi& zone, double reflectivity) {
     constexpr double kSmall = 4.0 * 4.0, kLarge = 8.0 * 8.0;  // SPADs
     constexpr double kDark = 0.17, kGrey = 0.5;
@@ -37,7 +37,7 @@ struct RayScene {
     Noise noise;
 
     RangingReturn operator()(std::uint32_t ranging_index, SimTime window_middle, const Roi& roi) const {
-        /// Far above the default limit of 1 Mcps, and what a grey wall at 1 m returns in the dark.
+        /// Far above the default limit of 1 Mcps; a grey wall at 1 m returns this in the dark.
         constexpr double kSignal_mcps = 8.0;
         RangingReturn seen;
         seen.sigma_m = surroundings.optics.sigma_m;
@@ -69,7 +69,7 @@ struct RayScene {
 /// Where a sensor and the robot are at one instant.
 struct Instant {
     Eigen::Isometry3d T_base_sensor;
-    std::vector<BodyCapsule> body;  ///< what of the robot the sensor may see
+    std::vector<BodyCapsule> body;  ///< the parts of the robot that the sensor may see
 };
 
 Instant instant_of(const SensorSurroundings& surroundings, const SensorMount& mount, SimTime time) {
@@ -103,8 +103,8 @@ struct ConeScene {
         return seen;
     }
 
-    /// What is measured of a signal spreads logistically: the device, which compares it with its limit, then
-    /// refuses a range with the chance that the logistic curve about that limit gives.
+    /// The measured signal has logistic noise. The device compares it with its limit, so the probability of a
+    /// refused range is a logistic curve about that limit.
     [[nodiscard]] double measured_signal(double signal, double spread, std::uint32_t ranging_index) const {
         const double uniform = signal_noise.uniform(ranging_index);
         return std::max(0.0, signal + spread * std::log(uniform / (1.0 - uniform)));
@@ -132,7 +132,7 @@ struct ConeScene {
         return echoes;
     }
 
-    /// Sub-rays that meet the robot first end there.
+    /// Ends sub-rays at the robot if they meet it first.
     void hide_behind_body(const Instant& instant, const std::vector<Eigen::Vector3d>& directions,
                           std::vector<RayHit>& hits) const {
         const Eigen::Vector3d origin = instant.T_base_sensor.translation();
@@ -164,7 +164,7 @@ struct ConeScene {
 double cone_sigma_m(double signal) noexcept {
     constexpr double kFloor_m = 0.01;
     constexpr double kAtUnitSignal_m = 0.006;
-    constexpr double kLeastSignal = 1e-6;  // 6 m, which any limit refuses
+    constexpr double kLeastSignal = 1e-6;  // gives 6 m, which any limit refuses
     return kFloor_m + kAtUnitSignal_m / std::sqrt(std::max(signal, kLeastSignal));
 }
 

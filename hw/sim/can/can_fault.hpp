@@ -1,5 +1,4 @@
-// What can go wrong with frames, as data: which frames, from the how-manieth on, how many of them, and what
-// happens.
+// Faults of frames as data: which frames, from which one on, how many, and the effect.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +9,11 @@
 namespace octoskin::sim {
 
 enum class CanFaultKind : std::uint8_t {
-    drop,       ///< nobody hears it, the tap neither
-    duplicate,  ///< everybody hears it twice
+    drop,       ///< no controller receives it, nor does the tap
+    duplicate,  ///< every controller receives it twice
     corrupt,    ///< one bit arrives flipped, past CAN's own checksum
-    delay,      ///< everybody hears it later
-    disturb,    ///< its sender sees an error, so nobody hears it: it is sent again, unless that was one too
-                ///< many
+    delay,      ///< every controller receives it later
+    disturb,    ///< its sender detects an error, no controller receives it; repeated unless bus-off
 };
 
 struct CanFault {
@@ -23,7 +21,7 @@ struct CanFault {
     std::optional<std::uint32_t> can_id{};  ///< empty: every frame matches
     std::uint32_t after = 0;                ///< this many matching frames pass first
     std::uint32_t count = 1;                ///< then this many are hit
-    std::uint32_t every = 1;                ///< of every n-th matching frame from there on
+    std::uint32_t every = 1;                ///< only every n-th matching frame from there on
     std::uint16_t bit = 0;                  ///< corrupt: index into the payload, modulo its length
     std::int64_t delay_us = 0;              ///< delay
 

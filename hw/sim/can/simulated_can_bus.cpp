@@ -73,7 +73,7 @@ bool SimulatedCanBus::Controller::send(const wire::CanFrame& frame) {
     return true;
 }
 
-/// In a node's controller a frame keeps its place until it has ended.
+/// In a node's controller a frame occupies its buffer until it has ended.
 bool SimulatedCanBus::Controller::has_room_for(const wire::CanFrame& frame) const {
     if (!is_node) return pending.size() < mailbox_count_;
     std::vector<std::uint32_t> waiting;

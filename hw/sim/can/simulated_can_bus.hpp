@@ -1,5 +1,5 @@
-// A CAN bus on simulated time: arbitration by identifier, frames that take as long as their bits, a tap that
-// hears everything, and faults as data.
+// A CAN bus on simulated time: arbitration by identifier, frame durations by their bits, a tap that receives
+// every frame, and faults as data.
 #pragma once
 
 #include <cstddef>
@@ -19,36 +19,36 @@
 
 namespace octoskin::sim {
 
-/// A controller that is bus-off hears nothing and sends nothing. Only transmit errors are modelled: 8 for
-/// each frame that is disturbed, one less for each that is sent; over 127 the controller is passive, over 255
+/// A controller that is bus-off receives and sends nothing. Only transmit errors are modelled: 8 for each
+/// frame that is disturbed, one less for each that is sent; over 127 the controller is passive, over 255
 /// bus-off (ISO 11898-1, fault confinement).
 ///
-/// Called at the end of a frame, the instant that "heard SYNC" and receive stamps mean.
+/// Called at the end of a frame, which is the instant of every receive time stamp, also of SYNC.
 using FrameHandler = std::function<void(const wire::CanFrame& frame, SimTime end_of_frame)>;
 
 /// How long a frame and the three bits after it occupy the bus: worst-case stuffing, rounded up to whole
 /// microseconds.
 [[nodiscard]] std::int64_t frame_duration_us(const wire::CanFrame& frame, const wire::BitRates& rates);
 
-/// A controller that decides itself what it sends next, counts its own errors and repeats its own frames: a
-/// model of the hardware on an emulated board.
+/// A controller that selects its next frame, counts its errors and repeats its frames by itself: the
+/// controller model of an emulated board.
 class CanSeat {
   public:
-    /// What it wants to send next, in place of what it wanted before; empty: nothing. A frame under way ends
-    /// in any case.
+    /// Sets the frame to send next and replaces the previous one; empty: none. A frame on the bus is always
+    /// completed.
     virtual void offer(const std::optional<wire::CanFrame>& frame) = 0;
-    /// The frame of its own that is under way; null: none is.
+    /// Its own frame that is on the bus; null: none.
     [[nodiscard]] virtual const wire::CanFrame* under_way() const = 0;
 
   protected:
     ~CanSeat() = default;
 };
 
-/// What its holder hears, at the end of a frame each.
+/// Handlers of its owner, each called at the end of a frame.
 struct CanSeatHandlers {
-    FrameHandler on_frame;      ///< of the others
+    FrameHandler on_frame;      ///< frames of the others
     FrameHandler on_sent;       ///< its own
-    FrameHandler on_disturbed;  ///< its own, destroyed by a fault of the bus: nobody heard it
+    FrameHandler on_disturbed;  ///< its own, destroyed by a fault of the bus and received by no controller
 };
 
 class SimulatedCanBus {
@@ -57,20 +57,21 @@ class SimulatedCanBus {
     SimulatedCanBus(const SimulatedCanBus&) = delete;
     SimulatedCanBus& operator=(const SimulatedCanBus&) = delete;
 
-    /// A controller on the bus. `on_frame` hears the frames of all others, never its own. The transmitter
-    /// lives as long as the bus, holds `mailboxes` frames and sends the lowest identifier first, equal ones
-    /// in the order given. A frame counts as given at the bus's present time: call `advance(now)` before
-    /// whoever sends at `now`.
+    /// Attaches a controller. `on_frame` is called for the frames of all others, never for its own. The
+    /// transmitter lives as long as the bus, holds `mailboxes` frames and sends the lowest identifier first,
+    /// equal ones in the order given. A frame counts as given at the bus's present time: call `advance(now)`
+    /// before anything sends at `now`.
     node::CanTransmitter& attach(FrameHandler on_frame, std::size_t mailboxes = 3);
-    /// A node's controller, as its ports have it: what may wait in it is `node::may_join`'s to say.
+    /// Attaches a node's controller as its ports provide it: `node::may_join` decides which frames may wait
+    /// in it.
     node::CanTransmitter& attach_node(FrameHandler on_frame);
-    /// For one that governs itself. Lives as long as the bus.
+    /// Attaches a controller that manages its own frames. It lives as long as the bus.
     CanSeat& attach_seat(CanSeatHandlers handlers);
 
-    /// Hears every frame of every controller: the recorder.
+    /// Called for every frame of every controller: for the recorder.
     void tap(FrameHandler on_frame);
 
-    /// From now on. Faults apply in the order they were added.
+    /// Applies from now on. Faults apply in the order they were added.
     void add_fault(const CanFault& fault);
 
     /// Ends and starts frames up to `now`, calling the handlers in the order of time, then taps first, then
@@ -78,7 +79,7 @@ class SimulatedCanBus {
     /// whatever the order of the calls. Handlers may send; they must not call `advance`.
     void advance(SimTime now);
 
-    /// The next instant at which `advance` has something to do; empty if no frame is waiting or under way.
+    /// The next instant at which `advance` changes something; empty if no frame is waiting or on the bus.
     [[nodiscard]] std::optional<SimTime> next_event() const;
 
     /// Share of the time from 0 to the last `advance` that the bus was busy, 0..1.
@@ -103,14 +104,14 @@ class SimulatedCanBus {
 
         void on_sent(const wire::CanFrame& frame, SimTime end);
         void on_error(const Pending& disturbed);
-        /// Bus-off, and on its way back since.
+        /// The time at which a controller that is bus-off returns to the bus.
         [[nodiscard]] std::optional<SimTime> back_at() const { return back_at_; }
         [[nodiscard]] bool is_on_bus(SimTime time) const;
 
         FrameHandler on_frame;
-        std::optional<CanSeatHandlers> seat;  ///< governs itself
-        bool is_node = false;                 ///< else its mailboxes take whatever comes
-        std::vector<Pending> pending;         ///< in the order given; the one under way has left
+        std::optional<CanSeatHandlers> seat;  ///< manages its own frames
+        bool is_node = false;                 ///< else its mailboxes accept any frame
+        std::vector<Pending> pending;         ///< in the order given; without the one on the bus
 
       private:
         void settle();
@@ -150,7 +151,7 @@ class SimulatedCanBus {
     std::vector<ActiveFault> faults_;
     std::optional<Transmission> under_way_;
     std::multimap<SimTime, Transmission>
-        heard_;  ///< ended, to be delivered; equal times in order of insertion
+        heard_;  ///< ended frames to deliver; equal times in order of insertion
 };
 
 }  // namespace octoskin::sim

@@ -15,7 +15,7 @@ bool DataReadyLine::is_high(SimTime time) const {
         case LineFault::none:
             break;
     }
-    // Each is brought to the time, also behind one that is low already.
+    // Every sensor must be advanced to the time, also if an earlier one is already low.
     return std::ranges::count_if(sensors_,
                                  [time](SensorModel* sensor) { return !sensor->gpio1_level(time); }) == 0;
 }

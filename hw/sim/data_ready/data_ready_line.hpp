@@ -9,10 +9,10 @@
 
 namespace octoskin::sim {
 
-/// What can be wrong with the wire.
+/// Faults of the wire.
 enum class LineFault : std::uint8_t {
     none,
-    stuck_low,   ///< shorted to ground, or held by a dead part
+    stuck_low,   ///< shorted to ground, or held low by a defective part
     stuck_high,  ///< not connected
     chatters,    ///< a new level every microsecond
 };
@@ -25,8 +25,8 @@ class DataReadyLine {
     [[nodiscard]] LineFault fault() const noexcept { return fault_; }
 
     [[nodiscard]] bool is_high(SimTime time) const;
-    /// The next time after `now` at which the level may change without anybody's doing; empty if never. What
-    /// the controller does over I2C or by XSHUT may change it at any time.
+    /// The next time after `now` at which the level may change by itself; empty if never. The controller may
+    /// change it at any time over I2C or by XSHUT.
     [[nodiscard]] std::optional<SimTime> next_change(SimTime now) const;
 
   private:

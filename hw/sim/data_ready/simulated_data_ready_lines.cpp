@@ -14,7 +14,7 @@ void SimulatedDataReadyLines::look(SimTime now) {
     looked_ = now;
 }
 
-/// A chattering line is looked at as often as a board's loop turns: each of its edges would take for ever.
+/// A chattering line is sampled once per turn of the board's loop: simulating each edge would be too slow.
 std::optional<SimTime> SimulatedDataReadyLines::next_change(SimTime now) const {
     constexpr std::int64_t kLoopUs = 50;
     std::optional<SimTime> next;

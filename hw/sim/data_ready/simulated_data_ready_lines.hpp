@@ -1,5 +1,5 @@
-// The data-ready lines of a simulated board, as the node core asks for them: whoever runs the board has them
-// looked at whenever one may have changed.
+// The data-ready lines of a simulated board for the node core. The board's loop samples them whenever one may
+// have changed.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ namespace octoskin::sim {
 class SimulatedDataReadyLines final : public node::DataReadyLines {
   public:
     [[nodiscard]] DataReadyLine& line(std::size_t bus) { return lines_.at(bus); }
-    /// Notes the falls since the last look: to be called at each `next_change`, and after each transfer.
+    /// Samples the lines and records falling edges. Call at each `next_change` and after each transfer.
     void look(SimTime now);
     [[nodiscard]] std::optional<SimTime> next_change(SimTime now) const;
-    /// How often the node asked.
+    /// Number of the node's queries.
     [[nodiscard]] std::uint64_t asked_count(std::size_t bus) const { return asked_.at(bus); }
 
     [[nodiscard]] bool take_fall(std::uint8_t bus) override;

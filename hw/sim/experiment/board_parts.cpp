@@ -5,9 +5,8 @@
 namespace octoskin::sim {
 namespace {
 
-// Parts as they come off the reel: oscillator calibration 36 or 37, the slow oscillator as fast as the reel's
-// are (4..9 % unless told otherwise), the optical centre off by up to 2 SPADs, boot within the datasheet's
-// 1.2 ms.
+// Variation of new parts: oscillator calibration 36 or 37, the slow oscillator within the given spread (4..9
+// % fast by default), the optical centre off by up to 2 SPADs, boot within the datasheet's 1.2 ms.
 SensorPart draw_part(std::mt19937_64& random, const SlowClockSpread& slow_clocks) {
     // Plain arithmetic instead of <random>'s distributions, whose results differ between standard libraries.
     const auto uniform = [&random](std::uint32_t count) {

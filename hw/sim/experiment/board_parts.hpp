@@ -1,5 +1,6 @@
-// What differs from one board of a type to the next: its sensors' constants and its unique id. A function of
-// the seed and the node, so that every home of the node core gets the same parts.
+// The properties that differ between boards of one type: their sensors' constants and their unique id. A
+// function of the seed and the node, so that the node core gets the same parts in this process and on an
+// emulated board.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@ struct BoardParts {
     std::array<std::uint8_t, 12> unique_id{};
 };
 
-/// Where they are drawn from.
+/// The source of the parts.
 struct PartsReel {
     std::uint64_t seed = 0;
     SlowClockSpread slow_clocks{};

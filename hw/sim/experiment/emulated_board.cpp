@@ -21,7 +21,7 @@ std::filesystem::path write_block(const NodeConfig& config) {
     return name;
 }
 
-/// That reads back as the same number.
+/// Text that reads back as the same number.
 std::string text_of(double value) {
     std::array<char, 32> digits{};
     const auto end = std::to_chars(digits.begin(), digits.end(), value);
@@ -69,12 +69,12 @@ EmulatedBoard::EmulatedBoard(const EmulatedBoards& emulated, const NodeConfig& c
 
 EmulatedBoard::~EmulatedBoard() {
     process_.reset();
-    std::error_code ignored;  // a file left in the temporary directory harms nobody
+    std::error_code ignored;  // a leftover file in the temporary directory is harmless
     std::filesystem::remove(block_, ignored);
 }
 
 void EmulatedBoard::note(BusEventKind kind, SimTime time, const wire::CanFrame& frame) {
-    // A frame may begin and end within one turn: the board must know that it began.
+    // A frame may begin and end within one turn: the board must still be notified of its begin.
     if (kind != BusEventKind::received) {
         if (!has_told_start_) turn_.events.push_back({BusEventKind::started, turn_.time, frame});
         has_told_start_ = false;
@@ -95,7 +95,7 @@ void EmulatedBoard::begin_turn(SimTime now) {
 
 void EmulatedBoard::finish_turn() {
     const HasRun done = process_->finish();
-    // A frame that the bus has begun stays on offer until it has ended.
+    // A frame on the bus stays on offer until it has ended.
     if (seat_->under_way() != nullptr || done.offer == offered_) return;
     offered_ = done.offer;
     seat_->offer(offered_);
@@ -110,8 +110,8 @@ double EmulatedBoard::i2c_busy_s(std::size_t bus) {
     return summary().i2c_busy_s.at(bus);
 }
 
-/// Nothing but the buses tells when the node core began: the first address passes when its sensors have been
-/// in reset for as long as the core wants, one turn of the loop later.
+/// The start of the node core is derived from the buses: the first address is sent one turn of the loop after
+/// the core's reset time of the sensors.
 BoardStart EmulatedBoard::start() {
     constexpr std::int64_t kAddressUs = 28;
     const std::int64_t before_us = (node::Policy{}.xshut_low + kLoopTurn).count() + kAddressUs;

@@ -1,4 +1,4 @@
-// The flashed image on an emulated board, on the experiment's bus and in its world.
+// The flashed image on an emulated board, connected to the experiment's bus and world.
 #pragma once
 
 #include <filesystem>
@@ -15,17 +15,17 @@
 
 namespace octoskin::sim {
 
-/// What runs in place of the node core in this process.
+/// Emulated boards in place of the node core in this process.
 struct EmulatedBoards {
     std::filesystem::path program;  ///< octoskin_board
-    std::filesystem::path image;    ///< the ELF that is flashed
+    std::filesystem::path image;    ///< the ELF to flash
     std::uint32_t cycles_per_instruction = 1;
 };
 
 class EmulatedBoard final : public RigBoard {
   public:
-    /// `can` must outlive the board. Its parts are those that the same reel gives to a board in this process.
-    /// Throws BoardLinkError.
+    /// `can` must outlive the board. Its parts are the same as those of a board in this process with the same
+    /// reel. Throws BoardLinkError.
     EmulatedBoard(const EmulatedBoards& emulated, const NodeConfig& config, double drift_ppm,
                   const PartsReel& reel, SimulatedCanBus& can, const SceneOfSensor& scene);
     ~EmulatedBoard() override;
@@ -41,7 +41,7 @@ class EmulatedBoard final : public RigBoard {
     void note(BusEventKind kind, SimTime time, const wire::CanFrame& frame);
 
     double drift_ppm_;
-    std::filesystem::path block_;  ///< the configuration, as a file while the board lives
+    std::filesystem::path block_;  ///< file with the configuration, while the board exists
     std::vector<RangingScene> scenes_;
     std::unique_ptr<BoardProcess> process_;
     CanSeat* seat_ = nullptr;

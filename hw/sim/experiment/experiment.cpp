@@ -17,16 +17,16 @@
 namespace octoskin::sim {
 namespace {
 
-// The turn of the simulation's loop: every board polls this often. Longer than a byte on the bus, a fifth of
-// a transfer.
+// Period of the simulation's loop, in which every board polls. Longer than a byte on the bus, a fifth of a
+// transfer.
 constexpr std::int64_t kTurnUs = 50;
-// With boards in processes of their own, each turn costs a round trip. What they send reaches the bus at a
-// turn's end; what they hear, they hear at its own time.
+// With boards in separate processes, each turn costs a round trip. Their frames reach the bus at the end of a
+// turn; they receive frames at the exact time.
 constexpr std::int64_t kRemoteTurnUs = 200;
 constexpr Microseconds kSyncPeriod{1'000'000};
-// Frames before START: they must not enter the map, so a recording has some.
+// Depth frames before START. They must not enter the map, so a recording contains some to test this.
 constexpr int kFramesBeforeStart = 2;
-// The host has been up for a while, and its wall clock says some day.
+// The host's clocks at the start: up for a while, and an arbitrary wall time.
 constexpr HostTime kHostAtStart{4'321'000'000'000};
 constexpr WallTime kWallAtStart{1'750'000'000'000'000'000};
 
@@ -34,7 +34,7 @@ SimTime from_seconds(double seconds) {
     return {static_cast<std::int64_t>(std::llround(seconds * 1e6))};
 }
 
-/// Crystals are within +-100 ppm; counters start anywhere, the first node's shortly before it wraps.
+/// Crystals are within +-100 ppm; counters start at a random value, the first node's shortly before it wraps.
 NodeClock draw_clock(std::mt19937_64& random, bool is_first) {
     const auto start = static_cast<std::uint32_t>(random() & 0xFFFFFFFFU);
     const double drift_ppm = static_cast<double>(random() % 2001) / 10.0 - 100.0;
@@ -43,7 +43,7 @@ NodeClock draw_clock(std::mt19937_64& random, bool is_first) {
 
 using WorldAt = std::function<const World&(SimTime)>;
 
-/// Empty if nothing moves. One instant's world at a time.
+/// Empty if nothing moves. Holds the world of one instant at a time.
 WorldAt world_at(const ExperimentInput& input, SimTime start) {
     if (input.motions.empty()) return {};
     const auto moving = std::make_shared<MovingWorld>(input.world.solids(), input.motions);
@@ -52,7 +52,7 @@ WorldAt world_at(const ExperimentInput& input, SimTime start) {
     };
 }
 
-/// Everything that takes part, wired together.
+/// All parts of the simulation, connected.
 class RigInOneProcess {
   public:
     RigInOneProcess(const ExperimentInput& input, const Trajectory& trajectory, const WorldAt& world_at,
@@ -90,7 +90,7 @@ class RigInOneProcess {
             [this](const wire::CanFrame& frame, SimTime end) { joints_->on_frame(frame, end); }, 16);
     }
 
-    /// To be sent at `at`.
+    /// Queues a mark to send at `at`.
     void mark(wire::MarkKind kind, SimTime at) { marks_.push_back({kind, at}); }
 
     void run_until(SimTime end) {
@@ -122,7 +122,7 @@ class RigInOneProcess {
     }
 
   private:
-    /// The same scene; whoever wants to know is told.
+    /// The same scene, which also reports each ranging to the caller's handler.
     RangingScene told(RangingScene scene, std::uint8_t node_id, std::uint8_t sensor) const {
         if (!output_.on_ranging) return scene;
         return [this, scene = std::move(scene), node_id, sensor](std::uint32_t index, SimTime middle,
@@ -223,7 +223,7 @@ Result<ExperimentSummary, ExperimentError> run(const ExperimentInput& input, con
             const SimTime captured{start.us + from_seconds(period_s * index).us};
             if (captured >= end) break;
             rig.run_until(captured);
-            // It sees the world's surfaces once and for all; where those move, anew each time.
+            // A camera casts a static world once. If models move, it is created again for each frame.
             if (!camera || moving)
                 camera.emplace(moving ? moving(captured) : input.world, *input.rig.camera, sigma_m,
                                input.seed);
@@ -238,7 +238,7 @@ Result<ExperimentSummary, ExperimentError> run(const ExperimentInput& input, con
             }
         }
     }
-    rig.run_until({end.us + 500'000});  // what is still under way arrives
+    rig.run_until({end.us + 500'000});  // delivers the frames still on the bus
     ExperimentSummary summary = rig.summary();
     summary.depth_frames = frames;
     return summary;

@@ -1,6 +1,5 @@
 // The whole rig in one process, on one virtual clock and from one seed: sensors, boards, bus, arm controller,
-// camera and the host's transmissions. What comes out is only what a recorder would see: frames on the bus
-// and depth images.
+// camera and the host's transmissions. The output is that of a recorder: frames on the bus and depth images.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +24,7 @@ namespace octoskin::sim {
 
 struct ExperimentInput {
     const rig::Rig& rig;
-    const std::vector<rig::Capsule>& capsules;  ///< of the robot, without the rig's padding: the real body
+    const std::vector<rig::Capsule>& capsules;  ///< of the robot, without the rig's padding: the true body
     const World& world;
     const Arm& arm;
     const Scenario& scenario;
@@ -33,13 +32,13 @@ struct ExperimentInput {
     bool is_depth_noise_free = false;
     std::optional<EmulatedBoards> emulated{};  ///< the flashed image in place of the node core here
     /// Of boards in this process: one for each node, or none. Then they run from time 0, and their counters
-    /// start anywhere.
+    /// start at random values.
     std::vector<BoardStart> board_starts{};
-    /// Of models of `world`, each once (asserted); seconds count from where the arm starts.
+    /// Motions of models of `world`, each model once (asserted); seconds from the start of the arm's motion.
     std::vector<ModelMotion> motions{};
 };
 
-/// What a sensor truly did: the oracle that no recorder has.
+/// The true data of a ranging, for tests: no recorder has them.
 struct TrueRanging {
     std::uint8_t node_id = 0;
     std::uint8_t sensor = 0;
@@ -48,7 +47,7 @@ struct TrueRanging {
     RangingReturn seen;
 };
 
-/// A recorder's view. `captured` and `stamp` are on the clocks that a real recorder has.
+/// Handlers of a recorder. `captured` and `stamp` are in the clocks of a real recorder.
 struct ExperimentOutput {
     std::function<void(const wire::CanFrame& frame, WallTime stamp)> on_frame;
     std::function<void(HostTime captured, std::uint32_t width, std::uint32_t height,
@@ -64,13 +63,13 @@ struct ExperimentSummary {
     std::uint64_t depth_frames = 0;
     double can_busy_fraction = 0.0;
     std::vector<double> i2c_busy_fraction;  ///< per node and bus
-    double first_range_s = 0.0;             ///< when the first range was on the bus
-    std::vector<BoardStart> board_starts;   ///< of each node, as they truly were
+    double first_range_s = 0.0;             ///< time of the first range on the bus
+    std::vector<BoardStart> board_starts;   ///< the true values of each node
     std::string violations;                 ///< of emulated boards, one a line
 };
 
 struct ExperimentError {
-    std::string scenario_key;  ///< whose value cannot be had; empty: the scenario is not at fault
+    std::string scenario_key;  ///< of the value at fault; empty: the scenario is not at fault
     std::string what;
 };
 

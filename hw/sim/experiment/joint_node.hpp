@@ -1,5 +1,5 @@
-// The arm's controller as a node on the bus: joint states at a fixed rate, stamped with its own clock, which
-// it reports on every SYNC as any node does.
+// The arm's controller as a node on the bus: joint states at a fixed rate, with time stamps of its own clock,
+// which it reports on every SYNC like every node.
 #pragma once
 
 #include <functional>

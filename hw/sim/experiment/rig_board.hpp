@@ -1,5 +1,5 @@
-// A sensor board as the experiment runs it: the node core in this process, or the flashed image on an
-// emulated board in another.
+// A sensor board of the experiment: the node core in this process, or the flashed image on an emulated board
+// in another process.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,19 @@ namespace octoskin::sim {
 
 /// How a board starts.
 struct BoardStart {
-    NodeClock clock{};     ///< its microsecond counter, as it truly runs
-    SimTime first_turn{};  ///< when the node core begins to work
+    NodeClock clock{};     ///< its true microsecond counter
+    SimTime first_turn{};  ///< when the node core starts
 };
 
 class RigBoard {
   public:
     virtual ~RigBoard() = default;
-    /// Runs up to `now`, the bus's present; several boards may do so at once until `finish_turn`.
+    /// Runs up to `now`, the bus's present time. Several boards may run at once until `finish_turn`.
     virtual void begin_turn(SimTime now) = 0;
     virtual void finish_turn() = 0;
     [[nodiscard]] virtual double i2c_busy_s(std::size_t bus) = 0;
     [[nodiscard]] virtual BoardStart start() = 0;
-    /// What its program did against the chip's manuals, one a line; empty if nothing.
+    /// Violations of the chip's manuals by its program, one per line; empty if none.
     [[nodiscard]] virtual std::string violations() { return {}; }
 };
 

@@ -7,9 +7,9 @@ namespace {
 
 constexpr std::uint32_t kSimulatedBuildId = 0x51ABED00;
 
-/// The board's controller never exceeds the rate that is asked for, whatever its filter and the edges; with
-/// typical ones each bit takes this much longer than its nominal time (RM0440, I2C_TIMINGR; typical edges as
-/// on the emulated board).
+/// The board's controller never exceeds the nominal rate, for any filter and edges. With typical ones each
+/// bit takes this much longer than its nominal time (RM0440, I2C_TIMINGR; typical edges as on the emulated
+/// board).
 std::uint32_t true_rate_hz(std::uint32_t nominal_hz) {
     constexpr double kLongerBitUs = 0.246;
     return static_cast<std::uint32_t>(1e6 / (1e6 / nominal_hz + kLongerBitUs));
@@ -39,14 +39,14 @@ SimulatedBoard::SimulatedBoard(const NodeConfig& config, const BoardStart& start
     node_ = std::make_unique<node::Node>(config_, identity_, ports, start_.clock.to_node(present_.time));
 }
 
-/// From event to event, and a look at the CAN controller's mailboxes at the end.
+/// Runs from event to event, and polls the CAN controller's mailboxes at the end.
 void SimulatedBoard::begin_turn(SimTime now) {
     if (now < start_.first_turn) return;
     for (SimTime next = next_event(); next < now; next = next_event()) turn(next);
     if (present_.time <= now) turn(now);
 }
 
-/// What a turn begins, it begins towards its end.
+/// A turn starts its transfers at its end.
 void SimulatedBoard::turn(SimTime time) {
     turn_began_ = time;
     present_.time.us = time.us + kLoopTurn.count();

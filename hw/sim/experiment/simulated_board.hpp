@@ -1,4 +1,4 @@
-// One sensor board in the simulation: the real node core with its modelled sensors on modelled buses.
+// One sensor board in the simulation: the real node core with simulated sensors on simulated buses.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +22,14 @@ namespace octoskin::sim {
 /// The scene that the sensor with this local index looks at.
 using SceneOfSensor = std::function<RangingScene(std::uint8_t sensor)>;
 
-/// A turn of the board's loop, and about what the flashed image takes on the emulated board
-/// (hw/sim/stm32g474) from the end of a transfer to the next one's START.
+/// Period of the board's loop. The flashed image on the emulated board (hw/sim/stm32g474) needs about this
+/// time from the end of a transfer to the next START.
 inline constexpr Microseconds kLoopTurn{12};
 
 class SimulatedBoard final : public RigBoard, private node::XshutLines {
   public:
-    /// `can` must outlive the board. Every sensor's part differs: its constants are a function
-    /// of `reel`, node and sensor. Nothing happens before the start's first turn.
+    /// `can` must outlive the board. Each sensor's constants are a function of `reel`, node and sensor.
+    /// Nothing happens before the start's first turn.
     SimulatedBoard(const NodeConfig& config, const BoardStart& start, const PartsReel& reel,
                    SimulatedCanBus& can, const SceneOfSensor& scene);
 
@@ -53,7 +53,7 @@ class SimulatedBoard final : public RigBoard, private node::XshutLines {
 
     NodeConfig config_;
     BoardStart start_;
-    Present present_;  ///< the board's own, which runs from event to event
+    Present present_;  ///< the board's own time, which advances from event to event
     SimTime turn_began_;
     std::deque<Received> received_;
     node::Identity identity_;

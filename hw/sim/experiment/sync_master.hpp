@@ -11,7 +11,7 @@
 
 namespace octoskin::sim {
 
-/// The host's monotonic clock of a simulation: it started long before.
+/// The host's monotonic clock in a simulation: it started long before the simulation.
 class SimulatedHostClock {
   public:
     explicit SimulatedHostClock(HostTime at_start) : at_start_(at_start) {}
@@ -26,9 +26,10 @@ class SyncMaster {
     SyncMaster(SimulatedHostClock clock, Microseconds sync_period)
         : clock_(clock), sync_period_(sync_period) {}
 
-    /// The frames to send at `now`: a SYNC when one is due, and what was queued.
+    /// The frames to send at `now`: a SYNC when one is due, and the queued frames.
     [[nodiscard]] std::vector<wire::CanFrame> poll(SimTime now);
-    /// The end of a frame on the bus, our own included: the end of our SYNC is what its FOLLOW_UP tells.
+    /// Call at the end of every frame on the bus, own frames included: FOLLOW_UP contains the time of the own
+    /// SYNC's end.
     void on_frame(const wire::CanFrame& frame, SimTime end);
     void mark(wire::MarkKind kind, SimTime at);
 

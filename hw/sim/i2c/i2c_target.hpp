@@ -1,4 +1,4 @@
-// A device on a simulated I2C bus, byte by byte. The bus tells it when each byte passes.
+// A device on a simulated I2C bus, byte by byte. The bus passes the time of each byte.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ class I2cTarget {
     virtual std::uint8_t on_read(SimTime time) = 0;
     virtual void on_stop(SimTime time) = 0;
 
-    /// True while it holds SDA low although nobody talks to it, as a part does that was left in the middle of
-    /// a byte.
+    /// True while it holds SDA low without a transfer, as a part does after a transfer that stopped in the
+    /// middle of a byte.
     virtual bool holds_sda(SimTime) { return false; }
     /// Clocks given to an idle bus to free it.
     virtual void on_clocks(std::uint32_t, SimTime) {}

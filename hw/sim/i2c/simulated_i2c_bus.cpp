@@ -6,7 +6,8 @@
 namespace octoskin::sim {
 namespace {
 
-constexpr std::uint32_t kFreeingClocks = 9;  // a byte and its acknowledge: by then every part has let go
+constexpr std::uint32_t kFreeingClocks =
+    9;  // a byte and its acknowledge: by then every part has released SDA
 
 std::uint8_t with_bit_flipped(std::uint8_t byte, std::size_t byte_number, const I2cFault* flip) {
     if (flip == nullptr || flip->position / 8 != byte_number) return byte;
@@ -15,8 +16,8 @@ std::uint8_t with_bit_flipped(std::uint8_t byte, std::size_t byte_number, const 
 
 }  // namespace
 
-// The whole transfer is played at once, every byte at its own time: nothing else reaches these devices before
-// it ends, and only so is it known when that is.
+// Simulates the whole transfer at once, every byte at its own time: nothing else reaches these devices before
+// it ends, and its end time must be known.
 void SimulatedI2cBus::submit(const i2c::Transfer& transfer, NodeTime, NodeTime deadline) {
     assert(!is_busy());
     transfer_ = transfer;
@@ -152,7 +153,7 @@ SimulatedI2cBus::Failure SimulatedI2cBus::run_read() {
     const I2cFault* flip = fault(I2cFaultKind::flip_bit);
     for (std::size_t i = 0; i < answer_.size(); ++i) {
         bits_ += 9;
-        std::uint8_t byte = 0xFF;  // the pull-ups: whoever drives a 0 wins
+        std::uint8_t byte = 0xFF;  // pull-ups: any device that drives a 0 wins
         for (I2cTarget* target : selected_) {
             byte = static_cast<std::uint8_t>(byte & target->on_read(after_bits(bits_)));
         }
@@ -162,7 +163,8 @@ SimulatedI2cBus::Failure SimulatedI2cBus::run_read() {
     return std::nullopt;
 }
 
-// START, address, acknowledge. Every device hears it; a refused acknowledge is the line's, not theirs.
+// START, address, acknowledge. Every device receives it; a missing acknowledge by a fault is on the line, the
+// device did acknowledge.
 bool SimulatedI2cBus::start(bool is_read) {
     bits_ += 10;
     selected_.clear();

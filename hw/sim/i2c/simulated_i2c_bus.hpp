@@ -13,21 +13,21 @@
 namespace octoskin::sim {
 
 enum class I2cFaultKind : std::uint8_t {
-    nack_address,      ///< nobody acknowledges
+    nack_address,      ///< no device acknowledges
     nack_byte,         ///< the written byte number `position` is refused (0 and 1 are the index)
     nack_read,         ///< the repeated START's address is not acknowledged
     flip_bit,          ///< bit `position` of the bytes read is inverted (0: most significant of the first)
     flip_written_bit,  ///< bit `position` of the bytes written arrives inverted (0: as above, of the index)
     lose_write,        ///< all is acknowledged, and no data byte arrives
-    read_ones,         ///< every byte read, from number `position` on, is 0xFF: the device has let go
-    lose_arbitration,  ///< somebody else drives SDA
+    read_ones,         ///< every byte read, from number `position` on, is 0xFF: the device released SDA
+    lose_arbitration,  ///< another controller drives SDA
     stretch,           ///< the clock is held low for ever: only the deadline ends it
     sda_stuck_low,     ///< SDA stays low from before the START on, until `position` clocks have been given
-    redirect_write,    ///< the index arrives as `position`, several of its bits altered, whatever was sent
+    redirect_write,    ///< the index arrives as `position`, several of its bits altered, for any sent index
 };
 
-/// What happens to transfers number `first` to `first + count - 1` (counted from 0 on this bus), or, with an
-/// address, to those of them that go there. `sda_stuck_low` begins at `first` and ends by its clocks.
+/// A fault of the transfers number `first` to `first + count - 1` (counted from 0 on this bus). With an
+/// address, only those of them that go to it. `sda_stuck_low` begins at `first` and ends by its clocks.
 struct I2cFault {
     I2cFaultKind kind = I2cFaultKind::nack_address;
     std::uint64_t first = 0;
@@ -50,18 +50,18 @@ class SimulatedI2cBus final : public i2c::Bus {
     void submit(const i2c::Transfer& transfer, NodeTime now, NodeTime deadline) override;
     [[nodiscard]] i2c::TransferState poll(NodeTime now) override;
     [[nodiscard]] i2c::TransferError error() const override { return error_; }
-    /// Drops the transfer in flight.
+    /// Drops the running transfer.
     bool recover() override;
 
-    /// The controller was reset: it forgets its transfer, and a target that was about to answer stays in the
-    /// middle of its byte, holding SDA.
+    /// The controller was reset: the transfer is lost, and a target that was sending stays in the middle of
+    /// its byte and holds SDA.
     void abandon();
 
-    /// Whether a line is held by a fault, and not yet let go.
+    /// Whether a fault still holds a line.
     [[nodiscard]] bool is_held() const noexcept { return stuck_clocks_ > 0; }
-    /// When transfers began in which a fault altered what a target was told, or kept it from it.
+    /// Start times of the transfers in which a fault altered or suppressed bytes to a target.
     [[nodiscard]] const std::vector<SimTime>& altered_writes() const noexcept { return altered_writes_; }
-    /// When the transfer in flight ends; empty if none is, or if it never ends by itself.
+    /// End of the running transfer; empty if there is none, or if it never ends by itself.
     [[nodiscard]] std::optional<SimTime> transfer_end() const;
     [[nodiscard]] std::uint64_t transfer_count() const noexcept { return transfer_count_; }
     /// Clock periods since the start, START and STOP counted as one each.
@@ -96,7 +96,7 @@ class SimulatedI2cBus final : public i2c::Bus {
     std::optional<i2c::Transfer> transfer_;
     SimTime started_{};
     NodeTime deadline_{};
-    std::uint64_t bits_ = 0;  ///< of the transfer in flight
+    std::uint64_t bits_ = 0;  ///< of the running transfer
     std::vector<std::uint8_t> answer_;
     Failure failure_;
     bool is_stretched_ = false;
@@ -105,7 +105,7 @@ class SimulatedI2cBus final : public i2c::Bus {
     std::uint64_t bit_count_ = 0;
     Microseconds busy_time_{0};
     std::vector<SimTime> altered_writes_;
-    std::uint32_t stuck_clocks_ = 0;  ///< still to be given before SDA is let go
+    std::uint32_t stuck_clocks_ = 0;  ///< still needed before SDA is released
     i2c::TransferError error_ = i2c::TransferError::timeout;
 };
 

@@ -1,5 +1,5 @@
-// Noise as a function of (seed, source, index): the same whatever else is drawn, in whatever order, by
-// however many threads.
+// Noise as a function of (seed, source, index): independent of other draws, their order and the number of
+// threads.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace octoskin::sim {
 
-/// Who is noisy. The numbers are part of what a seed means: never reuse one.
+/// Sources of noise. The numbers define the noise of a seed: never reuse one.
 enum class NoiseSource : std::uint64_t { depth = 1, range = 2, map_shift = 3, signal = 4 };
 
 /// A sequence of independent random numbers that can be read at any index, in O(1). Counter-based: Steele,

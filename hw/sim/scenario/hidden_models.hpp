@@ -1,4 +1,4 @@
-// A scenario's hidden objects against the world that it is played in.
+// Checks a scenario's hidden objects against the world of the simulation.
 #pragma once
 
 #include "common/result.hpp"
@@ -7,8 +7,8 @@
 
 namespace octoskin::sim {
 
-/// That every hidden model of the scenario is a model of the world; the error names the models that there
-/// are.
+/// Checks that every hidden model of the scenario is a model of the world. The error lists the models of the
+/// world.
 [[nodiscard]] Status<rig::RigError> check_hidden_models(const Scenario& scenario, const World& world);
 
 }  // namespace octoskin::sim

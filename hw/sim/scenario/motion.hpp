@@ -1,4 +1,4 @@
-// What moves in a world: the file beside its SDF.
+// The file beside a world's SDF that defines which models move.
 //
 //     models:
 //       - model: ball                       # of the SDF
@@ -20,8 +20,8 @@
 namespace octoskin::sim {
 
 /// As strictly as read_scenario(): an unknown key, a time that is not later than the one before, a model that
-/// is mentioned twice or not one of `solids` is an error, with its line. Seconds count from where the arm
-/// starts, and may be negative down to -600.
+/// occurs twice or is not one of `solids` is an error, with its line. Seconds from the start of the arm's
+/// motion; -600 or greater.
 [[nodiscard]] Result<std::vector<ModelMotion>, rig::RigError> read_motion(const FilePlace& file,
                                                                           const std::vector<Solid>& solids);
 

@@ -1,5 +1,4 @@
-// What happens in a simulated world: how the arm moves, how noisy the sensors are, what the seeds change, and
-// what is judged.
+// A scenario: motion of the arm, noise of the sensors, effect of the seeds, and the judged region.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,10 +19,10 @@
 
 namespace octoskin::sim {
 
-/// The optics of the simulated range sensors, where they are not the chip's own.
+/// The optics of the simulated range sensors, except the properties of the chip.
 struct RangeOptics {
-    double sigma_m = 0.0;       ///< of a sensor that sees one ray
-    double min_m = 0.0;         ///< nothing nearer and
+    double sigma_m = 0.0;       ///< of a sensor that is one ideal ray
+    double min_m = 0.0;         ///< nothing nearer is seen
     double max_m = 0.0;         ///< nothing further is seen
     double reflectivity = 0.5;  ///< of every surface, for sensors that see a cone
 };
@@ -42,7 +41,7 @@ struct ScenarioPlace {
 };
 
 struct Scenario {
-    std::filesystem::path file;             ///< that it was read from
+    std::filesystem::path file;             ///< the file it was read from
     std::vector<FilePlace> extended_files;  ///< that this file extends
     std::string name;
     FilePlace world;  ///< absolute, or below the folder of a recording
@@ -54,34 +53,33 @@ struct Scenario {
     RangeOptics ranges;
     SlowClockSpread slow_clocks;          ///< of the sensors
     std::vector<TraitsOf> sensor_traits;  ///< likewise
-    /// Translation of T_map_base, one per seed: where world, camera and robot together stand in the map's
-    /// grid.
+    /// Translation of T_map_base, one per seed: the offset of world, camera and robot in the map's grid.
     std::vector<Eigen::Vector3d> map_shifts_m;
     double further_map_shift_max_m = 0.0;
-    std::vector<std::string> hidden_models;  ///< SDF models that the camera is not supposed to see
+    std::vector<std::string> hidden_models;  ///< SDF models that are hidden from the camera
     ScenarioRegion region;
-    /// The same scenario as one file, which names its world and what moves kRecordedWorld and
-    /// kRecordedMotion, beside it.
+    /// The same scenario as one file, which names its world kRecordedWorld and its motion file
+    /// kRecordedMotion, both beside it.
     std::string standalone_text;
-    /// Where what may turn out wrong only later is written, by its key: "motion.circle.link".
+    /// Places of values that are checked only later, by key: "motion.circle.link".
     std::map<std::string, ScenarioPlace, std::less<>> places;
 
-    /// The shift of any seed: of those listed, else uniform in [0, further_map_shift_max_m) on each axis.
+    /// The shift of a seed: the listed one, else uniform in [0, further_map_shift_max_m) on each axis.
     [[nodiscard]] Eigen::Vector3d map_shift_m(std::uint64_t seed) const;
     /// An error about the value of one key, at its line if that is among `places`.
     [[nodiscard]] rig::RigError error(std::string_view key, std::string what) const;
 };
 
-/// What standalone_text calls them.
+/// The names in standalone_text.
 inline constexpr const char* kRecordedWorld = "world.sdf";
 inline constexpr const char* kRecordedMotion = "motion.yaml";
 
-/// Whose world is used: then that of the scenario need not be there.
+/// Which world is used. With `others`, the scenario's world file need not exist.
 enum class WorldOf : std::uint8_t { scenario, others };
 
 /// Reads and checks a scenario, as strictly as read_rig(): unknown keys, types, units, ranges; `extends:`
-/// works too. Paths in it are relative to the file. A scenario below a folder that was named, a recording,
-/// refers to files of that folder alone, behind no link.
+/// works too. Paths in it are relative to the file. A scenario below a named folder (a recording) may refer
+/// only to files of that folder, without links.
 [[nodiscard]] Result<Scenario, rig::RigError> read_scenario(const FilePlace& file,
                                                             WorldOf world = WorldOf::scenario);
 

@@ -5,7 +5,7 @@
 namespace octoskin::sim::stm32 {
 
 BoardOnBus::BoardOnBus(NucleoBoard& board, SimulatedCanBus& bus) : board_(board), bus_(bus) {
-    // What happens on the bus happens to the board at the same instant: it is brought there first.
+    // The board is first advanced to the instant of the bus event.
     const auto at = [this](SimTime end) -> Fdcan& {
         board_.run_until(end);
         return board_.can();

@@ -6,7 +6,7 @@
 
 namespace octoskin::sim::stm32 {
 
-/// How long board and bus run apart: what the board offers reaches the bus at the end of a turn.
+/// Turn of board and bus: a frame that the board offers reaches the bus at the end of a turn.
 inline constexpr std::int64_t kCanTurnUs = 50;
 
 class BoardOnBus {

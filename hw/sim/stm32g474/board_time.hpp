@@ -1,5 +1,5 @@
-// The emulated board's own time: what its crystal says, in picoseconds since power-up. Cycles of 160 MHz are
-// whole numbers of it, and 64 bits last for 106 days.
+// The emulated board's own time: the time of its crystal in picoseconds since power-up. A cycle of 160 MHz is
+// a whole number of picoseconds, and 64 bits last for 106 days.
 #pragma once
 
 #include <compare>

@@ -1,5 +1,5 @@
 // The NUCLEO-G474RE with the sensor carrier: chip, crystal, four I2C buses, XSHUT lines, CAN, the virtual COM
-// port and the light. Pins: docs/bring-up, hw/boards.
+// port and the light. Pins: docs/hardware/wiring.md, hw/boards.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ inline constexpr std::uint32_t kConfigurationPage = 0x0807'F800;  ///< the last 
 
 struct NucleoOptions {
     Crystal crystal{};
-    double drift_ppm = 0.0;  ///< of all the board's clocks against true time
+    double drift_ppm = 0.0;  ///< of all the board's clocks relative to true time
     std::uint32_t lsi_hz = 32'000;
     std::uint32_t cycles_per_instruction = 1;
     BusEdges edges = BusEdges::typical;
@@ -46,7 +46,7 @@ struct NucleoOptions {
     /// Address of 8 bytes of flash whose check bits do not fit (a write of them was cut short): each read of
     /// them is a double error.
     std::optional<std::uint32_t> damaged_flash{};
-    std::uint64_t seed = 1;  ///< of what RAM holds at power-up
+    std::uint64_t seed = 1;  ///< of the RAM content at power-up
 };
 
 class NucleoBoard final : private InterruptLines, private CanBusSide {
@@ -62,7 +62,7 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     void run_until(SimTime time);
     [[nodiscard]] SimTime now() const { return true_time(now_); }
     [[nodiscard]] BoardTime board_time() const noexcept { return now_; }
-    /// When an instant of the board's clock truly is.
+    /// The true time of an instant of the board's clock.
     [[nodiscard]] SimTime true_time(BoardTime time) const;
     [[nodiscard]] BoardTime to_board_time(SimTime time) const;
     /// The user presses the reset button.
@@ -71,14 +71,14 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     void cycle_power();
 
     [[nodiscard]] I2cWire& wire(std::size_t bus) { return wires_.at(bus); }
-    /// The line at the bus's data-ready input; a fault of it holds from the next look at it on.
+    /// The line at the bus's data-ready input. A fault of it applies from the next sample on.
     [[nodiscard]] DataReadyLine& data_ready(std::size_t bus) { return data_ready_.at(bus); }
     [[nodiscard]] std::int64_t i2c_busy_ps(std::size_t bus) const { return i2c_.at(bus)->busy_ps(); }
-    /// Each XSHUT line that changes: 0 to 39 are the chain's outputs, 40 to 47 pins, with a pull-up behind
-    /// each.
+    /// `listener` is called for each XSHUT line that changes: 0 to 39 are the chain's outputs, 40 to 47 pins
+    /// with a pull-up each.
     void on_xshut(ShiftRegisterChain::Listener listener) { on_xshut_ = std::move(listener); }
     [[nodiscard]] bool is_xshut_high(std::uint32_t line) const;
-    /// What the CAN controller wants to send next, at every change.
+    /// Called at every change of the frame that the CAN controller offers next.
     void on_offer(std::function<void(const std::optional<wire::CanFrame>&)> listener) {
         on_offer_ = std::move(listener);
     }
@@ -93,12 +93,12 @@ class NucleoBoard final : private InterruptLines, private CanBusSide {
     [[nodiscard]] const ElfImage& image() const noexcept { return image_; }
     [[nodiscard]] std::uint32_t reset_count() const noexcept { return reset_count_; }
     [[nodiscard]] std::uint32_t ram_word(std::uint32_t address) const;
-    /// For tests: the core goes on at `symbol`.
+    /// For tests: the core continues at `symbol`.
     void jump(const std::string& symbol);
     void jump(std::uint32_t address) { core_->jump(address); }
-    /// For tests: other instructions in flash, until they are put back. Returns what was there.
+    /// For tests: replaces instructions in flash and returns the previous ones.
     std::vector<std::uint16_t> patch(std::uint32_t address, const std::vector<std::uint16_t>& instructions);
-    /// For tests: what a debugger would write.
+    /// For tests: a write as by a debugger.
     void poke(std::uint32_t address, std::uint32_t value) { bus_->write(address, value, 4); }
     void refuse_pll() { rcc_->refuse_pll(); }
 

@@ -1,4 +1,4 @@
-// What every peripheral of the chip offers to the bus it sits on, and what it may use.
+// Interface of every peripheral to its bus, and the services that it may use.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace octoskin::sim::stm32 {
 
-/// Where interrupt lines end. Levels, as on the chip.
+/// Receiver of interrupt lines, by level as on the chip.
 class InterruptLines {
   public:
     virtual void set_line(std::uint32_t irq, bool is_high) = 0;
@@ -19,22 +19,22 @@ class InterruptLines {
     ~InterruptLines() = default;
 };
 
-/// What every model may use. Must outlive the models.
+/// Services for every model. Must outlive the models.
 struct Surroundings {
     const BoardTime& now;
     ViolationLog& log;
     InterruptLines& lines;
 };
 
-/// `advance` brings a model to the present: whoever accesses it calls it first, and whoever runs the board
-/// calls it no later than `next_event`.
+/// `advance` brings a model to the present time. Call it before each access, and from the board's loop no
+/// later than `next_event`.
 class Peripheral {
   public:
     virtual ~Peripheral() = default;
     [[nodiscard]] virtual std::string_view name() const = 0;
     [[nodiscard]] virtual std::uint32_t read(std::uint32_t offset) = 0;
     virtual void write(std::uint32_t offset, std::uint32_t value) = 0;
-    /// As after a system reset, or after the peripheral's bit in RCC's reset registers.
+    /// Resets it as a system reset or the peripheral's bit in RCC's reset registers does.
     virtual void reset() = 0;
     /// Whether a byte or half-word may be written there; else such a write is a violation.
     [[nodiscard]] virtual bool takes_narrow_writes(std::uint32_t) const { return false; }

@@ -40,7 +40,7 @@ std::uint32_t RegisterBank::checked(std::uint32_t offset, std::uint32_t value) {
         log_.report(Rule::read_only, fmt::format("{}.{}: write of 0x{:X}", owner_, spec->name, value));
         return present;
     }
-    // A bit that is not ours to write may be written as it reads (read-modify-write) or as 0.
+    // A bit that is not writable may be written as it reads (read-modify-write) or as 0.
     const std::uint32_t wrong = value & ~spec->writable & ~present;
     if (wrong != 0) {
         log_.report(Rule::reserved_bits,

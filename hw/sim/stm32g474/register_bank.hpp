@@ -1,4 +1,4 @@
-// The registers of a peripheral as storage with rules: which bits exist, which are written.
+// The registers of a peripheral: storage with rules for bits that exist and bits that are writable.
 #pragma once
 
 #include <cstdint>
@@ -25,10 +25,10 @@ class RegisterBank {
     void reset();
     /// Unknown offsets are reported and read as 0.
     [[nodiscard]] std::uint32_t read(std::uint32_t offset);
-    /// Checks `value` against the register's rules and returns what of it may be stored (read-only bits as
-    /// they are). Does not store. Unknown offsets are reported and give 0.
+    /// Checks `value` against the register's rules and returns the value to store (read-only bits unchanged).
+    /// Does not store it. Unknown offsets are reported and give 0.
     [[nodiscard]] std::uint32_t checked(std::uint32_t offset, std::uint32_t value);
-    /// `checked`, stored.
+    /// Stores the result of `checked`.
     void write(std::uint32_t offset, std::uint32_t value);
 
     /// Without checks, for the model itself. The offset must be one of the specs.

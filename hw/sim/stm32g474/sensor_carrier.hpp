@@ -14,7 +14,7 @@ namespace octoskin::sim::stm32 {
 
 class SensorCarrier {
   public:
-    /// As many parts as sensors. `board` must outlive the carrier. `scene` gives each sensor what it sees.
+    /// `parts`: one per sensor. `board` must outlive the carrier. `scene` returns each sensor's scene.
     SensorCarrier(NucleoBoard& board, const NodeConfig& config, const std::vector<SensorPart>& parts,
                   const std::function<RangingScene(std::uint8_t sensor)>& scene);
     SensorCarrier(const SensorCarrier&) = delete;

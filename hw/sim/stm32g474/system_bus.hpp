@@ -1,4 +1,4 @@
-// Where each peripheral is, whether its clock is on, and which accesses it takes.
+// The address, clock and allowed accesses of each peripheral.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ class SystemBus final : public MemoryMappedDevices {
     SystemBus(ViolationLog& log, const Rcc& rcc, SystemControl& control)
         : log_(log), rcc_(rcc), control_(control) {}
 
-    /// `size` up to 64 KiB; `clock`: none for what is always clocked.
+    /// `size` up to 64 KiB; `clock`: none if it is always clocked.
     void add(Peripheral& peripheral, std::uint32_t base, std::uint32_t size,
              std::optional<ClockEnable> clock);
     /// The core whose slices events shorten.

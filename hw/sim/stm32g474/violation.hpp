@@ -1,4 +1,4 @@
-// What a program did that the manuals forbid. The models report it and go on as the hardware would.
+// Violations of the manuals by a program. The models report them and continue as the hardware does.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,20 @@
 
 namespace octoskin::sim::stm32 {
 
-/// The rules, by name: tests and readers of a report go by them.
+/// The rules, by name: tests and reports use the names.
 enum class Rule : std::uint8_t {
     unclocked,         ///< a peripheral whose clock is off was accessed
-    not_modelled,      ///< nothing is known here about what was accessed
+    not_modelled,      ///< the accessed function has no model
     reserved_bits,     ///< a bit that is reserved or read-only was changed
-    access_width,      ///< a register was written with a width that it does not take
-    read_only,         ///< a write to a register that is only read
+    access_width,      ///< a register was written with a width that it does not accept
+    read_only,         ///< a read-only register was written
     wrong_state,       ///< a register was written in a state that forbids it
-    clock_tree,        ///< a clock out of its limits, or switched on the way that the manual forbids
+    clock_tree,        ///< a clock outside its limits, or switched in a forbidden sequence
     flash_latency,     ///< too few wait states, or no boost mode, for HCLK
-    debug_access,      ///< the debugger was shut out
+    debug_access,      ///< debugger access was disabled
     fpu_disabled,      ///< floating point while CPACR does not enable it
-    pin_function,      ///< a peripheral was started whose pins are not given to it
-    bus_timing,        ///< I2C or CAN timing that the bus does not stand
+    pin_function,      ///< a peripheral was started without its pins
+    bus_timing,        ///< I2C or CAN timing outside the limits of the bus
     start_while_busy,  ///< I2C: START while the bus is busy
     data_lost,         ///< a register that holds data was overwritten, or read while empty
     exception_model,   ///< EXC_RETURN, vector table or priority misuse; lockup
@@ -34,7 +34,7 @@ enum class Rule : std::uint8_t {
 struct Violation {
     Rule rule = Rule::not_modelled;
     std::uint32_t pc = 0;  ///< start of the basic block that did it
-    BoardTime time{};      ///< of the first time
+    BoardTime time{};      ///< of the first occurrence
     std::uint64_t count = 1;
     std::string what;
 };

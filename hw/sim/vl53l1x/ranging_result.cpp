@@ -18,7 +18,7 @@ constexpr double kSpadScale = 256.0;    // 8.8
 constexpr double kPhaseScale = 2048.0;  // 5.11
 constexpr double kPhaseUnit_m = 0.2;
 constexpr double kCrosstalkScale = 512.0;  // 7.9 kcps per SPAD
-constexpr double kActiveSpads = 0.8;       // of those in the region: some are off in every part
+constexpr double kActiveSpads = 0.8;       // of those in the region: every part has some disabled SPADs
 
 double active_spads(const Roi& roi) {
     return roi.width * roi.height * kActiveSpads;
@@ -43,7 +43,7 @@ double offset_m(std::uint16_t raw) {
 
 Roi region_of_interest(const Registers& registers) noexcept {
     const std::uint8_t size = registers.at(reg::kRoiSize);
-    // Firmware raises a side below 4 to 4 (AN5191).
+    // The device's firmware raises a side below 4 to 4 (AN5191).
     const auto side = [](unsigned nibble) { return static_cast<std::uint8_t>(std::max(nibble + 1U, 4U)); };
     return {registers.at(reg::kRoiCentre), side(size & 0x0FU), side(size >> 4U)};
 }
@@ -54,7 +54,7 @@ bool is_on_array(const Roi& roi) noexcept {
     const int number = is_upper ? roi.centre_spad - 128 : 127 - roi.centre_spad;
     const int column = number / 8;
     const int row = number % 8 + (is_upper ? 0 : 8);
-    // An even side's centre is the SPAD right of and above the middle.
+    // For an even side, the centre is the SPAD right of and above the middle.
     const int left = column - roi.width / 2;
     const int bottom = row + roi.height / 2;
     return left >= 0 && left + roi.width <= 16 && bottom <= 15 && bottom - roi.height + 1 >= 0;
@@ -67,7 +67,8 @@ double signal_limit_share(const Roi& roi) noexcept {
 }
 
 RangingConfig ranging_config(const Registers& registers, double crosstalk_kcps) {
-    // The optics are off by the factory's value, so that the factory offset gives the true range.
+    // The optics have the error that the factory offset corrects, so that the factory offset gives the true
+    // range.
     const double factory_offset_m = offset_m(read16(reset_registers(), reg::kPartToPartOffset));
     const Roi roi = region_of_interest(registers);
     return {

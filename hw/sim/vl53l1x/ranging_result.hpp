@@ -1,5 +1,5 @@
-// One ranging's result: what the registers asked for when it began, what the optics saw, what the device then
-// writes.
+// One ranging's result: the registers at its begin, the return of the optics, and the registers that the
+// device writes.
 #pragma once
 
 #include <cstdint>
@@ -15,40 +15,40 @@ namespace octoskin::sim {
 /// False if it reaches beyond the 16 x 16 array: the device then reports status 13.
 [[nodiscard]] bool is_on_array(const Roi& roi) noexcept;
 
-/// A region's limits of signal by those of the whole array: fewer SPADs count less of what disturbs, too,
-/// as the square root of their number, but never less than 0.39 of it. That is chosen: with the optics of
-/// hw/sim/camera the ranges at which half of the rangings fail are to each other as the largest ones of the
-/// datasheet (DS12385 rev 7, table 9) within 15 %; of small zones and dark targets with what the scene adds.
+/// Ratio of a region's signal limit to that of the whole array: the square root of the share of SPADs,
+/// because fewer SPADs also count less noise, but at least 0.39. The value is chosen: with the optics of
+/// hw/sim/camera, the ratios of the ranges at which half of the rangings fail agree within 15 % with those of
+/// the datasheet's greatest ranges (DS12385 rev 7, table 9). For small zones and dark targets the scene adds
+/// a further factor.
 [[nodiscard]] double signal_limit_share(const Roi& roi) noexcept;
 
-/// What a range is judged by and corrected with.
+/// Limits and corrections of a ranging.
 struct RangingConfig {
     Roi roi{};
     double range_max_m = 0.0;        ///< of the valid phase: beyond it the device reports status 5
-    double offset_m = 0.0;           ///< added to the true range: the set offset less the part's own
+    double offset_m = 0.0;           ///< added to the true range: the configured offset minus the part's own
     double crosstalk_kcps = 0.0;     ///< of the cover glass, per SPAD
-    double compensation_kcps = 0.0;  ///< what the part is told that it is
+    double compensation_kcps = 0.0;  ///< the configured value
     double sigma_limit_m = 0.0;
-    double signal_limit_mcps = 0.0;        ///< of this region: the register's is that of the whole array
+    double signal_limit_mcps = 0.0;        ///< of this region: the register has the limit of the whole array
     std::uint8_t interrupt_condition = 0;  ///< SYSTEM__INTERRUPT_CONFIG_GPIO
     std::uint16_t threshold_low_mm = 0;
     std::uint16_t threshold_high_mm = 0;
 };
 [[nodiscard]] RangingConfig ranging_config(const Registers& registers, double crosstalk_kcps = 0.0);
 
-/// The device code (RESULT__RANGE_STATUS bits 4:0) that a range ends in.
+/// The device code (RESULT__RANGE_STATUS bits 4:0) of a ranging.
 [[nodiscard]] std::uint8_t device_status(const RangingConfig& config, const RangingReturn& seen);
 
 struct RangingResult {
     std::uint8_t range_status = 0;  ///< RESULT__RANGE_STATUS, high bits included
     std::uint8_t stream_count = 0;
-    /// Signed. Where the status says that there is no range, a plausible number: ghosts at 100 to 500 mm are
-    /// what users see who do not look at the status.
+    /// Signed. With an error status it is a plausible number: users who ignore the status see ghosts at 100
+    /// to 500 mm.
     std::int16_t range_mm = 0;
 };
-/// The range as the device would give it, in mm; a function of the arguments only. Crosstalk that is not
-/// compensated shortens it by its share of the signal, which is what ST's calibration solves for (ULD 3.5.2,
-/// VL53L1X_CalibrateXtalk).
+/// The range that the device reports, mm; a function of the arguments only. Uncompensated crosstalk shortens
+/// it by its share of the signal, as ST's calibration assumes (ULD 3.5.2, VL53L1X_CalibrateXtalk).
 [[nodiscard]] std::int16_t reported_range_mm(const RangingConfig& config, const RangingReturn& seen,
                                              std::uint32_t ranging_index);
 
@@ -56,8 +56,8 @@ struct RangingResult {
 void write_result(Registers& registers, const RangingConfig& config, const RangingReturn& seen,
                   const RangingResult& result);
 
-/// Whether this result fires the interrupt. Rate conditions (bits 3:2) are not modelled: nothing public says
-/// how they combine.
+/// Whether this result fires the interrupt. Rate conditions (bits 3:2) are not modelled: no public document
+/// states how they combine.
 [[nodiscard]] bool fires_interrupt(const RangingConfig& config, const RangingResult& result);
 
 }  // namespace octoskin::sim

@@ -52,7 +52,7 @@ struct IntegrationPoint {
     double integration_us;
     double budget_us;
 };
-// ST's long rows: what both time-outs take at 11.78 MHz, and the budget they stand for.
+// ST's rows of long mode: the time of both time-outs at 11.78 MHz, and the nominal budget.
 constexpr std::array<IntegrationPoint, 6> kIntegrations{{{6'030.0, 20'000.0},
                                                          {18'980.0, 33'000.0},
                                                          {34'040.0, 50'000.0},
@@ -60,7 +60,7 @@ constexpr std::array<IntegrationPoint, 6> kIntegrations{{{6'030.0, 20'000.0},
                                                          {169'950.0, 200'000.0},
                                                          {448'460.0, 500'000.0}}};
 
-// Between ST's rows, and on beyond the last two of either end, in straight lines.
+// Linear interpolation between ST's rows, and linear extrapolation beyond both ends.
 double interpolated_budget_us(double integration_us) {
     std::size_t upper = 1;
     while (upper + 1 < kIntegrations.size() && integration_us > kIntegrations[upper].integration_us) ++upper;

@@ -1,6 +1,6 @@
-// The VL53L1X's registers as the simulated part has them. Written down apart from the driver's own list, so
-// that a wrong address on either side shows. Names and values: datasheet DS12385 rev 7, ST's full API
-// (STSW-IMG007), and a dump of one real part.
+// The VL53L1X's registers in the simulated part. Separate from the driver's own list, so that a wrong address
+// on either side is detected. Names and values: datasheet DS12385 rev 7, ST's full API (STSW-IMG007), and a
+// dump of one real part.
 #pragma once
 
 #include <array>
@@ -59,7 +59,7 @@ namespace octoskin::sim {
 
 using Registers = std::array<std::uint8_t, reg::kCount>;
 
-/// The content after power-up, XSHUT or soft reset, before what differs from part to part.
+/// The content after power-up, XSHUT or soft reset, without the values that differ between parts.
 [[nodiscard]] const Registers& reset_registers();
 
 [[nodiscard]] constexpr std::uint16_t read16(const Registers& registers, std::uint16_t index) {

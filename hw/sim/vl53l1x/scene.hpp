@@ -1,4 +1,4 @@
-// What a simulated sensor sees: the seam between the register model and the world.
+// The interface between the register model of a sensor and the world.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace octoskin::sim {
 
-/// Simulated time: microseconds since the start of the simulation, the one clock everything runs on. A node's
+/// Simulated time: microseconds since the start of the simulation, the common clock of all models. A node's
 /// own clock is derived from it by an offset and a drift.
 struct SimTime {
     std::int64_t us = 0;
     friend constexpr auto operator<=>(SimTime, SimTime) = default;
 };
 
-/// The optics' answer for one ranging window; noise included.
+/// The optics' return for one ranging window, with noise.
 struct RangingReturn {
     std::optional<double> range_m;  ///< empty: too little signal (device code 4)
     double sigma_m = 0.0;
@@ -26,7 +26,7 @@ struct RangingReturn {
     double ambient_mcps = 0.0;
 };
 
-/// Asked once per ranging, at the middle of its window. `ranging_index` counts this sensor's rangings since
+/// Called once per ranging, for the middle of its window. `ranging_index` counts this sensor's rangings since
 /// power-up, so that noise is a function of (seed, sensor, ranging_index) and not of the order of draws.
 using RangingScene =
     std::function<RangingReturn(std::uint32_t ranging_index, SimTime window_middle, const Roi& roi)>;

@@ -16,13 +16,13 @@ bool is_read_only(std::uint16_t index) {
     return is_identification || is_result || index == reg::kSystemStatus;
 }
 
-/// From -1 to 1, another one every eighth range.
+/// -1 to 1; changes every eighth range.
 double wander(std::uint32_t ranging_index) {
     const std::uint32_t mixed = (ranging_index / 8 + 1) * 2'654'435'769U;  // Knuth's multiplicative hash
     return static_cast<double>(mixed >> 16U) / 32'768.0 - 1.0;
 }
 
-/// From 0 to 1, another one every range: no rhythm that a driver could follow.
+/// 0 to 1; changes every range, without a pattern that a driver could follow.
 double length_of(std::uint32_t ranging_index) {
     std::uint32_t mixed = (ranging_index + 1) * 2'654'435'769U;
     mixed = (mixed ^ (mixed >> 15U)) * 2'246'822'519U;  // xxHash's second prime
@@ -98,14 +98,13 @@ std::optional<SimTime> SensorModel::next_event(SimTime now) const {
     return event && *event > now ? event : std::nullopt;
 }
 
-// Facts of a START: while shut down or booting nobody answers; the address counts from the next START after
-// it was written.
+// While shut down or booting the part does not acknowledge. A written address applies from the next START on.
 bool SensorModel::on_start(std::uint8_t address, bool is_read, SimTime time) {
     advance(time);
     if (faults_.is_absent || (power_ != Power::running && power_ != Power::soft_reset)) return false;
     if (power_ == Power::soft_reset && is_read) return false;
     if (address != (registers_.at(reg::kI2cAddress) & 0x7FU)) return false;
-    index_bytes_ = 0;  // of a write; a read goes on at the index as it is
+    index_bytes_ = 0;  // of a write; a read continues at the present index
     return true;
 }
 
@@ -121,7 +120,7 @@ bool SensorModel::on_write(std::uint8_t byte, SimTime time) {
         index_bytes_ = 2;
         return power_ == Power::running || index_ == reg::kSoftReset;
     }
-    // In soft reset only the register that ends it answers.
+    // In soft reset only the register that ends it is acknowledged.
     if (power_ == Power::soft_reset && index_ != reg::kSoftReset) return false;
     write_register(index_, byte, time);
     ++index_;
@@ -129,7 +128,7 @@ bool SensorModel::on_write(std::uint8_t byte, SimTime time) {
 }
 
 std::uint8_t SensorModel::on_read(SimTime) {
-    // A read is one snapshot: time stands still from its START on.
+    // A read is a snapshot at the time of its START.
     registers_.at(reg::kGpioStatus) =
         static_cast<std::uint8_t>((registers_.at(reg::kGpioStatus) & 0xFEU) | (pin_level() ? 1U : 0U));
     if (index_ == reg::kGpioStatus) ++poll_count_;
@@ -240,8 +239,8 @@ void SensorModel::start_mode(std::uint8_t value, SimTime time) {
     const Mode mode = (bits & kTimed) != 0    ? Mode::timed
                       : (bits & kSingle) != 0 ? Mode::single
                                               : Mode::back_to_back;
-    // ST's full API (STSW-IMG007 2.3.3) writes the mode anew with every clear, and to it a stream count of 0
-    // is the first range of a run: the stream goes on.
+    // ST's full API (STSW-IMG007 2.3.3) writes the mode again with every clear and treats a stream count of 0
+    // as the first range of a run. So the stream continues.
     const bool goes_on = mode == mode_ && !stops_after_this_;
     if (goes_on && !part_.is_restarted_by_start) return;
     if (is_under_way) ++disturbance_count_;
@@ -263,7 +262,7 @@ void SensorModel::latch_ranging() {
     ranging_->config = ranging_config(registers_, part_.crosstalk_kcps);
 }
 
-/// Its window is over: what it saw decides how much longer it takes.
+/// The window is over: the return determines how much longer the ranging takes.
 void SensorModel::look() {
     if (is_held_) return;
     Ranging& ranging = *ranging_;
@@ -304,7 +303,7 @@ void SensorModel::schedule_next(const Ranging& finished) {
         const double rate = 1.0 + part_.slow_clock_wander * wander(ranging_index_);
         const auto period = static_cast<double>(finished.timing.period.count()) / rate;
         SimTime start{finished.start.us + std::llround(period)};
-        // A slot that comes too early is missed.
+        // A slot that is too early is missed.
         while (start < finished.end()) start.us += finished.timing.slot.count();
         ranging_ = Ranging{.start = start};
     } else {

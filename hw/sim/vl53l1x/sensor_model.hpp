@@ -1,6 +1,5 @@
-// A VL53L1X down to its registers: what a driver can see of a part over I2C, XSHUT and GPIO1. Strict where
-// the public documents are; each behaviour names its source in the code. Advanced lazily: every access
-// carries its time.
+// A register-level model of a VL53L1X as a driver sees it over I2C, XSHUT and GPIO1. As strict as the public
+// documents; the code names the source of each behaviour. Advanced lazily: every access has its time.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +14,13 @@
 
 namespace octoskin::sim {
 
-/// A register that is what it is, whatever is written.
+/// A register that keeps its value at every write.
 struct StuckRegister {
     std::uint16_t index = 0;
     std::uint8_t value = 0;
 };
 
-/// What can be wrong with a part.
+/// Faults of a part.
 struct SensorFaults {
     bool is_absent = false;  ///< never acknowledges
     bool never_boots = false;
@@ -33,11 +32,11 @@ struct SensorFaults {
     std::optional<std::uint8_t>
         device_status{};  ///< every result carries this RESULT__RANGE_STATUS byte, high bits included
     std::optional<StuckRegister> stuck_register{};  ///< from its next write on
-    Microseconds status_two_for{0};  ///< 0xE5 reads 0x02 for so long after boot, as real parts were seen to
-    std::uint32_t holds_sda_clocks = 0;  ///< holds SDA low until it got so many clocks, or XSHUT
+    Microseconds status_two_for{0};  ///< 0xE5 reads 0x02 for this time after boot, as observed on real parts
+    std::uint32_t holds_sda_clocks = 0;  ///< holds SDA low until this number of clocks, or XSHUT
 };
 
-/// One finished ranging, as it truly was: for tests and for comparing with what the node reports.
+/// The true data of one finished ranging, for tests and for comparison with the node's reports.
 struct RangingRecord {
     std::uint32_t index = 0;
     SimTime window_middle{};
@@ -48,26 +47,26 @@ struct RangingRecord {
 
 class SensorModel final : public I2cTarget {
   public:
-    /// Powered, with XSHUT low.
+    /// Starts powered, with XSHUT low.
     SensorModel(const SensorPart& part, RangingScene scene);
 
     void set_xshut(bool is_high, SimTime time);
     void set_faults(const SensorFaults& faults) { faults_ = faults; }
     [[nodiscard]] const SensorFaults& faults() const noexcept { return faults_; }
-    /// The supply dips: everything is forgotten and, XSHUT being high, the part boots at 0x29.
+    /// A dip of the supply: all state is lost and, with XSHUT high, the part boots at 0x29.
     void brown_out(SimTime time);
 
-    /// A register changes by itself, as by a particle or a write that went astray.
+    /// A register changes by itself, as by radiation or a misdirected write.
     void alter_register(std::uint16_t index, std::uint8_t value) { registers_.at(index) = value; }
 
     /// Level of the GPIO1 pin.
     [[nodiscard]] bool gpio1_level(SimTime time);
-    /// When after `now` it next does something by itself: boots, begins or ends a ranging. Empty if never.
+    /// The next time after `now` at which it boots, or begins or ends a ranging. Empty if never.
     [[nodiscard]] std::optional<SimTime> next_event(SimTime now) const;
-    /// How often it was asked whether data is ready (0x31).
+    /// Number of reads of the data-ready status (0x31).
     [[nodiscard]] std::uint64_t poll_count() const noexcept { return poll_count_; }
-    /// How often it was given what it must not get: while a ranging is under way a start or an abort, and
-    /// from start to stop another period, by the byte (UM2356 2.5.2). A start that it does not mind is none.
+    /// Number of forbidden writes: a start or an abort during a ranging, and a changed period between start
+    /// and stop, counted per byte (UM2356 2.5.2). A start without effect is not counted.
     [[nodiscard]] std::uint32_t disturbance_count() const noexcept { return disturbance_count_; }
     /// Finishes the rangings that end by `time`.
     void advance(SimTime time);
@@ -87,11 +86,11 @@ class SensorModel final : public I2cTarget {
     enum class Mode : std::uint8_t { idle, timed, single, back_to_back, waiting_for_clear };
     struct Ranging {
         SimTime start{};
-        bool is_latched = false;  ///< has begun: what follows is what the registers said then
+        bool is_latched = false;  ///< has begun: the following values are from the registers at that time
         RangingTiming timing{};
         RangingConfig config{};
         std::optional<RangingReturn> seen{};  ///< once its window is over
-        Microseconds extra{0};                ///< known then: what it takes beyond its window
+        Microseconds extra{0};                ///< set with `seen`: the time it takes beyond its window
         [[nodiscard]] SimTime window() const { return {start.us + timing.overhead.count()}; }
         [[nodiscard]] SimTime window_end() const { return {window().us + timing.budget.count()}; }
         [[nodiscard]] SimTime window_middle() const { return {window().us + timing.budget.count() / 2}; }
@@ -125,7 +124,7 @@ class SensorModel final : public I2cTarget {
     std::uint32_t ranging_index_ = 0;
     std::uint8_t stream_count_ = 0;
     bool is_first_of_run_ = true;
-    bool is_held_ = false;  ///< parameters are being changed as a group: no result comes
+    bool is_held_ = false;  ///< a group of parameters is being changed: no result is written
     SimTime soft_reset_since_{};
     bool is_interrupt_asserted_ = false;
     std::uint16_t index_ = 0;

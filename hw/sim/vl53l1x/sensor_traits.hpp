@@ -1,5 +1,5 @@
-// How a part may be that is as its maker made it: what no public document says, and what a driver must not
-// presume. On one part, or on all.
+// Properties of a correct part that no public document states and that a driver must not assume. For one part
+// or for all.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace octoskin::sim {
 
-/// A register that takes what is written, and reads otherwise in the bits of the mask.
+/// A register that accepts writes but reads other values in the bits of the mask.
 struct MisreadRegister {
     std::uint16_t index = 0;
     std::uint8_t value = 0;
@@ -23,15 +23,15 @@ struct MisreadRegister {
     friend constexpr bool operator==(const MisreadRegister&, const MisreadRegister&) = default;
 };
 
-/// How a part may be though nothing is wrong with it; nothing public says.
+/// Properties that a correct part may have; no public document states them.
 struct SensorTraits {
     std::vector<MisreadRegister> misread{};
-    /// Each range takes longer than its budget, by anything up to this, without a rhythm.
+    /// Each range takes longer than its budget by a random time up to this.
     Microseconds range_spread{0};
-    /// And by this much more if there is a target.
+    /// Additional time if there is a target.
     Microseconds range_step{0};
-    /// So long after it first answers its boot loads all registers, 0x0001 among them, and only then sets bit
-    /// 0 of 0xE5: what was written before is gone.
+    /// Time from the first acknowledge until the boot loads all registers, including 0x0001, and sets bit 0
+    /// of 0xE5: earlier writes are lost.
     Microseconds boot_load{0};
     friend bool operator==(const SensorTraits&, const SensorTraits&) = default;
 };
@@ -44,14 +44,14 @@ struct TraitsOf {
     friend bool operator==(const TraitsOf&, const TraitsOf&) = default;
 };
 
-/// Adds the traits of all that are meant: registers to registers, and the greater of two times.
+/// Merges the traits of all entries that apply: all registers, and the greatest of each time.
 [[nodiscard]] SensorTraits traits_of(const std::vector<TraitsOf>& all, std::uint8_t node_id,
                                      std::uint8_t sensor);
 
 /// "sensor=3,register=71,reads=12,mask=255,range_spread_us=0,range_step_us=0,boot_load_us=0", several
-/// registers one after the other; without `node_id`: of a node that knows itself.
+/// registers one after the other; without `node_id`, which the node knows itself.
 [[nodiscard]] std::string to_text(const TraitsOf& traits);
-/// That text, in any order, what is 0 left out; empty if it is none.
+/// Parses that text, in any order, zeros may be left out; empty if it is not valid.
 [[nodiscard]] std::optional<TraitsOf> parse_traits(std::string_view text);
 
 }  // namespace octoskin::sim

@@ -1,4 +1,4 @@
-// The files that a world's mesh may be.
+// The kinds of mesh files that a world may use.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 3> kMeshKinds{"stl", "obj", "dae"}
     return std::ranges::find(kMeshKinds, ending) != kMeshKinds.end();
 }
 
-/// By the ending of its name, in small or large letters.
+/// By the ending of its name, case-insensitive.
 [[nodiscard]] inline bool has_mesh_kind(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
     std::ranges::transform(ending, ending.begin(), [](char c) {

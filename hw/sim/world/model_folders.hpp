@@ -1,4 +1,4 @@
-// Where the models of worlds lie, as Gazebo's users say it: what "model://NAME/..." in a world means.
+// The folders of models, set as in Gazebo: resolves "model://NAME/..." in a world.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace octoskin::sim {
 
-/// The environment's variables with such folders, between colons, in the order in which they are looked in.
+/// The environment variables with such folders, separated by colons, in the order of the search.
 inline constexpr const char* kModelFolderVariables[] = {"SDF_PATH", "GZ_SIM_RESOURCE_PATH",
                                                         "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH"};
 
@@ -22,11 +22,11 @@ inline constexpr std::string_view kModelScheme = "model://";
 /// The folders of this process's environment.
 [[nodiscard]] std::vector<std::filesystem::path> model_folders();
 
-/// The first file or folder there is for a "model://..."; empty if there is none.
+/// The first existing file or folder for a "model://..."; empty if there is none.
 [[nodiscard]] std::optional<std::filesystem::path> find_model_file(std::string_view uri);
 
-/// Has `folders` looked in before all others, by this process and those that it starts from now on. To be
-/// called before there are threads.
+/// Puts `folders` before all others in the search of this process and of those that it starts. Call before
+/// threads are started.
 void put_model_folders_first(const std::vector<std::string>& folders);
 
 }  // namespace octoskin::sim

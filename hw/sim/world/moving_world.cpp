@@ -30,10 +30,10 @@ std::vector<ModelPlace> MovingWorld::places_at(double time_s) const {
     const double stepped_s = kStep_s * std::floor(time_s / kStep_s + kRounding);
     std::vector<ModelPlace> places;
     for (const ModelMotion& motion : motions_) {
-        // Whether it comes or goes is told to the instant.
+        // Whether a model is there is exact in time.
         ModelPlace place = place_at(motion, time_s);
         if (place.moves_on) place.offset_m = place_at(motion, std::max(stepped_s, place.from_s)).offset_m;
-        place.from_s = 0.0;  // what does not matter to the eye must not differ
+        place.from_s = 0.0;  // values without effect on the picture must not differ
         place.moves_on = false;
         places.push_back(place);
     }

@@ -1,4 +1,4 @@
-// A world in which some models come, go and are moved.
+// A world in which some models appear, disappear and move.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,18 +11,18 @@
 
 namespace octoskin::sim {
 
-/// From when on a model stands where; until the next one.
+/// The place of a model from a time on, until its next place.
 struct ModelPlace {
     double from_s = 0.0;
     bool is_there = true;
-    Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< from where the SDF has it
-    /// On the way to the next place, in a straight line at one speed, instead of standing until then. For two
-    /// places at which it is there.
+    Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();  ///< from its place in the SDF
+    /// Moves to the next place in a straight line at constant speed instead of staying until then. Requires
+    /// that the model is there at both places.
     bool moves_on = false;
     friend bool operator==(const ModelPlace&, const ModelPlace&) = default;
 };
 
-/// Places in the order of their times; before the first the model is where the SDF has it.
+/// Places in the order of their times; before the first the model is at its place in the SDF.
 struct ModelMotion {
     std::string model;
     std::vector<ModelPlace> places;
@@ -37,9 +37,8 @@ class MovingWorld {
     /// Each model is one of the solids' (asserted).
     MovingWorld(std::vector<Solid> solids, std::vector<ModelMotion> motions);
 
-    /// The world as it is then; a motion goes on in steps of `kStep_s`. Until it is asked for another
-    /// instant. If something has moved since the last one some 5 ms, else next to nothing. Not from two
-    /// threads at once.
+    /// The world at a time; motion has steps of `kStep_s`. The reference is valid until the next call. About
+    /// 5 ms if a model has moved since the last call, else almost nothing. Not from two threads at once.
     [[nodiscard]] const World& at(double time_s);
     static constexpr double kStep_s = 0.01;
 
@@ -50,7 +49,7 @@ class MovingWorld {
 
     std::vector<Solid> solids_;
     std::vector<ModelMotion> motions_;
-    std::vector<ModelPlace> places_;  ///< for which `world_` was made
+    std::vector<ModelPlace> places_;  ///< of `world_`
     std::unique_ptr<World> world_;
 };
 

@@ -1,4 +1,4 @@
-// What of a polygon lies within a box.
+// Clips a polygon to a box.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -6,12 +6,12 @@
 
 namespace octoskin::sim {
 
-/// Where `value`, linear over the polygon, is not negative. Polygons that share an edge get the same cut of
-/// it.
+/// The part where `value`, linear over the polygon, is not negative. Polygons that share an edge get the same
+/// cut point on it.
 template <class Point, class Value>
 [[nodiscard]] std::vector<Point> clipped(const std::vector<Point>& polygon, const Value& value) {
     std::vector<Point> kept;
-    // From the point within: the same one for both polygons of an edge.
+    // From the point inside, so that it is the same for both polygons of an edge.
     const auto cut = [&](const Point& within, const Point& beyond) -> Point {
         const double share = value(within) / (value(within) - value(beyond));
         return within + (beyond - within) * share;

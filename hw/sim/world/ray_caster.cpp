@@ -24,11 +24,11 @@ struct Plane {
     double offset;
 };
 
-/// Embree's single precision finds where a ray meets a tilted triangle well enough for exact_t() as long as
-/// no corner is further away than some 1000 m.
+/// Embree's single precision is precise enough for exact_t() on a tilted triangle if no corner is further
+/// away than about 1000 m.
 constexpr double kCornerMax_m = 500.0;
 
-/// What Embree is given of a solid.
+/// The triangles of a solid for Embree.
 struct Facets {
     std::vector<Eigen::Vector3d> vertices;
     std::vector<Eigen::Vector3i> triangles;
@@ -53,7 +53,7 @@ bool is_near(const Eigen::Vector3d& vertex) {
     return vertex.cwiseAbs().maxCoeff() <= kCornerMax_m;
 }
 
-/// The share of a solid that is near, each triangle in parts with the plane of the whole.
+/// The near part of a solid: each triangle clipped into parts, with the plane of the whole triangle.
 Facets near_facets_of(const Solid& solid, const Facets& all) {
     const Eigen::Vector3d corner = Eigen::Vector3d::Constant(kCornerMax_m);
     Facets facets;
@@ -73,7 +73,7 @@ Facets near_facets_of(const Solid& solid, const Facets& all) {
     return facets;
 }
 
-/// Embree gives nothing where there is no memory: all else that it is asked for here it has.
+/// Embree returns null if memory is exhausted; no other failure is possible here.
 template <class Pointer>
 Pointer made(Pointer pointer) {
     if (pointer == nullptr) throw std::bad_alloc();
@@ -110,7 +110,7 @@ struct RayCaster::Impl {
     RTCScene all = nullptr;
     std::vector<RTCScene> one_solid;
     std::vector<std::vector<Plane>> planes;                  ///< per solid, per triangle of `all`
-    std::map<std::uint32_t, std::vector<Plane>> whole_ones;  ///< of `one_solid`, where they are others
+    std::map<std::uint32_t, std::vector<Plane>> whole_ones;  ///< of `one_solid`, if they differ
 
     ~Impl() {
         for (RTCScene scene : one_solid) {
@@ -120,7 +120,7 @@ struct RayCaster::Impl {
         rtcReleaseDevice(device);
     }
 
-    /// Whether a point is inside a solid is asked of all of it, however far it reaches.
+    /// The test whether a point is inside a solid uses the whole solid, not only its near part.
     void add(const Solid& solid) {
         const auto id = static_cast<std::uint32_t>(one_solid.size());
         one_solid.push_back(make_scene(device));
@@ -150,7 +150,7 @@ struct RayCaster::Impl {
         return whole == whole_ones.end() ? planes[solid] : whole->second;
     }
 
-    /// `planes_of(solid)`: of each triangle in the scene.
+    /// `planes_of(solid)`: the plane of each triangle in the scene.
     template <class PlanesOf>
     [[nodiscard]] static std::optional<TriangleHit> cast(RTCScene scene, const PlanesOf& planes_of,
                                                          const Eigen::Vector3d& origin,
@@ -175,7 +175,7 @@ struct RayCaster::Impl {
         return TriangleHit{exact_t(plane, origin, direction, ray.ray.tfar), ray.hit.geomID, plane.normal};
     }
 
-    /// `take(i, hit)` for every ray, in order.
+    /// Calls `take(i, hit)` for every ray, in order.
     template <class Take>
     void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
                   const Take& take) const {
@@ -214,7 +214,7 @@ struct RayCaster::Impl {
         return {exact_t(plane, origin, direction, t_found), solid, plane.normal};
     }
 
-    /// A ray that almost grazes the plane gains nothing from it: there Embree's value stays.
+    /// For a ray almost parallel to the plane this is not more precise: Embree's value is kept.
     static double exact_t(const Plane& plane, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                           float t_found) {
         const double speed = plane.normal.dot(direction);
@@ -225,7 +225,7 @@ struct RayCaster::Impl {
 };
 
 RayCaster::RayCaster(const std::vector<Solid>& solids) : impl_(std::make_unique<Impl>()) {
-    // One thread: the scenes are small, and a library that starts threads of its own would surprise its user.
+    // One thread: the scenes are small, and a library should not start threads unasked.
     impl_->device = made(rtcNewDevice("threads=1"));
     impl_->all = make_scene(impl_->device);
     for (const Solid& solid : solids) impl_->add(solid);

@@ -19,10 +19,10 @@ struct TriangleHit {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, outwards
 };
 
-/// Embree finds the triangle in single precision, without gaps between neighbours (its robust mode); where on
-/// the triangle's plane the ray meets it is then computed in double precision, so that ranges do not depend
-/// on the processor's vector width. What lies further than 500 m from an axis' origin is not seen: a larger
-/// triangle is cut there. Safe to use from several threads at once.
+/// Embree finds the triangle in single precision, without gaps between neighbours (its robust mode); the
+/// intersection with the triangle's plane is then computed in double precision, so that ranges do not depend
+/// on the processor's vector width. Geometry beyond 500 m along an axis is not seen: a larger triangle is
+/// clipped there. Safe to use from several threads at once.
 class RayCaster {
   public:
     explicit RayCaster(const std::vector<Solid>& solids);
@@ -37,7 +37,7 @@ class RayCaster {
     /// Neighbours in `directions` should point almost the same way. About 50 ns a ray.
     void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
                   std::span<double> t) const;
-    /// The same with all of each hit; t is infinity where there is none.
+    /// The same with the whole hit; t is infinity where there is none.
     void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions, double t_max,
                   std::span<TriangleHit> hits) const;
     /// As cast(), but only against one solid.

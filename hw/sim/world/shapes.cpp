@@ -8,7 +8,7 @@ namespace {
 constexpr int kFacetsAround = 96;
 constexpr int kFacetsPoleToEquator = 24;
 
-/// A point of the outline that is turned round the z axis.
+/// A point of an outline that is rotated about the z axis.
 struct ProfilePoint {
     double radius_m;
     double z_m;
@@ -89,8 +89,8 @@ TriangleMesh ellipsoid_mesh(const Eigen::Vector3d& radii_m) {
 }
 
 TriangleMesh plane_mesh(const Eigen::Vector3d& normal, const Eigen::Vector2d& size_m) {
-    // Half way from z to the normal; of -z half a turn about x. Eigen's FromTwoVectors takes the compiler ten
-    // seconds.
+    // The half-way rotation from z to the normal; for -z half a turn about x. Eigen's FromTwoVectors costs
+    // ten seconds of compile time.
     Eigen::Quaterniond q_plane_z(1.0 + normal.z(), -normal.y(), normal.x(), 0.0);
     q_plane_z = q_plane_z.norm() < 1e-9 ? Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0) : q_plane_z.normalized();
     TriangleMesh mesh;

@@ -1,6 +1,6 @@
-// The shapes SDF knows as closed triangle meshes round their own origin, as the SDF specification places
-// them: lengths along z, centre at the origin. Round shapes are inscribed with 96 facets round the axis: a
-// surface lies at most 1 - cos(pi / 96) = 0.054 % of its radius inside the true one.
+// The shapes of SDF as closed triangle meshes, placed as in the SDF specification: lengths along z, centre at
+// the origin. Round shapes are inscribed with 96 facets round the axis: a surface lies at most 1 - cos(pi /
+// 96) = 0.054 % of its radius inside the true one.
 #pragma once
 
 #include "hw/sim/world/solid.hpp"

@@ -11,7 +11,7 @@ TriangleMesh weld(const TriangleMesh& mesh) {
     std::map<std::array<double, 3>, int> index_of;
     std::vector<int> new_index(mesh.vertices.size());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        // Adding zero makes -0.0 and 0.0 one key.
+        // Adding zero converts -0.0 to 0.0, so that both have one key.
         const Eigen::Vector3d vertex = mesh.vertices[i].array() + 0.0;
         const auto [entry, is_new] = index_of.try_emplace({vertex.x(), vertex.y(), vertex.z()},
                                                           static_cast<int>(welded.vertices.size()));

@@ -1,4 +1,4 @@
-// A solid of the world as triangles, and what must be known of its mesh before rays are cast at it.
+// A solid of the world as triangles, and the checks of its mesh before ray-casting.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,11 +19,11 @@ struct Solid {
     std::string model;  ///< the name of the outermost model
     std::vector<Eigen::Vector3d> vertices;
     std::vector<Eigen::Vector3i> triangles;
-    bool is_closed = true;  ///< a plane or an open mesh is not: it has a surface but no interior
+    bool is_closed = true;  ///< false for a plane or an open mesh, which have no interior
 };
 
 /// The same surface with vertices of equal position merged and triangles without area left out. STL files
-/// repeat every vertex in every triangle; whether a mesh is closed can only be told afterwards.
+/// repeat every vertex in every triangle; only the welded mesh can be checked for being closed.
 [[nodiscard]] TriangleMesh weld(const TriangleMesh& mesh);
 
 /// True if every edge of a welded mesh belongs to exactly two triangles that run along it in opposite
@@ -33,7 +33,7 @@ struct Solid {
 /// Cubic metres; negative if the triangles of a closed mesh face inwards.
 [[nodiscard]] double signed_volume(const TriangleMesh& mesh);
 
-/// Turns every triangle over: inside becomes outside.
+/// Reverses every triangle: inside becomes outside.
 void turn_inside_out(TriangleMesh& mesh);
 
 [[nodiscard]] TriangleMesh transformed(const TriangleMesh& mesh, const Eigen::Isometry3d& T_parent_mesh);

@@ -20,7 +20,7 @@ class Writer {
         put(static_cast<std::uint64_t>(text.size()));
         bytes_.append(text);
     }
-    /// Eigen's vectors of three lie in memory as three numbers.
+    /// Eigen's vectors of three are three consecutive numbers in memory.
     template <class Vector>
     void put_vectors(const std::vector<Vector>& vectors) {
         static_assert(sizeof(Vector) == 3 * sizeof(typename Vector::Scalar));
@@ -33,7 +33,7 @@ class Writer {
     std::string bytes_{kMark};
 };
 
-/// Every count is held against what is left before anything is made of that size.
+/// Checks every count against the remaining bytes before it allocates.
 class Reader {
   public:
     explicit Reader(std::string_view bytes) : bytes_(bytes) {

@@ -10,7 +10,7 @@
 namespace octoskin::sim {
 namespace {
 
-/// Beyond, neighbours of a row have no different parts of it in double precision.
+/// Beyond this, neighbours in a row have equal coordinates in double precision.
 constexpr double kStepsMax = 9e15;
 
 double area_of(const std::vector<Eigen::Vector2d>& polygon) {

@@ -1,5 +1,5 @@
-// Points of a triangle's surface, on rows that its corners alone decide: a region leaves points out and moves
-// none.
+// Points of a triangle's surface on rows that depend only on its corners: a region selects points and does
+// not move them.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,15 +8,15 @@
 
 namespace octoskin::sim {
 
-/// Rows parallel to the side ac, from ab to bc. With ab the longest side no two neighbours are further apart
-/// than the pitch, within a row, between rows, and along each side.
+/// Rows parallel to the side ac, from ab to bc. If ab is the longest side, neighbours are at most one pitch
+/// apart within a row, between rows and along each side.
 class TriangleLattice {
   public:
     /// Metres.
     TriangleLattice(const std::array<Eigen::Vector3d, 3>& corners, double pitch_m);
 
-    /// Calls `visit(point)` for every point within the region, and maybe for some outside of it. O(points
-    /// visited + rows that meet the region), however large the triangle is.
+    /// Calls `visit(point)` for every point within the region, and possibly for some outside. O(points
+    /// visited + rows that meet the region), independent of the triangle's size.
     template <class Visit>
     void for_each_near(const Eigen::AlignedBox3d& region, const Visit& visit) const {
         const Eigen::AlignedBox3d padded = padded_for_rounding(region);
@@ -42,7 +42,7 @@ class TriangleLattice {
         std::int64_t first = 0;
         std::int64_t last = -1;
     };
-    /// What the clip of a triangle leaves of it, in parts of ab and of ac.
+    /// The clipped part of a triangle, as fractions of ab and of ac.
     struct Share {
         Eigen::AlignedBox2d bounds;
         double area = 0.0;  ///< 0.5 for the whole triangle

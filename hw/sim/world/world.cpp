@@ -14,8 +14,8 @@
 namespace octoskin::sim {
 namespace {
 
-/// How far outside its own surface a point is asked whether another solid covers it: more than single
-/// precision loses at 100 m, far less than any map's voxel.
+/// Distance outside its surface at which a point is tested for another solid that covers it: more than the
+/// error of single precision at 100 m, far less than a voxel of a map.
 constexpr double kBurialProbe_m = 1e-4;
 
 Eigen::AlignedBox3d bounds_of(const Solid& solid) {
@@ -41,8 +41,8 @@ struct World::Impl {
         }
     }
 
-    /// Looks out of the solid from `point`: whoever is inside sees the back of a triangle first. A ray that
-    /// grazes an edge may be told the wrong one of two triangles; of three unrelated directions two decide.
+    /// Casts rays from `point`: from the inside, a ray meets the back of a triangle first. A ray along an
+    /// edge may report the wrong one of two triangles, so the majority of three unrelated directions decides.
     [[nodiscard]] bool is_inside(std::uint32_t solid, const Eigen::Vector3d& point) const {
         static const std::array<Eigen::Vector3d, 3> kDirections = {Eigen::Vector3d(0.5377, 0.1834, 0.8229),
                                                                    Eigen::Vector3d(-0.3188, -0.9077, 0.2731),

@@ -1,7 +1,7 @@
 // The simulated world: the solids of an SDF file, ray-cast with Embree, and as surfaces and interiors for the
-// ground truth. All coordinates in the world frame, which is the robot's base frame; metres. A ray
-// should begin within some 100 m of the origin: the triangle that it meets is found in single precision, and
-// what is further than 500 m along an axis is not seen.
+// ground truth. All coordinates in the world frame, which is the robot's base frame; metres. A ray should
+// begin within about 100 m of the origin: the triangle is found in single precision, and geometry beyond 500
+// m along an axis is not seen.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -28,8 +28,8 @@ struct RayHit {
 
 class World {
   public:
-    /// The visuals of an SDF file; see read_solids() for shapes, errors, limits, and which files it may refer
-    /// to.
+    /// Reads the visuals of an SDF file; see read_solids() for shapes, errors, limits and the files it may
+    /// refer to.
     [[nodiscard]] static Result<World, WorldError> read(const FilePlace& sdf);
     explicit World(std::vector<Solid> solids, std::vector<std::string> warnings = {});
     World(World&&) noexcept;
@@ -49,21 +49,21 @@ class World {
     void cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
                   double range_max_m, std::span<RayHit> hits) const;
     [[nodiscard]] const std::vector<Solid>& solids() const noexcept;
-    /// Its SDF with what it includes in it; empty if it includes nothing.
+    /// Its SDF with its includes expanded; empty if it includes nothing.
     [[nodiscard]] const std::string& written_out() const noexcept;
-    /// The uris of its meshes, as written_out() or else its file has them.
+    /// The uris of its meshes, as in written_out(), or else as in its file.
     [[nodiscard]] const std::vector<std::string>& meshes() const noexcept;
-    /// What was passed over when it was read, each with the file's name.
+    /// Elements skipped when it was read, each with the file's name.
     [[nodiscard]] const std::vector<std::string>& warnings() const noexcept;
 
     /// Calls `visit(point, solid index)` for points of the surface of all solids together, no two neighbours
-    /// further apart than `pitch_m`. Points of a solid that are buried in or touch another solid are left
-    /// out: nothing can ever see them. With `region`, only points within it. About 0.3 us a point.
+    /// further apart than `pitch_m`. Points of a solid that are inside or touch another solid are left out:
+    /// no sensor can see them. With `region`, only points within it. About 0.3 us a point.
     void sample_surfaces(double pitch_m,
                          const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
     void sample_surfaces(double pitch_m, const Eigen::AlignedBox3d& region,
                          const std::function<void(const Eigen::Vector3d&, std::uint32_t)>& visit) const;
-    /// About how many points sample_surfaces() looks at, those that it leaves out among them. Some 0.5 us a
+    /// About how many points sample_surfaces() examines, including those that it leaves out. About 0.5 us a
     /// triangle.
     [[nodiscard]] double samples_within(double pitch_m, const Eigen::AlignedBox3d& region) const;
     /// True if a point lies inside a closed solid. About 0.2 us outside all solids' bounding boxes, 1 us

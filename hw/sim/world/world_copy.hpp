@@ -1,4 +1,4 @@
-// A world as files that lie in one folder and refer to nothing outside of it: for a recording.
+// Copies a world into files of one folder that refer to no file outside it, for a recording.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace octoskin::sim {
 
-/// What a world may take in a recording. The largest of the shipped ones takes 0.1 MiB.
+/// Limits of a world in a recording. The largest shipped world takes 0.1 MiB.
 inline constexpr std::size_t kWorldBytesMax = std::size_t{16} << 20U;
 inline constexpr std::size_t kMeshBytesMax = std::size_t{64} << 20U;
 inline constexpr std::size_t kMeshesBytesMax = std::size_t{256} << 20U;  ///< of all together
@@ -22,18 +22,17 @@ struct MeshCopy {
 };
 
 struct WorldCopy {
-    std::string sdf;  ///< the same world, but that it names each mesh by its new name
+    std::string sdf;  ///< the same world with the new names of the meshes
     std::vector<MeshCopy> meshes;
-    std::vector<std::string> left_out;  ///< the uris of meshes that it is without, each once
+    std::vector<std::string> left_out;  ///< the uris of the meshes left out, each once
 };
 
 /// Reads the world's file and those of its meshes, each once. `meshes`: World::meshes(), the uris of those
-/// that were read as shapes; any other file that the world calls a mesh, as of a collision, is left out, for
-/// it may be any of yours. `written_out`: World::written_out(), taken in
-/// place of a file that includes models. The error says why there can be no such copy: it includes models
-/// all the same, a mesh cannot be read, has another ending than meshes have, or all of it is too large. What
-/// the meshes refer to in their turn is left out: what is read from the copy has to be compared with the
-/// world.
+/// that were read as shapes; any other file that the world names as a mesh, such as that of a collision, is
+/// left out, because it may be a private file of the user. `written_out`: World::written_out(), used in place
+/// of a file that includes models. Errors: it still includes models, a mesh cannot be read or does not have
+/// the ending of a mesh file, or the copy is too large. Files that the meshes refer to are left out, so the
+/// caller must compare the copy with the world.
 [[nodiscard]] Result<WorldCopy, std::string> copy_of_world(const FilePlace& sdf,
                                                            const std::vector<std::string>& meshes,
                                                            const std::string& written_out = {});

@@ -1,4 +1,4 @@
-// What is wrong with a world file, and where.
+// An error of a world file with its place.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@ struct WorldError {
     std::filesystem::path file;
     std::string element;  ///< "model 'shelf', link 'body', visual 'top'"; empty if it concerns the whole file
     std::string what;
-    bool is_reader_missing = false;  ///< the program that reads worlds: nothing is known of the file
+    bool is_reader_missing = false;  ///< the program that reads worlds is missing; the file was not read
     /// "file: element: what".
     [[nodiscard]] std::string message() const;
 };

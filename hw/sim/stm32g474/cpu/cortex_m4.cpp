@@ -7,11 +7,11 @@
 
 #include "hw/sim/stm32g474/cpu/engine_registers.hpp"
 
-// Unicorn 2.0.1 takes each store of the program for one that may change instructions: it allocates a tree of
-// the pages to lock against QEMU's other threads, of which it has none, looks for what was translated from
-// there, and frees the tree. That is more than half of the whole time. Here nothing is executed from memory
-// that can be written (see map_memory), and `patch` forgets by itself. The library calls these three by name,
-// so that ours take their place; a test looks that they do.
+// Unicorn 2.0.1 assumes that each store may change instructions: it allocates a tree of the pages to lock
+// against other threads of QEMU (there are none), searches for code translated from there, and frees the
+// tree. That takes more than half of the run time. Here no writable memory is executed (see map_memory), and
+// `patch` clears the translated code itself. The library calls these three functions by name, so that these
+// definitions replace its own; a test checks that they do.
 #if UC_API_MAJOR == 2 && UC_API_MINOR == 0
 extern "C" {
 void* page_collection_lock_arm(void* engine, std::uint64_t begin, std::uint64_t end);
@@ -105,7 +105,7 @@ void CortexM4::map_memory(std::span<const MemoryRegion> memory) {
 }
 
 void CortexM4::add_hooks() {
-    // Captureless lambdas become the C function pointers that the engine wants.
+    // Captureless lambdas convert to the C function pointers that the engine needs.
     using BlockHook = void (*)(uc_engine*, std::uint64_t, std::uint32_t, void*);
     const BlockHook on_block = [](uc_engine*, std::uint64_t address, std::uint32_t size, void* self) {
         static_cast<CortexM4*>(self)->before_block(static_cast<std::uint32_t>(address), size);
@@ -121,7 +121,7 @@ void CortexM4::add_hooks() {
         static_cast<CortexM4*>(self)->fault_address_ = static_cast<std::uint32_t>(address);
         return false;
     };
-    // WFE and YIELD, of which the engine knows nothing, are hints: they may do nothing.
+    // WFE and YIELD, which the engine does not know, are hints: they may do nothing.
     using InvalidInstructionHook = bool (*)(uc_engine*, void*);
     const InvalidInstructionHook on_invalid_instruction = [](uc_engine*, void* user) {
         const auto* self = static_cast<CortexM4*>(user);
@@ -192,7 +192,7 @@ void CortexM4::jump(std::uint32_t address) {
 
 void CortexM4::patch(std::uint32_t address, std::span<const std::uint16_t> instructions) {
     require(uc_mem_write(engine_, address, instructions.data(), instructions.size_bytes()), "patch");
-    // What was translated is forgotten, whatever block it is part of.
+    // Clears the translated code, also of blocks that contain the address.
     require(uc_ctl_remove_cache(engine_, address, address + instructions.size_bytes()), "patch");
     counted_.assign(counted_.size(), {});
 }
@@ -239,7 +239,7 @@ void CortexM4::before_block(std::uint32_t address, std::uint32_t size) {
     spend(count * cycles_per_instruction_);
 }
 
-// CPSIE and MSR cannot be seen from outside, so while something is held back the masks are looked at in each
+// CPSIE and MSR cannot be observed from outside. While an exception is masked, the masks are checked in each
 // block.
 bool CortexM4::must_stop() const {
     if (now_ >= limit_ || is_slice_interrupted_) return true;
@@ -345,7 +345,7 @@ void CortexM4::check_registers() {
     check_fpu_use(control);
 }
 
-// The engine ignores CPACR; it tells by CONTROL.FPCA that floating point was used.
+// The engine ignores CPACR; CONTROL.FPCA shows that floating point was used.
 void CortexM4::check_fpu_use(std::uint32_t control) {
     if (control_->is_fpu_enabled() || (control & kFpContext) == 0) return;
     log_.report(Rule::fpu_disabled, "floating point while CPACR does not enable CP10 and CP11");

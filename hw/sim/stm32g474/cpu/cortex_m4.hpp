@@ -1,6 +1,5 @@
-// The Cortex-M4F: Unicorn executes the instructions; exceptions, sleep, time and faults are done here, as
-// ARMv7-M ARM B1.5 has them. Only the main stack is used: a program that selects the process stack is
-// reported.
+// The Cortex-M4F: Unicorn executes the instructions; exceptions, sleep, time and faults are modelled here by
+// ARMv7-M ARM B1.5. Only the main stack is used: a program that selects the process stack is reported.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +18,7 @@ struct uc_struct;
 
 namespace octoskin::sim::stm32 {
 
-/// Where loads and stores go that do not hit memory. Reads and writes of 1, 2 or 4 bytes.
+/// Target of loads and stores outside memory. Reads and writes of 1, 2 or 4 bytes.
 class MemoryMappedDevices {
   public:
     virtual std::uint32_t read(std::uint32_t address, std::uint32_t size) = 0;
@@ -29,15 +28,14 @@ class MemoryMappedDevices {
     ~MemoryMappedDevices() = default;
 };
 
-/// Memory that the core executes from, if it cannot write it, or works in; owned by the board, and kept over
-/// a reset.
+/// Memory of the core: executable if not writable, else data. The board owns it; a reset keeps its content.
 struct MemoryRegion {
     std::uint32_t address;
     std::span<std::uint8_t> bytes;
     bool is_writable;
 };
 
-/// The core at the time of a report.
+/// State of the core at the time of a report.
 enum class CoreState : std::uint8_t { running, sleeping, locked_up };
 
 class CortexM4 {
@@ -52,22 +50,23 @@ class CortexM4 {
 
     /// The system control space must be reset before: SP and PC come from its vector table.
     void attach(SystemControl& control) { control_ = &control; }
-    /// `on_read` hears of each load from these bytes of memory, one range a core. It must not stop the core.
+    /// Calls `on_read` at each load from these bytes of memory; one range per core. It must not stop the
+    /// core.
     void watch_reads(std::uint32_t address, std::uint32_t size, std::function<void()> on_read);
     void reset();
     void set_hclk(std::uint32_t hz) { ps_per_cycle_ = period_ps(hz); }
 
     /// Runs to `limit` or to the first basic block after it, or until it sleeps or locks up, or until
-    /// `interrupt_slice`. `now` moves on with each block.
+    /// `interrupt_slice`. `now` advances with each block.
     void run(BoardTime limit);
     /// Ends `run` before the next basic block. May be called from `devices`.
     void interrupt_slice() noexcept { is_slice_interrupted_ = true; }
-    /// The slice need not end before `limit`, if that is earlier than before.
+    /// Lowers the end of the slice to `limit`, if that is earlier.
     void shorten_slice(BoardTime limit) noexcept {
         if (limit < limit_) limit_ = limit;
     }
 
-    /// Asleep with nothing to wake it: until an interrupt comes, time may jump.
+    /// Asleep without an interrupt that wakes it: time may jump to the next event.
     [[nodiscard]] bool is_idle() const;
     [[nodiscard]] CoreState state() const noexcept { return state_; }
     [[nodiscard]] std::uint64_t instructions() const noexcept { return instructions_; }
@@ -76,12 +75,12 @@ class CortexM4 {
     [[nodiscard]] std::uint32_t general_register(std::uint32_t number) const;
     /// The lowest stack pointer seen at an exception entry or the end of a slice.
     [[nodiscard]] std::uint32_t lowest_stack() const noexcept { return lowest_stack_; }
-    /// The longest time between two sleeps: no turn of a main loop that sleeps takes longer.
+    /// The longest time between two sleeps: an upper bound of one turn of a main loop that sleeps.
     [[nodiscard]] std::int64_t longest_awake_ps() const noexcept { return longest_awake_ps_; }
     void forget_longest_awake() noexcept { longest_awake_ps_ = 0; }
-    /// For tests: starts somewhere else than the reset handler.
+    /// For tests: starts at another address than the reset handler.
     void jump(std::uint32_t address);
-    /// For tests: other instructions in memory that the core does not write.
+    /// For tests: replaces instructions in memory that the core does not write.
     void patch(std::uint32_t address, std::span<const std::uint16_t> instructions);
 
   private:
@@ -96,7 +95,7 @@ class CortexM4 {
     void add_hooks();
     void before_block(std::uint32_t address, std::uint32_t size);
     [[nodiscard]] bool must_stop() const;
-    /// The next exception to be taken, if the masks let it through.
+    /// The next exception to take, if the masks allow it.
     [[nodiscard]] std::optional<std::uint32_t> deliverable() const;
     void execute();
     void on_engine_interrupt(std::uint32_t number);
@@ -135,7 +134,7 @@ class CortexM4 {
     BoardTime limit_{};
     CoreState state_ = CoreState::running;
     bool is_slice_interrupted_ = false;
-    bool has_stopped_itself_ = false;  ///< the engine was told to stop
+    bool has_stopped_itself_ = false;  ///< this class stopped the engine
     std::optional<std::uint32_t> engine_interrupt_;
     std::optional<std::uint32_t> fault_address_;
     std::function<void()> on_watched_read_;
@@ -145,7 +144,7 @@ class CortexM4 {
     BoardTime woken_at_{};
     std::int64_t longest_awake_ps_ = 0;
 
-    struct CountedBlock {  ///< small: the table is looked into at each block
+    struct CountedBlock {  ///< small: the table is read at each block
         std::uint16_t size = 0;
         std::uint16_t instructions = 0;
     };

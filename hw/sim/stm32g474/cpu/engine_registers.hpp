@@ -1,4 +1,4 @@
-// Registers of Unicorn, several in one call: that costs little more than one.
+// Access to several registers of Unicorn in one call, which costs little more than one register.
 #pragma once
 
 #include <unicorn/unicorn.h>
@@ -14,10 +14,10 @@ using EngineRegisters = std::array<int, kCount>;  ///< of uc_arm_reg
 template <std::size_t kCount>
 using RegisterValues = std::array<std::uint32_t, kCount>;
 
-/// CONTROL: floating point was used since it was cleared last.
+/// CONTROL: floating point was used since this bit was cleared.
 inline constexpr std::uint32_t kFpContext = 1U << 2;
 
-/// In the order of `registers`, each of which there must be.
+/// Values in the order of `registers`; each register must exist.
 template <std::size_t kCount>
 [[nodiscard]] RegisterValues<kCount> read_registers(uc_engine* engine, EngineRegisters<kCount> registers) {
     RegisterValues<kCount> values{};
@@ -27,7 +27,7 @@ template <std::size_t kCount>
     return values;
 }
 
-/// One after the other, in the order of `registers`.
+/// Writes the values in the order of `registers`.
 template <std::size_t kCount>
 void write_registers(uc_engine* engine, EngineRegisters<kCount> registers, RegisterValues<kCount> values) {
     std::array<void*, kCount> places{};

@@ -47,7 +47,7 @@ void CortexM4::sleep() {
     longest_awake_ps_ = std::max(longest_awake_ps_, now_.ps - woken_at_.ps);
 }
 
-// WFI wakes for what would preempt with PRIMASK clear; whether the handler then runs is another question.
+// WFI wakes for an exception that would preempt with PRIMASK clear, also if its handler does not run.
 bool CortexM4::is_idle() const {
     if (state_ == CoreState::locked_up) return true;
     if (state_ != CoreState::sleeping) return false;
@@ -86,7 +86,7 @@ void CortexM4::enter(std::uint32_t number) {
     const bool is_pushed = push(frame);
     set(UC_ARM_REG_CONTROL, control & ~kFpContext);
     if (!is_pushed) {
-        // The exception that comes instead takes over without a frame of its own.
+        // Tail-chaining: the next exception starts without a new frame.
         log_.report(Rule::memory, fmt::format("exception {}: no stack at 0x{:08X}", number, frame.address));
         control_->note_fault(cfsr::kStackingBusError);
         const int priority = control_->nvic().execution_priority(masks());
@@ -171,7 +171,7 @@ void CortexM4::raise(const Fault& fault) {
     raise_enabled_fault(number);
 }
 
-// Synchronous: taken at once, or as HardFault if it is disabled or its priority does not suffice.
+// Synchronous: taken at once, or as HardFault if it is disabled or its priority is too low.
 void CortexM4::raise_enabled_fault(std::uint32_t number) {
     const Nvic& nvic = control_->nvic();
     const int priority = nvic.execution_priority(masks());

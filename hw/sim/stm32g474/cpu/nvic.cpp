@@ -100,7 +100,7 @@ std::uint32_t Nvic::first_pending() const {
     for (auto n = ready._Find_first(); n < ready.size(); n = ready._Find_next(n)) {
         const auto number = static_cast<std::uint32_t>(n);
         const int fixed = group_priority(number);
-        const int full = fixed < 0 ? fixed : priority_[number];  // sub-priority decides who goes first
+        const int full = fixed < 0 ? fixed : priority_[number];  // sub-priority decides the order
         if (full < lowest) {
             lowest = full;
             first = number;

@@ -1,4 +1,4 @@
-// Exceptions of the Cortex-M4: what is pending, active and enabled, and which comes next (ARMv7-M ARM B1.5,
+// Exceptions of the Cortex-M4: which are pending, active and enabled, and which is next (ARMv7-M ARM B1.5,
 // B3.4). Numbers are exception numbers: interrupt n is 16 + n.
 #pragma once
 
@@ -42,7 +42,7 @@ class Nvic {
 
     void pend(std::uint32_t number);
     void unpend(std::uint32_t number);
-    /// An interrupt's line: high pends it, and pends it again at its end.
+    /// Level of an interrupt's line: high pends it, and pends it again when its handler ends.
     void set_line(std::uint32_t irq, bool is_high);
     void activate(std::uint32_t number);
     void deactivate(std::uint32_t number);
@@ -60,15 +60,15 @@ class Nvic {
 
     /// Group priority of an exception; -2 NMI, -1 HardFault.
     [[nodiscard]] int group_priority(std::uint32_t number) const;
-    /// Of what is active, without masks.
+    /// Priority of the active exceptions, without masks.
     [[nodiscard]] int active_priority() const noexcept { return active_priority_; }
-    /// With masks.
+    /// The same with masks.
     [[nodiscard]] int execution_priority(const ExceptionMasks& masks) const;
-    /// The exception that would preempt what is active if no mask held it back.
+    /// The exception that would preempt the active one without masks.
     [[nodiscard]] std::optional<std::uint32_t> candidate() const noexcept { return candidate_; }
-    /// The candidate, if the masks let it through.
+    /// The candidate, if the masks allow it.
     [[nodiscard]] std::optional<std::uint32_t> deliverable(const ExceptionMasks& masks) const;
-    /// The first pending and enabled exception whatever is active: ICSR.VECTPENDING.
+    /// The first pending and enabled exception, independent of active ones: ICSR.VECTPENDING.
     [[nodiscard]] std::uint32_t first_pending() const;
 
     /// Registers 0xE000E100..0xE000E4FF, by offset from 0xE000E000; size 1, 2 or 4 bytes.

@@ -55,7 +55,7 @@ SystemControl::SystemControl(const BoardTime& now, ViolationLog& log, SystemCont
 void SystemControl::reset() {
     nvic_.reset();
     systick_.reset();
-    // Address 0 is an alias of the flash at reset; here the table is taken from where it really is.
+    // Address 0 is an alias of the flash at reset; here the flash's own address is used.
     vtor_ = kFlashBase;
     ccr_ = kCcrReset;
     fpccr_ = kFpccrReset;

@@ -1,5 +1,5 @@
-// The private peripheral bus as software sees it: system control block, NVIC, SysTick, FPU control, cycle
-// counter (ARMv7-M ARM B3.2, C1.8). What is not here is reported.
+// The registers of the private peripheral bus: system control block, NVIC, SysTick, FPU control, cycle
+// counter (ARMv7-M ARM B3.2, C1.8). Accesses to other registers are reported.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ inline constexpr std::uint32_t kNoCoprocessor = 1U << 19;
 inline constexpr std::uint32_t kUnaligned = 1U << 24;
 }  // namespace cfsr
 
-/// What it asks of the core and of the chip around it.
+/// Callbacks to the core and the chip.
 struct SystemControlHooks {
     std::function<std::uint32_t()> hclk_hz;
     std::function<std::uint64_t()> cycles;  ///< since power-up, without sleep

@@ -12,7 +12,7 @@ namespace octoskin::sim::stm32 {
 class SysTick {
   public:
     using Frequency = std::function<std::uint32_t()>;
-    /// `hclk_hz` tells HCLK; whoever changes it calls `advance` before. `on_zero`: the exception is due.
+    /// `hclk_hz` returns HCLK; call `advance` before HCLK changes. `on_zero`: the exception is due.
     SysTick(const BoardTime& now, ViolationLog& log, Frequency hclk_hz, std::function<void()> on_zero)
         : now_(now), log_(log), hclk_hz_(std::move(hclk_hz)), on_zero_(std::move(on_zero)) {}
 
@@ -35,7 +35,7 @@ class SysTick {
     std::uint32_t reload_ = 0;
     std::uint32_t value_ = 0;
     bool has_counted_to_zero_ = false;
-    BoardTime counted_to_{};  ///< `value_` is true for this instant
+    BoardTime counted_to_{};  ///< time of `value_`
 };
 
 }  // namespace octoskin::sim::stm32

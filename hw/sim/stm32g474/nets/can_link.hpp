@@ -1,5 +1,5 @@
-// Between the CAN controller and whoever plays the bus: arbitration is the bus's, retransmission and error
-// counting the controller's.
+// The interface between the CAN controller and the model of the bus. The bus does arbitration; the controller
+// does retransmission and error counting.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace octoskin::sim::stm32 {
 
-/// What the transceiver and the others make of our frames.
+/// State of the link for transmitted frames.
 enum class CanLink : std::uint8_t {
     good,
     nobody_acknowledges,  ///< alone on the bus
     broken,               ///< every bit that is sent reads back wrong: a short circuit
 };
 
-/// The bus as the controller sees it.
+/// The bus side of the controller.
 class CanBusSide {
   public:
     /// The frame that the controller wants to send next, or none; replaces what was offered before. A frame
-    /// that the bus has begun ends in any case.
+    /// on the bus is always completed.
     virtual void offer(const std::optional<wire::CanFrame>& frame) = 0;
 
   protected:

@@ -96,7 +96,7 @@ I2cWire::Answer I2cWire::write(std::uint8_t byte, SimTime time) {
 
 std::uint8_t I2cWire::read(SimTime time) {
     const std::uint32_t position = read_++;
-    std::uint8_t byte = 0xFF;  // the pull-ups: whoever drives a 0 wins
+    std::uint8_t byte = 0xFF;  // pull-ups: any device that drives a 0 wins
     for (I2cTarget* target : selected_) byte = static_cast<std::uint8_t>(byte & target->on_read(time));
     const std::uint8_t driven = byte;
     const I2cFault* ones = fault(I2cFaultKind::read_ones);
@@ -113,8 +113,8 @@ void I2cWire::stop(SimTime time) {
     if (on_stop_) on_stop_();
 }
 
-// A target that was sending goes on as soon as it gets clocks: it holds SDA through every 0 up to the next 1
-// or to the acknowledge.
+// A target that was sending continues as soon as it gets clocks: it holds SDA at every 0 up to the next 1 or
+// to the acknowledge.
 void I2cWire::abandon(std::uint32_t bits_done) {
     is_stretched_ = false;
     if (byte_being_read_ && bits_done < kByteBits) {

@@ -1,5 +1,5 @@
-// Two wires with pull-ups and devices: what I2C controller and GPIO see of a bus, byte by byte, with the same
-// faults as data as the simulated bus of the PC has (hw/sim/i2c/simulated_i2c_bus.hpp).
+// Two wires with pull-ups and devices, byte by byte: the bus for the I2C controller and GPIO. The faults are
+// those of hw/sim/i2c/simulated_i2c_bus.hpp.
 #pragma once
 
 #include <cstdint>
@@ -18,24 +18,26 @@ class I2cWire {
     void attach(I2cTarget& target) { targets_.push_back(&target); }
     void inject(const I2cFault& fault);
     void clear_faults() { faults_.clear(); }
-    /// Whoever held SDA lets go.
+    /// Releases SDA from a fault that holds it.
     void let_go_of_sda() { stuck_clocks_ = 0; }
-    /// Times that a fault changed what would have happened.
+    /// Number of times that a fault had an effect.
     [[nodiscard]] std::uint64_t fault_hits() const noexcept { return fault_hits_; }
 
     // --- the controller's side; a transfer lasts from a START on an idle bus to its STOP
     enum class Answer : std::uint8_t { acknowledged, refused, arbitration_lost, stretched };
-    /// Address and acknowledge have passed. `stretched`: the clock stays low until the controller lets go.
+    /// Address and acknowledge have passed. `stretched`: the clock stays low until the controller releases
+    /// the bus.
     Answer start(std::uint8_t address, bool is_read, SimTime time);
     Answer write(std::uint8_t byte, SimTime time);
     /// The byte that the targets drive from now on.
     std::uint8_t read(SimTime time);
     void stop(SimTime time);
-    /// The controller lets go in the middle: `bits_done` clocks (0..9) of the byte under way have passed.
+    /// The controller releases the bus in the middle of a byte, of which `bits_done` clocks (0..9) have
+    /// passed.
     void abandon(std::uint32_t bits_done);
     void count_bits(std::uint32_t bits) { bit_count_ += bits; }
 
-    /// Hears of each end of a transfer: a device may have let go of its pins.
+    /// `listener` is called at each end of a transfer: a device may have released its pins.
     void on_stop(std::function<void()> listener) { on_stop_ = std::move(listener); }
 
     // --- GPIO's side: open-drain outputs
@@ -44,7 +46,7 @@ class I2cWire {
     [[nodiscard]] bool is_scl_low() const { return is_scl_driven_low_ || is_stretched_; }
     [[nodiscard]] bool is_sda_low(SimTime time);
     [[nodiscard]] bool is_in_transfer() const noexcept { return is_in_transfer_; }
-    /// When the first address of all had passed.
+    /// End of the first address on this bus.
     [[nodiscard]] std::optional<SimTime> first_address() const noexcept { return first_address_; }
     [[nodiscard]] std::uint64_t transfer_count() const noexcept { return transfer_count_; }
     [[nodiscard]] std::uint64_t bit_count() const noexcept { return bit_count_; }
@@ -66,7 +68,7 @@ class I2cWire {
     std::uint32_t read_ = 0;
     std::optional<std::uint8_t> byte_being_read_;
     bool is_stretched_ = false;
-    std::uint32_t stuck_clocks_ = 0;  ///< still to be given before SDA is let go
+    std::uint32_t stuck_clocks_ = 0;  ///< still needed before SDA is released
     bool is_scl_driven_low_ = false;
     bool is_sda_driven_low_ = false;
     std::optional<SimTime> first_address_;

@@ -1,4 +1,4 @@
-// A chain of five 74HC595: serial in, 40 outputs with pull-downs (datasheet: shifts and shows on rising
+// A chain of five 74HC595: serial in, 40 outputs with pull-downs (datasheet: shifts and latches on rising
 // edges, outputs off while OE is high).
 #pragma once
 
@@ -20,7 +20,7 @@ class ShiftRegisterChain {
     static constexpr std::uint32_t kOutputs = 40;
     using Listener = std::function<void(std::uint32_t output, bool is_high)>;
 
-    /// `listener` hears each output that changes.
+    /// `listener` is called for each output that changes.
     explicit ShiftRegisterChain(Listener listener) : listener_(std::move(listener)) {}
 
     void drive(const ShiftRegisterPins& pins);
@@ -29,7 +29,7 @@ class ShiftRegisterChain {
   private:
     Listener listener_;
     ShiftRegisterPins pins_{};
-    std::uint64_t shifted_ = 0x5A'5A5A'5A5A;  ///< what is in a register at power-up is anybody's guess
+    std::uint64_t shifted_ = 0x5A'5A5A'5A5A;  ///< the content of a register at power-up is undefined
     std::uint64_t shown_ = 0x5A'5A5A'5A5A;
     std::uint64_t visible_ = 0;
 };

@@ -67,7 +67,7 @@ void Exti::advance() {
     if (next_change_ <= env_.now) sample();
 }
 
-/// A line that is masked or pending has nothing to tell.
+/// A line that is masked or pending needs no sampling.
 void Exti::watch() {
     const std::uint32_t awaited = triggered_lines() & bank_.get(kImr1) & ~bank_.get(kPr1);
     next_change_ = awaited == 0 ? kNever : hooks_.next_change(awaited);
@@ -84,7 +84,7 @@ void Exti::clear(std::uint32_t lines) {
 }
 
 void Exti::write(std::uint32_t offset, std::uint32_t value) {
-    sample();  // what was so until now
+    sample();  // the state until now
     const std::uint32_t stored = bank_.checked(offset, value);
     refuse_other_lines(offset, stored);
     switch (offset) {

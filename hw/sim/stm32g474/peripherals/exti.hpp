@@ -1,7 +1,7 @@
 // External interrupts (RM0440 15): an edge on a pin pends the interrupt of its line. Only the lines 0 to 15,
-// of pins; the others belong to peripherals that are not modelled or do not wake anybody here. Events (WFE)
-// are not modelled. Of an edge on a masked line nothing is kept: the manual does not say so clearly, and it
-// is the harder of the two for a program.
+// of pins; the others belong to peripherals that are not modelled or wake no model. Events (WFE) are not
+// modelled. An edge on a masked line is lost: the manual is not clear, and this is the harder case for a
+// program.
 #pragma once
 
 #include <cstdint>

@@ -223,7 +223,7 @@ void Fdcan::check_bit_timing() {
     if (!hooks_.has_pins()) env_.log.report(Rule::pin_function, "FDCAN1 started without its pins");
     has_wrong_timing_ = nominal_bitrate() != rates_.nominal;
     has_wrong_data_timing_ = false;
-    const bool is_listening = is_set(kCccr, kMonitoring);  // who only listens may try
+    const bool is_listening = is_set(kCccr, kMonitoring);  // allowed while only listening
     if (has_wrong_timing_ && !is_listening)
         complain(fmt::format("FDCAN1 at {} bit/s on a bus of {}", nominal_bitrate(), rates_.nominal));
     if (!is_set(kCccr, kFdEnable) || !is_set(kCccr, kRateSwitchEnable)) return;

@@ -1,5 +1,5 @@
 // FDCAN1 (RM0440 44): modes, bit timing, filters, FIFOs, error counting, bus-off, bus monitoring; the
-// restricted mode only as what a failure of the message RAM leads to. The test modes are not modelled.
+// restricted mode only as the result of a message RAM failure. The test modes are not modelled.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ class Fdcan final : public Peripheral {
         std::function<bool()> is_clock_from_crystal;
         std::function<bool()> has_pins;
     };
-    /// `rates`: what the bus runs at; other settings are reported and behave as a broken link.
+    /// `rates`: bit rates of the bus; other settings are reported and behave as a broken link.
     Fdcan(const Surroundings& surroundings, FdcanRam& ram, CanBusSide& bus, const wire::BitRates& rates,
           Hooks hooks);
 
@@ -34,9 +34,9 @@ class Fdcan final : public Peripheral {
 
     // --- the bus's side
     void set_link(CanLink link);
-    /// The frame, which is on offer or was a moment ago, has begun: it can no longer be taken back.
+    /// The offered frame, or the one offered until just before, has begun: it can no longer be withdrawn.
     void on_started(const wire::CanFrame& frame);
-    /// The frame that began has ended well.
+    /// The frame that began ended without an error.
     void on_sent(const wire::CanFrame& frame);
     /// The frame that began was destroyed by an error on the bus.
     void on_disturbed();
@@ -46,7 +46,7 @@ class Fdcan final : public Peripheral {
     // --- for tests
     /// The message RAM does not answer in time, once.
     void lose_ram();
-    /// INIT does not follow what is written, until told otherwise: the controller does not start.
+    /// While set, INIT does not follow the written value: the controller does not start.
     void set_deaf(bool is_deaf) { is_deaf_ = is_deaf; }
 
   private:

@@ -27,7 +27,7 @@ void Fdcan::fail_attempt() {
     const bool is_broken = link_ == CanLink::broken || has_wrong_timing_;
     last_error_ = is_broken ? kLastErrorBit0 : kLastErrorAcknowledge;
     raise(kArbitrationPhaseError);
-    // An error-passive transmitter that only misses its acknowledge counts no further.
+    // An error-passive transmitter does not count a missing acknowledge.
     if (is_broken || transmit_errors_ < kPassiveLimit) count_errors(8, 0);
     update_offer();
 }
@@ -42,7 +42,7 @@ void Fdcan::count_errors(int transmit, int receive) {
     const bool was_passive = is_passive();
     const bool was_warning = is_warning();
     transmit_errors_ = std::max(0, transmit_errors_ + transmit);
-    // One good frame ends being passive for what was received: ISO 11898-1 sets the counter to 119..127.
+    // One good frame ends the error-passive state of the receive counter: ISO 11898-1 sets it to 119..127.
     const bool ends_passive = receive < 0 && receive_errors_ >= kPassiveLimit;
     receive_errors_ = ends_passive ? kPassiveLimit - 1 : std::max(0, receive_errors_ + receive);
     if (is_passive() != was_passive) raise(kErrorPassive);
@@ -50,7 +50,7 @@ void Fdcan::count_errors(int transmit, int receive) {
     if (transmit_errors_ >= kBusOffLimit) enter_bus_off();
 }
 
-// The hardware sets INIT and does not come back by itself.
+// The hardware sets INIT and does not return to the bus by itself.
 void Fdcan::enter_bus_off() {
     is_bus_off_ = true;
     is_joined_ = false;
@@ -60,7 +60,7 @@ void Fdcan::enter_bus_off() {
     raise(kBusOff);
 }
 
-// RM0440 44.3.5: it still receives and acknowledges, and sends nothing of its own any more.
+// RM0440 44.3.5: it still receives and acknowledges, but sends no more frames.
 void Fdcan::lose_ram() {
     raise(kRamFailed);
     bank_.set_bits(kCccr, 1U << kRestricted);

@@ -11,7 +11,7 @@ namespace octoskin::sim::stm32 {
 
 using namespace fdcan;
 
-/// Bus monitoring: neither acknowledges nor error frames, and the error counters stand still.
+/// Bus monitoring: no acknowledges, no error frames, and the error counters do not change.
 void Fdcan::on_overheard(const wire::CanFrame& frame) {
     const bool is_unreadable = frame.is_fd && !is_set(kCccr, kFdEnable);
     if (link_ != CanLink::good || has_wrong_timing_ || is_unreadable) {

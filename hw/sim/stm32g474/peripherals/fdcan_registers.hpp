@@ -1,4 +1,4 @@
-// FDCAN's registers as its model's parts know them: offsets, bits and the fixed figures. RM0440 44.
+// FDCAN's registers for the parts of its model: offsets, bits and constants. RM0440 44.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// FDCAN's transmit side: requests, their order, what the bus is offered, how each ends.
+// FDCAN's transmit side: requests, their order, the frame offered to the bus, the end of each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +50,8 @@ void Fdcan::request(std::uint32_t places) {
     update_offer();
 }
 
-/// Of two of one identifier the one in the lower buffer goes first, whichever was requested first.
+/// Of two frames with one identifier, the one in the lower buffer goes first, independent of the order of
+/// requests.
 void Fdcan::check_order(const wire::CanFrame& requested) {
     const auto has_its_identifier = [&](std::uint32_t place) {
         const wire::CanFrame frame = ram_.tx_element(place).frame;

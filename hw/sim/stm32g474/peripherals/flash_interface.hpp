@@ -1,5 +1,5 @@
-// The flash's registers (RM0440 5): wait states, and what a program may read of the option bytes.
-// Programming and erasing are not modelled: the flashing tool's result is loaded instead.
+// The flash's registers (RM0440 5): wait states, and the option bytes that a program may read. Programming
+// and erasing are not modelled: the image is loaded as the flashing tool leaves it.
 #pragma once
 
 #include "hw/sim/stm32g474/peripheral.hpp"
@@ -19,8 +19,8 @@ class FlashInterface final : public Peripheral {
 
     /// Called after every change of HCLK, voltage range or latency.
     void check_latency(std::uint32_t hclk_hz);
-    /// A word `offset` bytes into the flash was read that has two wrong bits: kept in ECCR until the program
-    /// has cleared it, and an NMI.
+    /// A word at `offset` bytes in the flash was read and has two wrong bits: sets ECCR until the program
+    /// clears it, and raises an NMI.
     void on_double_error(std::uint32_t offset);
 
   private:

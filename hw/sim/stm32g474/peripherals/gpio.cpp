@@ -21,7 +21,7 @@ constexpr std::uint32_t kAll = 0xFFFF'FFFF;
 struct PortSpecs {
     RegisterSpec registers[11];
 };
-// Ports A and B wake with the debug pins in use (RM0440 9.4.1).
+// After reset, ports A and B have the debug pins in use (RM0440 9.4.1).
 constexpr PortSpecs specs(std::uint32_t moder, std::uint32_t ospeedr, std::uint32_t pupdr) {
     return {{{0x00, "MODER", moder, kAll},
              {0x04, "OTYPER", 0, 0xFFFF},

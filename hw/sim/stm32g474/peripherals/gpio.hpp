@@ -1,4 +1,4 @@
-// One GPIO port (RM0440 9): modes, levels, and what each pin does to the net that it is on.
+// One GPIO port (RM0440 9): modes, levels, and the drive of each pin on its net.
 #pragma once
 
 #include <array>
@@ -27,15 +27,15 @@ class GpioPort final : public Peripheral {
     [[nodiscard]] PinMode mode(std::uint32_t pin) const;
     [[nodiscard]] bool is_open_drain(std::uint32_t pin) const;
     [[nodiscard]] std::uint32_t alternate_function(std::uint32_t pin) const;
-    /// As an output: what it drives. In any other mode the pin drives nothing.
+    /// Whether an output drives its net low. In any other mode a pin drives nothing.
     [[nodiscard]] bool drives_low(std::uint32_t pin) const;
     [[nodiscard]] bool drives_high(std::uint32_t pin) const;
-    /// What the chip sees at the pin; low while it is analog.
+    /// The input level at the pin; low while it is analog.
     [[nodiscard]] bool level(std::uint32_t pin) const;
 
-    /// Called after every write that may have changed what pins drive.
+    /// Called after every write that may have changed the pins' drive.
     void on_change(std::function<void()> listener) { listeners_.push_back(std::move(listener)); }
-    /// The level of the net that a pin is on. Without one: its pull-up or pull-down.
+    /// Sets the source of a pin's level. Without one the level is that of its pull-up or pull-down.
     void connect(std::uint32_t pin, std::function<bool()> level) { levels_.at(pin) = std::move(level); }
 
   private:

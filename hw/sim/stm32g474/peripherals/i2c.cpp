@@ -44,7 +44,7 @@ void I2c::reset() {
     update();
 }
 
-// PE=0 lets both lines go and clears flags and the state machine (RM0440 41.4.6).
+// PE=0 releases both lines and clears flags and the state machine (RM0440 41.4.6).
 void I2c::disable() {
     if (phase_ != Phase::idle) {
         const std::int64_t since = env_.now.ps - phase_begun_.ps;
@@ -67,7 +67,7 @@ bool I2c::is_bus_busy() {
     return phase_ != Phase::idle || wire_.is_scl_low() || wire_.is_sda_low(hooks_.true_time());
 }
 
-// --- what software does
+// --- software side
 
 std::uint32_t I2c::read(std::uint32_t offset) {
     if (offset == kRxdr) return read_data();

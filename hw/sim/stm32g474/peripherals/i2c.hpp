@@ -11,14 +11,14 @@
 
 namespace octoskin::sim::stm32 {
 
-/// What the wire adds to SCLL and SCLH: filter delay, rise and fall time.
+/// Delays that the wire adds to SCLL and SCLH: filter delay, rise and fall time.
 enum class BusEdges : std::uint8_t { typical, slowest };
 
 class I2c final : public Peripheral {
   public:
     struct Hooks {
         std::function<std::uint32_t()> kernel_hz;
-        std::function<bool()> has_pins;  ///< both are open-drain and given to it
+        std::function<bool()> has_pins;  ///< both are open-drain and assigned to it
         std::function<SimTime()> true_time;
     };
     /// `number`: 1..4.
@@ -46,7 +46,7 @@ class I2c final : public Peripheral {
         receiving,
         wants_room,  ///< SCL is stretched: RXDR is full
         stopping,
-        stretched,  ///< by somebody else
+        stretched,  ///< by a device
     };
 
     [[nodiscard]] bool is_enabled() const { return (bank_.get(0x00) & 1U) != 0; }

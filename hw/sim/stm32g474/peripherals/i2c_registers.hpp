@@ -1,4 +1,4 @@
-// I2C's registers as its model's parts know them: offsets and bits. RM0440 41.
+// I2C's registers for the parts of its model: offsets and bits. RM0440 41.
 #pragma once
 
 #include <cstdint>

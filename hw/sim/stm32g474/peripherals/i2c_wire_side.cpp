@@ -1,4 +1,4 @@
-// What I2C does on the wire, byte by byte.
+// I2C's side of the wire, byte by byte.
 #include <algorithm>
 #include <utility>
 
@@ -42,7 +42,7 @@ void I2c::advance() {
             case Phase::stretched:
                 break;
         }
-        if (event_at_ == at) event_at_ = kNever;  // nothing followed
+        if (event_at_ == at) event_at_ = kNever;  // no further event was set
         update();
     }
 }
@@ -142,7 +142,7 @@ void I2c::after_byte() {
     }
 }
 
-// The hardware sends a STOP of its own, whatever AUTOEND says.
+// The hardware sends a STOP by itself, for any value of AUTOEND.
 void I2c::refuse() {
     bank_.set_bits(kIsr, kNackf);
     bank_.clear_bits(kIsr, kTxis);

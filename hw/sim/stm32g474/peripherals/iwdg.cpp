@@ -50,7 +50,7 @@ void Iwdg::advance() {
         prescaler_arrives_ = kNever;
         prescaler_ = bank_.get(kPr);
         bank_.clear_bits(kSr, 1);
-        if (is_running_) reload();  // the count so far is small against the first period
+        if (is_running_) reload();  // the count so far is small relative to the first period
     }
     if (env_.now >= reload_arrives_) {
         reload_arrives_ = kNever;

@@ -32,7 +32,7 @@ class Iwdg final : public Peripheral {
     RegisterBank bank_;
     bool is_running_ = false;
     bool is_unlocked_ = false;
-    std::uint32_t prescaler_ = 0;  ///< in force; the register's value arrives later
+    std::uint32_t prescaler_ = 0;  ///< in force; a written value applies later
     std::uint32_t reload_ = 0xFFF;
     BoardTime prescaler_arrives_ = kNever;
     BoardTime reload_arrives_ = kNever;

@@ -56,7 +56,7 @@ void Lpuart::advance() {
     update_line();
 }
 
-/// From the data register into the shift register.
+/// Moves a byte from the data register into the shift register.
 void Lpuart::load() {
     if (shifting_ || !is_on()) return;
     if (!waiting_) {

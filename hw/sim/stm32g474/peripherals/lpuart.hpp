@@ -1,4 +1,4 @@
-// LPUART1 as a transmitter (RM0440 38): the text that the virtual COM port shows.
+// LPUART1 as a transmitter (RM0440 38): the output of the virtual COM port.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ class Lpuart final : public Peripheral {
   public:
     struct Hooks {
         std::function<std::uint32_t()> clock_hz;
-        std::function<bool()> has_pin;           ///< the TX pin is given to it
+        std::function<bool()> has_pin;           ///< the TX pin is assigned to it
         std::function<void(char byte)> on_byte;  ///< at the end of its stop bit
     };
     Lpuart(const Surroundings& surroundings, Hooks hooks);

@@ -1,4 +1,4 @@
-// A peripheral that is only its registers: nothing happens when they are written.
+// A peripheral with registers only: writes have no other effect.
 #pragma once
 
 #include "hw/sim/stm32g474/peripheral.hpp"

@@ -1,4 +1,4 @@
-// Power control (RM0440 6): voltage range and boost, which decide how fast the flash may be read.
+// Power control (RM0440 6): voltage range and boost, which limit the flash's read rate.
 #pragma once
 
 #include <functional>

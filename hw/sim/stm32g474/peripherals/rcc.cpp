@@ -94,7 +94,7 @@ void Rcc::reset() {
 }
 
 void Rcc::note_reset(ResetFlag flag) {
-    // The chip pulls its own reset pin whatever the cause.
+    // The chip pulls its own reset pin for every cause.
     bank_.set_bits(kCsr,
                    1U << static_cast<std::uint32_t>(flag) | 1U << static_cast<std::uint32_t>(ResetFlag::pin));
 }

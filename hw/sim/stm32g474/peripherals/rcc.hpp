@@ -14,7 +14,7 @@ namespace octoskin::sim::stm32 {
 struct Crystal {
     bool is_present = true;
     BoardTime fails_at = kNever;
-    BoardTime returns_at = kNever;                      ///< after it failed, or if it was never there
+    BoardTime returns_at = kNever;  ///< after it failed, or if it was missing from the start
     BoardTime starts_in = BoardTime{2'000 * kPsPerUs};  ///< DS12288: 2 ms typical
 };
 
@@ -30,7 +30,7 @@ struct ClockEnable {
 class Rcc final : public Peripheral {
   public:
     struct Hooks {
-        std::function<void()> before_change;  ///< what counts a clock is brought to the present
+        std::function<void()> before_change;  ///< advances models that count a clock to the present time
         std::function<void()> after_change;
         std::function<void(ClockEnable enable)> reset_peripheral;  ///< with the offset of the enable register
     };
@@ -47,7 +47,7 @@ class Rcc final : public Peripheral {
     /// For tests: the core's clock can never be switched to the PLL.
     void refuse_pll() { refuses_pll_ = true; }
     [[nodiscard]] bool is_enabled(ClockEnable enable) const;
-    /// The core's clock is gone: only the watchdog helps.
+    /// The core's clock stopped: only the watchdog can reset the chip.
     [[nodiscard]] bool is_stopped() const noexcept { return is_stopped_; }
 
     [[nodiscard]] std::uint32_t hclk_hz() const;

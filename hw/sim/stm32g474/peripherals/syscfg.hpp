@@ -1,4 +1,4 @@
-// System configuration (RM0440 10): here, which port each external interrupt's line listens to.
+// System configuration (RM0440 10): here only the port of each external interrupt line.
 #pragma once
 
 #include <functional>

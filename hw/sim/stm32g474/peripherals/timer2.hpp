@@ -21,7 +21,7 @@ class Timer2 final : public Peripheral {
     void advance() override;
     [[nodiscard]] BoardTime next_event() const override;
 
-    /// When the counter was last set to 0 by software: tests relate the board's clock to true time by it.
+    /// Time of the last write of 0 to the counter: tests use it to relate the board's clock to true time.
     [[nodiscard]] BoardTime counter_zero() const noexcept { return zeroed_at_; }
 
   private:

@@ -17,7 +17,7 @@
 namespace octoskin::sim {
 namespace {
 
-/// Its endings are words with blanks between them.
+/// The reader's file endings are separated by blanks.
 bool reads_a_kind(const Assimp::BaseImporter& reader) {
     std::string_view endings = reader.GetInfo()->mFileExtensions;
     while (!endings.empty()) {
@@ -28,13 +28,13 @@ bool reads_a_kind(const Assimp::BaseImporter& reader) {
     return false;
 }
 
-/// assimp has some forty readers, and takes one by what a file holds, whatever its name says.
+/// assimp has about forty readers and selects one by a file's content, independent of its name.
 void keep_readers_of_our_kinds(Assimp::Importer& importer) {
     for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
         Assimp::BaseImporter* const reader = importer.GetImporter(i);
         if (reads_a_kind(*reader)) continue;
         importer.UnregisterLoader(reader);
-        const std::unique_ptr<Assimp::BaseImporter> ours(reader);  // from then on
+        const std::unique_ptr<Assimp::BaseImporter> ours(reader);  // owned here from now on
     }
 }
 
@@ -55,7 +55,7 @@ void append(const aiMesh& part, TriangleMesh& mesh) {
     }
 }
 
-/// Opens what may be opened, for reading, by the paths of checked descriptors.
+/// Opens allowed files only, for reading, by the paths of checked descriptors.
 class CheckedFiles final : public Assimp::DefaultIOSystem {
   public:
     explicit CheckedFiles(const WorldFiles& files) : files_(files) {}
@@ -86,7 +86,7 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
         return unexpected("mesh " + file.string() + " is " + std::string(kind) + ", not an ordinary file");
     Assimp::Importer importer;
     keep_readers_of_our_kinds(importer);
-    if (files != nullptr) importer.SetIOHandler(new CheckedFiles(*files));  // the importer's from here on
+    if (files != nullptr) importer.SetIOHandler(new CheckedFiles(*files));  // the importer owns it
     const aiScene* scene =
         importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
     if (scene == nullptr) {

@@ -11,8 +11,9 @@
 namespace octoskin::sim {
 
 /// All triangles of the file, whose name ends in .stl, .obj or .dae, in the file's own coordinates, node
-/// transforms applied. The error says what assimp says, or that there is no triangle or a coordinate that is
-/// not finite. `files`: that it and what it refers to (materials, buffers) must be among; nullptr: any.
+/// transforms applied. The error is assimp's message, or that there is no triangle or a coordinate that is
+/// not finite. `files`: the allowed files, for the mesh and the files that it refers to (materials, buffers);
+/// nullptr: any.
 [[nodiscard]] Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file,
                                                           const WorldFiles* files = nullptr);
 

@@ -1,4 +1,4 @@
-// What is loaded at run time to read an SDF file: the only binary that is linked with sdformat and assimp.
+// The module that is loaded at run time to read an SDF file: the only binary linked with sdformat and assimp.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 namespace octoskin::sim {
 
 struct SdfInput {
-    std::filesystem::path file;         ///< as it was named: meshes lie beside it
-    std::filesystem::path path;         ///< to open it by
-    const WorldFiles* files = nullptr;  ///< what it may refer to; nullptr: anything
+    std::filesystem::path file;         ///< its name: mesh paths are relative to it
+    std::filesystem::path path;         ///< the path for opening it
+    const WorldFiles* files = nullptr;  ///< the files it may refer to; nullptr: any
 };
 
-/// The module's file name; it lies where the loader looks for libraries of the running program.
+/// The module's file name; it is in the loader's search path of the running program.
 inline constexpr const char* kSdfModule = "octoskin-sdf.so";
-/// The module's one symbol, and its type. Module and program are of one build, so that they may hand each
-/// other C++ objects.
+/// The module's one symbol, and its type. Module and program are of one build, so that they can exchange C++
+/// objects.
 inline constexpr const char* kReadSolidsSymbol = "octoskin_read_solids_v5";
 using ReadSolids = void (*)(const SdfInput& sdf, SolidsOrError* result);
 

@@ -5,7 +5,7 @@
 
 namespace octoskin::sim {
 
-/// read_solids() of a file that is there and is SDF, in this process.
+/// read_solids() in this process, for an existing SDF file.
 [[nodiscard]] SolidsOrError parse_solids(const SdfInput& sdf);
 
 }  // namespace octoskin::sim

@@ -16,7 +16,7 @@ namespace {
 using ignition::math::eigen3::convert;
 using MeshOrError = Result<TriangleMesh, std::string>;
 
-/// Further than anything in a robot's cell; a ground plane may be as large as it likes.
+/// Larger than a robot's cell. A ground plane has no limit.
 constexpr double kSizeMax_m = 100.0;
 
 bool is_positive(double value) {
@@ -70,7 +70,8 @@ MeshOrError mesh_file_of(const sdf::Mesh& mesh, const SdfInput& world) {
                           "' is not supported; expected a path relative to the SDF file" +
                           (world.files == nullptr ? ", or model://; octoskin fetches nothing" : ""));
     }
-    // Without an <include> all of it is in the one file, which a checked descriptor's path does not say.
+    // Without an <include> every element is in this file. The path of a checked descriptor does not give its
+    // name.
     const std::filesystem::path file =
         world.files == nullptr ? std::filesystem::path(mesh.FilePath()) : world.file;
     auto read = read_mesh(file.parent_path() / uri, world.files);
@@ -119,7 +120,7 @@ Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry, const S
     }
     const auto element = geometry.Element();
     const auto shape = element ? element->GetFirstElement() : nullptr;
-    // What sdformat does not know has no line of its own.
+    // An element unknown to sdformat has no line.
     const auto line = element ? element->LineNumber() : std::nullopt;
     std::string what = line ? "line " + std::to_string(*line) + ": " : "";
     what += "unsupported shape '" + (shape ? shape->GetName() : "empty");

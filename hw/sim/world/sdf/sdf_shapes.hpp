@@ -10,12 +10,12 @@
 
 namespace octoskin::sim {
 
-/// For messages: what mesh_of() takes.
+/// For messages: the shapes that mesh_of() supports.
 inline constexpr const char* kSdfShapes =
     "box, cylinder, sphere, capsule, ellipsoid, plane, mesh (a cone is a mesh)";
 
-/// The shape in its own coordinates, metres. The error says what is wrong: another shape, a size that is not
-/// positive and finite, a mesh that cannot be read, or that `world` may not refer to.
+/// The shape in its own coordinates, metres. Errors: another shape, a size that is not positive and finite, a
+/// mesh that cannot be read, or that `world` may not refer to.
 [[nodiscard]] Result<TriangleMesh, std::string> mesh_of(const sdf::Geometry& geometry, const SdfInput& world);
 
 }  // namespace octoskin::sim

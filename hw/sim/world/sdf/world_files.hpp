@@ -1,4 +1,4 @@
-// Which files a world may refer to: a reader that is given one of these opens nothing else.
+// The files that a world may refer to. A reader with such an object opens no other files.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,8 @@ class WorldFiles {
     WorldFiles& operator=(const WorldFiles&) = delete;
     virtual ~WorldFiles() = default;
 
-    /// The path under which `file`, an ordinary one, can be opened as it was checked: its descriptor's, valid
-    /// as long as this object. The error says what is wrong with it, without its name.
+    /// The path of the checked descriptor of `file`, an ordinary file; valid as long as this object. The
+    /// error does not contain the file's name.
     [[nodiscard]] virtual Result<std::filesystem::path, std::string> openable(
         const std::filesystem::path& file) const = 0;
 };

@@ -8,7 +8,7 @@
 namespace octoskin::sim {
 namespace {
 
-/// Of a mesh that lies beside the file that names it, which is not the file that is written.
+/// Makes a mesh's path absolute: it is relative to the file that names it, not to the written file.
 void make_absolute(sdf::Element& uri) {
     constexpr std::string_view kFileScheme = "file://";
     std::string text = uri.Get<std::string>();

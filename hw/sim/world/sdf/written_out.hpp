@@ -1,4 +1,4 @@
-// A world that includes models, as one that includes none.
+// Expands the included models of a world.
 #pragma once
 
 #include <sdf/Root.hh>
@@ -6,9 +6,9 @@
 
 namespace octoskin::sim {
 
-/// The SDF of what was loaded, with each included model in the place of its <include>, and each mesh that
-/// lies beside its file by its whole path; "model://..." stays. Elements that sdformat does not know are left
-/// out. Empty if nothing is included. Changes the URIs of `root`.
+/// The SDF of the loaded world. Each <include> is replaced by its model, and each relative path of a mesh by
+/// its absolute path; "model://..." stays. Elements that sdformat does not know are left out. Empty if the
+/// world has no <include>. Changes the URIs of `root`.
 [[nodiscard]] std::string written_out(sdf::Root& root);
 
 }  // namespace octoskin::sim
