@@ -1,12 +1,13 @@
-// The operators of a test program that decides itself what an allocation gives. For the program's one source.
+// Replaces operator new and delete in a test program that controls allocations. Include it in one source
+// only.
 #pragma once
 
 #include <cstddef>
 #include <new>
 
-/// Defined by the program: what every `new` gives; throws std::bad_alloc.
+/// Defined by the program: the memory of every `new`; throws std::bad_alloc.
 static void* allocate(std::size_t bytes);
-/// And every `delete` takes.
+/// Defined by the program: frees the memory of every `delete`.
 static void release(void* place) noexcept;
 
 void* operator new(std::size_t bytes) {
@@ -15,7 +16,7 @@ void* operator new(std::size_t bytes) {
 void* operator new[](std::size_t bytes) {
     return allocate(bytes);
 }
-// The library's own would give what ours then takes back.
+// Also replaced, because the library's version would allocate memory that the `delete` here frees.
 void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept try {
     return allocate(bytes);
 } catch (const std::bad_alloc&) {

@@ -1,4 +1,4 @@
-// Evidence as tests write it: terms voxel by voxel, and cones' ranges by their voxels.
+// Evidence written by tests: terms per voxel, and ranges of cones by their voxels.
 #pragma once
 
 #include <algorithm>

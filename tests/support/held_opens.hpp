@@ -1,5 +1,5 @@
-// A file system that does not answer: whatever opens a file, or something in a folder, waits for as long as
-// this lives (fanotify(7), which needs CAP_SYS_ADMIN). The test's own process, too.
+// A file system that does not answer: every open of a file, or of an entry of a folder, blocks during the
+// lifetime of this object (fanotify(7), which needs CAP_SYS_ADMIN). The test's own process blocks, too.
 #pragma once
 
 #include <fcntl.h>
@@ -19,12 +19,12 @@ class HeldOpens {
                    ::fanotify_mark(descriptor_, FAN_MARK_ADD, kEvents, AT_FDCWD, place.c_str()) == 0;
     }
     ~HeldOpens() {
-        if (descriptor_ >= 0) ::close(descriptor_);  // all that wait go on
+        if (descriptor_ >= 0) ::close(descriptor_);  // releases all that wait
     }
     HeldOpens(const HeldOpens&) = delete;
     HeldOpens& operator=(const HeldOpens&) = delete;
 
-    /// False: this process may not hold anything.
+    /// False: this process lacks the right to block opens.
     [[nodiscard]] explicit operator bool() const noexcept { return is_held_; }
 
   private:

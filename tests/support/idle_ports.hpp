@@ -1,4 +1,4 @@
-// Ports of a node for tests that ask nothing of them.
+// Ports of a node for tests that do not use them.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ class NoLines final : public node::XshutLines {
     void set(std::uint8_t, bool) override {}
 };
 
-/// Takes every frame.
+/// Accepts every frame.
 class NoCan final : public node::CanTransmitter {
     bool send(const wire::CanFrame&) override { return true; }
     [[nodiscard]] node::CanState state() const override { return node::CanState::active; }

@@ -1,6 +1,6 @@
-// A network connection that takes long to close: what it still has to send nobody reads, and it is to wait
-// for that. And such a one that waits, unread, in another connection: what closes that waits, too, and
-// cannot take its SO_LINGER.
+// A network connection that takes long to close: its unsent data is never read, and SO_LINGER makes close
+// wait for it. Also such a connection that is itself unread data in another one: closing the other one waits,
+// too, and its SO_LINGER cannot be changed.
 #pragma once
 
 #include <arpa/inet.h>
@@ -27,7 +27,7 @@ class LingeringConnection {
 
     LingeringConnection() {
         const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-        const int room = 1;  // raised by the kernel to the least there is
+        const int room = 1;  // raised by the kernel to its minimum
         EXPECT_EQ(::setsockopt(listener, SOL_SOCKET, SO_RCVBUF, &room, sizeof(room)), 0);
         sockaddr_in address{};
         address.sin_family = AF_INET;
@@ -45,7 +45,7 @@ class LingeringConnection {
         const linger wait{.l_onoff = 1, .l_linger = static_cast<int>(kLingers.count())};
         EXPECT_EQ(::setsockopt(end_, SOL_SOCKET, SO_LINGER, &wait, sizeof(wait)), 0);
         const std::string text(1 << 16, 'x');
-        constexpr int kOnItsWayMs = 2;  // what has no room now may have when the other end has taken some
+        constexpr int kOnItsWayMs = 2;  // there may be room again after the other end has received some
         pollfd writable{end_, POLLOUT, 0};
         while (::poll(&writable, 1, kOnItsWayMs) > 0)
             EXPECT_GT(::send(end_, text.data(), text.size(), MSG_DONTWAIT), 0);
@@ -57,14 +57,13 @@ class LingeringConnection {
     LingeringConnection(const LingeringConnection&) = delete;
     LingeringConnection& operator=(const LingeringConnection&) = delete;
 
-    /// Now nothing waits for it any more.
+    /// From now on no close waits for it.
     void end() {
         if (other_end_ >= 0) ::close(std::exchange(other_end_, -1));
     }
-    /// Its end is the caller's from now on.
+    /// Passes the ownership of its end to the caller.
     [[nodiscard]] int release() { return std::exchange(end_, -1); }
-    /// Sends its end along with `text`, and keeps none: who gets it has the last one. No earlier does it
-    /// wait.
+    /// Sends its end along with `text` and closes its own: the receiver has the last one, whose close waits.
     void send_along(int socket, std::string text) {
         ASSERT_NO_FATAL_FAILURE(test::send_along(socket, std::move(text), std::array{end_}));
         ::close(std::exchange(end_, -1));

@@ -10,7 +10,7 @@ namespace octoskin::test {
 namespace {
 
 constexpr std::uint32_t kFirstDistanceMm = 200;
-// What each mode ranges without wrapping round, with some to spare.
+// The range of each mode without phase wrapping, with a margin.
 constexpr std::uint32_t kLongDistancesMm = 4'200;
 constexpr std::uint32_t kShortDistancesMm = 1'100;
 constexpr std::int64_t kTakenBackAfterUs = 20'000;
@@ -188,7 +188,7 @@ sim::SimTime NodeRig::next_event() const {
         if (const auto change = data_ready_.next_change(present_.time)) next = std::min(next, *change);
     }
     if (const auto event = can_.next_event()) next = std::min(next, *event);
-    // What is due at once is done in the next microsecond: the loop of no board is faster.
+    // An action that is due now happens in the next microsecond: no board's loop is faster.
     return std::max(next, sim::SimTime{present_.time.us + 1});
 }
 

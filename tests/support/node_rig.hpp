@@ -1,5 +1,5 @@
-// One node in a simulation that a test holds in its hands: the real node core and driver, modelled sensors,
-// I2C buses and a CAN bus, everything said recorded, and the truth of every range kept aside as the oracle.
+// One node in a simulation controlled by a test: the real node core and driver, simulated sensors, I2C buses
+// and a CAN bus. It records all frames and the true data of every range.
 #pragma once
 
 #include <cstdint>
@@ -29,11 +29,11 @@ struct SensorSetup {
     sim::SensorPart part;
     sim::SensorFaults faults;
     bool is_fitted = true;
-    /// What it sees, if it is always the same; else each range is another.
+    /// Its constant view; without it each range has another distance.
     std::optional<sim::RangingReturn> target{};
 };
 
-/// A range as the sensor truly took it. Its distance in millimetres tells it from its neighbours in time, and
+/// The true data of a range. Its distance in millimetres distinguishes it from its neighbours in time and
 /// from those of all other sensors.
 struct TrueRange {
     std::uint16_t range_mm = 0;
@@ -46,7 +46,7 @@ struct SaidMessage {
     sim::SimTime end{};
 };
 
-/// A reading as it came over the bus, from a RANGE or RANGE_FD frame.
+/// A reading on the bus, from a RANGE or RANGE_FD frame.
 struct SaidReading {
     wire::RangeReading reading;
     sim::SimTime end{};
@@ -58,10 +58,10 @@ struct XshutEvent {
     sim::SimTime time{};
 };
 
-/// A reset of the node's controller: what the reset register will say, and what its pins do meanwhile.
+/// A reset of the node's controller: the cause in the reset register, and the state of its pins meanwhile.
 struct Reset {
     wire::ResetCause cause = wire::ResetCause::watchdog;
-    bool is_xshut_kept = false;  ///< the lines keep their levels, as those of a latch do
+    bool is_xshut_kept = false;  ///< the lines keep their levels, as with a latch
     Microseconds takes{1'000};
 };
 
@@ -70,8 +70,8 @@ class NodeRig final : private node::XshutLines,
                       private node::CanTransmitter,
                       private node::Watchdog {
   public:
-    /// `setups`: one for each sensor of the configuration. `board_type`: what the board is, whatever the
-    /// configuration is for.
+    /// `setups`: one for each sensor of the configuration. `board_type`: the type of the board, independent
+    /// of the configuration.
     NodeRig(const NodeConfig& config, const std::vector<SensorSetup>& setups, sim::NodeClock clock = {},
             const node::Policy& policy = {}, std::uint8_t board_type = 0);
 
@@ -82,20 +82,19 @@ class NodeRig final : private node::XshutLines,
     /// A frame from outside, as if another controller sent it.
     void send_from_host(const wire::Message& message, wire::NodeId id);
     void send_from_host(const wire::CanFrame& frame);
-    /// While blocked, the node's controller takes no frame, as if every mailbox were full.
+    /// While blocked, the node's controller accepts no frame, as if every mailbox were full.
     void block_transmission(bool is_blocked) { is_transmission_blocked_ = is_blocked; }
-    /// Nobody acknowledges: the node's controller takes what it is given, and takes each frame back after
-    /// 20 ms.
+    /// No acknowledge on the bus: the node's controller accepts frames and withdraws each after 20 ms.
     void leave_unacknowledged(bool is_alone);
-    /// The controller starts anew, in the middle of whatever it does. Its memory is lost except `kept()`.
+    /// Resets the controller at once. Its memory is lost except `kept()`.
     void reset(const Reset& reset);
-    /// Nothing happens on the node: its loop hangs.
+    /// The node's loop hangs for this time.
     void hang_for(Microseconds duration);
     [[nodiscard]] node::KeptMemory& kept() { return kept_; }
     /// When the watchdog was fed.
     [[nodiscard]] const std::vector<sim::SimTime>& feeds() const noexcept { return feeds_; }
 
-    /// A sensor more, whose XSHUT nobody drives: it answers at 0x29 from the start.
+    /// Adds a sensor with an unconnected XSHUT: it acknowledges at 0x29 from the start.
     void attach_stray_sensor(std::size_t bus, const sim::SensorFaults& faults = {});
 
     [[nodiscard]] const NodeConfig& config() const noexcept { return config_; }
@@ -107,14 +106,14 @@ class NodeRig final : private node::XshutLines,
     [[nodiscard]] sim::SimulatedI2cBus& bus(std::size_t index) { return buses_.at(index); }
     [[nodiscard]] sim::SimulatedCanBus& can() { return can_; }
 
-    /// Wired to the sensors of all buses; the node asks about those that its configuration names.
+    /// Connected to the sensors of all buses; the node queries those of its configuration.
     [[nodiscard]] sim::SimulatedDataReadyLines& data_ready() { return data_ready_; }
 
     [[nodiscard]] const std::vector<TrueRange>& truth(std::size_t sensor) const {
         return sensors_.at(sensor)->truth;
     }
     [[nodiscard]] const std::deque<wire::CanFrame>& frames() const noexcept { return frames_; }
-    /// What was said on the bus, decoded; the host's part too.
+    /// All messages on the bus, decoded, also the host's.
     [[nodiscard]] const std::deque<SaidMessage>& said() const noexcept { return said_; }
     [[nodiscard]] std::vector<SaidReading> readings_of(std::uint8_t sensor) const;
     [[nodiscard]] std::optional<wire::SensorHealth> last_health(std::uint8_t sensor) const;
@@ -142,8 +141,8 @@ class NodeRig final : private node::XshutLines,
 
   private:
     /// Those of one sensor, one range after the other, then from the first on again: after 26 s at 30 Hz if
-    /// there are four, after 4 s if there are 34. No two sensors have one in common, so that a reading under
-    /// another's name is seen.
+    /// there are four, after 4 s if there are 34. No two sensors have one in common, so that a reading with
+    /// another sensor's name is detected.
     struct Distances {
         std::uint32_t first_mm = 0;
         std::uint32_t step_mm = 0;

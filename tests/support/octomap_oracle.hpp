@@ -43,7 +43,7 @@ inline std::vector<VoxelKey> ray_keys(const octomap::OcTree& tree, const Eigen::
     return keys;
 }
 
-/// Every known voxel of a tree at its finest level, pruned nodes spread out.
+/// Every known voxel of a tree at its finest level, pruned nodes expanded.
 template <class Node>
 std::map<VoxelKey, float> voxels_of(const octomap::OccupancyOcTreeBase<Node>& tree) {
     std::map<VoxelKey, float> voxels;

@@ -1,4 +1,4 @@
-// Seeded maps and capsules among what is free, occupied and unknown.
+// Seeded random maps of free, occupied and unknown voxels, and random capsules.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,7 +33,8 @@ class RandomSpace {
     PosedCapsule capsule(unsigned i) {
         PosedCapsule capsule{point(), point(), uniform(0.0, 4.0) * resolution_m_};
         if (i % 4 == 0) capsule.p_b = capsule.p_a + 0.3 * (capsule.p_b - capsule.p_a);
-        if (i % 4 == 1) {  // on corners, edges, faces and centres, along an axis: many are equally near
+        if (i % 4 ==
+            1) {  // on corners, edges, faces and centres, along an axis: many voxels are equally near
             capsule.p_a = snapped(capsule.p_a, 0.5);
             capsule.p_b = capsule.p_a;
             capsule.p_b[i / 4 % 3] += std::round(uniform(-6.0, 6.0)) * resolution_m_;

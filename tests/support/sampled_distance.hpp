@@ -1,4 +1,4 @@
-// How far a segment is from a cube, found by trying: slow, and by no formula that the host has.
+// The distance of a segment from a cube by numerical search: slow, and independent of the host's formulas.
 #pragma once
 
 #include <Eigen/Core>

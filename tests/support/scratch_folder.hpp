@@ -1,4 +1,4 @@
-// A folder of its own for a test that needs real files; gone afterwards.
+// A temporary folder for a test that needs real files; removed afterwards.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ class ScratchFolder {
         std::ifstream stream(file, std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};
     }
-    /// How many entries it holds, hidden ones included.
+    /// Number of its entries, including hidden ones.
     [[nodiscard]] std::ptrdiff_t entries() const {
         return std::distance(std::filesystem::directory_iterator(path_), {});
     }

@@ -17,7 +17,7 @@
 
 namespace octoskin::test {
 
-/// 0, or why the kernel did not take it.
+/// 0, or the kernel's error number.
 [[nodiscard]] inline int try_to_send_along(int socket, std::string text, std::span<const int> descriptors,
                                            int flags = 0) {
     constexpr std::size_t kMost = 253;  // SCM_MAX_FD

@@ -1,4 +1,5 @@
-// Do the sensors of a bus take turns, and those that face each other? By when they truly ranged.
+// Checks by the true times of ranging that the sensors of a bus, and those that face each other, range in
+// turn.
 #pragma once
 
 #include <algorithm>
@@ -48,8 +49,8 @@ inline double peak_over_mean(std::vector<double> ready_us, double sensors, doubl
     return busiest_us / kWindowUs / (sensors * kReadingUs / period_us);
 }
 
-/// How long two sensors range at once, at most, from one window of each. `a_us`, `b_us`: the middles of their
-/// windows, rising.
+/// The longest time that two sensors range at once, from one window of each. `a_us`, `b_us`: the middles of
+/// their windows, rising.
 inline double longest_overlap_us(const std::vector<double>& a_us, const std::vector<double>& b_us,
                                  double window_us) {
     double longest_us = 0.0;
@@ -61,8 +62,8 @@ inline double longest_overlap_us(const std::vector<double>& a_us, const std::vec
     return longest_us;
 }
 
-/// How far a sensor ranges off its phase, at most, with all phases counted from the same instant: that which
-/// suits most ranges best. `middles_us`: of each sensor's windows; `phases_us`: what it should keep.
+/// The greatest deviation of a sensor from its phase, with all phases relative to the common instant that
+/// fits the ranges best. `middles_us`: of each sensor's windows; `phases_us`: the phases to keep.
 inline double worst_off_us(const std::vector<std::vector<double>>& middles_us,
                            const std::vector<double>& phases_us, double period_us) {
     std::vector<double> offs_us;
@@ -80,14 +81,14 @@ inline double worst_off_us(const std::vector<std::vector<double>>& middles_us,
     return worst_us;
 }
 
-/// Whether two sensors are meant to range by turns: half a period apart, to 1.5 ms.
+/// Whether two sensors are meant to range in turn: half a period apart, to 1.5 ms.
 inline bool are_opposite(const SensorConfig& a, const SensorConfig& b) {
     const double apart_us = static_cast<double>(a.phase_us) - b.phase_us;
     return std::abs(apart_us - 500.0 * a.inter_measurement_ms) <= 1'500.0;
 }
 
-/// How much longer two sensors that are meant to range by turns do so at once than their phases make them, at
-/// most. `middles_us`: of each sensor's windows.
+/// The greatest overlap of two sensors that are meant to range in turn, beyond the overlap by their phases.
+/// `middles_us`: of each sensor's windows.
 inline double worst_needless_overlap_us(const NodeConfig& config,
                                         const std::vector<std::vector<double>>& middles_us) {
     const double window_us = 1'000.0 * config.sensors[0].timing_budget_ms;

@@ -1,5 +1,5 @@
 // The rows "CAN" of the reliability goals that a node keeps, and the reflex. Which test shows which row:
-// docs/reliability.md.
+// docs/reference/reliability.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The rows "Firmware" of the reliability goals that the core keeps; F2, F3, F5 are the port's. Which test
-// shows which row: docs/reliability.md.
+// shows which row: docs/reference/reliability.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // I4, I5, I11: what is read is not what was measured, and what is done with what was. Which test shows which
-// row: docs/reliability.md.
+// row: docs/reference/reliability.md.
 #include <gtest/gtest.h>
 
 #include <array>

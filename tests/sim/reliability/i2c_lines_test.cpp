@@ -1,4 +1,4 @@
-// I2, I3: lines of an I2C bus that somebody holds. Which test shows which row: docs/reliability.md.
+// I2, I3: lines of an I2C bus that a device holds. Which test shows which row: docs/reference/reliability.md.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,5 @@
-// I1: an address or a byte that is not acknowledged. Which test shows which row: docs/reliability.md.
+// I1: an address or a byte that is not acknowledged. Which test shows which row:
+// docs/reference/reliability.md.
 #include <gtest/gtest.h>
 
 #include <array>

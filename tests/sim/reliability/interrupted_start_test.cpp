@@ -1,5 +1,5 @@
 // I12, I13: a start that is interrupted, of the controller or of one sensor. Which test shows which row:
-// docs/reliability.md.
+// docs/reference/reliability.md.
 #include <gtest/gtest.h>
 
 #include <array>

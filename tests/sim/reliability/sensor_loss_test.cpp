@@ -1,5 +1,5 @@
 // I7, I8, I10: sensors that lose their supply, do not obey their reset line, or stop measuring. Which test
-// shows which row: docs/reliability.md.
+// shows which row: docs/reference/reliability.md.
 #include <gtest/gtest.h>
 
 #include <array>

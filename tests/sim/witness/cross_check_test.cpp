@@ -1,7 +1,7 @@
 // What the comparison with the camera names, sensors or the camera, in six worlds of thin things near the
-// arm. Nothing was chosen by what happens in them. The figures are in docs/results.md. By default a few runs;
-// all of them with OCTOSKIN_CROSS_CHECK_SEEDS=4; the worlds by which limits were chosen with
-// OCTOSKIN_CROSS_CHECK_WORLDS=tuning.
+// arm. Nothing was chosen by what happens in them. The figures are in docs/results/notebook-2026-11.md.
+// By default a few runs; all of them with OCTOSKIN_CROSS_CHECK_SEEDS=4; the worlds by which limits were
+// chosen with OCTOSKIN_CROSS_CHECK_WORLDS=tuning.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Single faults of single sensors on the experiment's arm: whether each that is demanded is found, and that
-// no other sensor is named for it. The figures are in docs/results.md.
+// no other sensor is named for it. The figures are in docs/results/notebook-2026-11.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -180,7 +180,8 @@ SensorFault kind_of(FaultKind kind) {
     return SensorFault::exchanged;
 }
 
-/// Of those demanded (docs/results.md): fewer than nine of ten, for no sound sensor is to be named.
+/// Of those demanded (docs/results/notebook-2026-11.md): fewer than nine of ten, for no sound
+/// sensor is to be named.
 const std::map<FaultKind, std::size_t> kFoundAtLeast = {{FaultKind::too_long, 14},
                                                         {FaultKind::too_short, 7},
                                                         {FaultKind::every_third_short, 6},

@@ -1,6 +1,7 @@
 // Joints that are not where their joint states say, in the worlds of cross_check_test: no sound sensor is
-// named once the joint is likely, nor the sound camera alone. The figures are in docs/results.md. By default
-// six runs; three times as many with OCTOSKIN_CROSS_CHECK_SEEDS=1, and so on.
+// named once the joint is likely, nor the sound camera alone. The figures are in
+// docs/results/notebook-2026-11.md. By default six runs; three times as many with
+// OCTOSKIN_CROSS_CHECK_SEEDS=1, and so on.
 #include <gtest/gtest.h>
 
 #include <algorithm>

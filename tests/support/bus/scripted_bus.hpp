@@ -1,5 +1,5 @@
-// A bus written by hand: messages at host times become frames with the nodes' own clocks in them, in the
-// order in which they would arrive.
+// A scripted bus: converts messages at host times to frames with times of the nodes' clocks, in the order of
+// arrival.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ class ScriptedBus {
     /// All pages of NODE_INFO, right for `node`.
     void info(double at_s, const HostNode& node, std::uint32_t build_id = 0);
     void heartbeat(double at_s, const HostNode& node);
-    /// SENSOR_HEALTH of a sensor that is well, with this bound on the error of its capture times.
+    /// SENSOR_HEALTH of a sensor without faults, with this bound on the error of its capture times.
     void health(double at_s, wire::NodeId node, std::uint8_t sensor, std::uint8_t capture_bound_64us = 3);
     /// Four frames, the last one 0.4 ms after the sample.
     void joints(double sampled_s, wire::NodeId node, std::span<const double> position_rad);
@@ -43,7 +43,7 @@ class ScriptedBus {
     wire::RangeReading range(double captured_s, wire::NodeId node, wire::RangeReading reading,
                              double delay_s = 0.015);
 
-    /// By time of arrival; what was sent first comes first among equals.
+    /// In the order of arrival; frames of equal time in the order in which they were sent.
     [[nodiscard]] std::vector<StampedFrame> frames() const;
 
     /// Of the board behind a node id: 96 bits, made of the id.

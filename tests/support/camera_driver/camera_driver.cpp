@@ -1,7 +1,7 @@
-// An OpenNI2 driver with one depth camera that a file plugs in: while the file $OCTOSKIN_TEST_CAMERA is
-// there, the camera is, and shows a wall as many millimetres away as the file says; of two numbers the second
-// is the left half's. It mirrors unless told not to, as OpenNI2's own drivers do, or whatever it is told
-// ($OCTOSKIN_TEST_CAMERA_MIRRORS). Its frames come at the mode's rate, stamped by its own clock.
+// An OpenNI2 driver with one depth camera that a file plugs in: while the file $OCTOSKIN_TEST_CAMERA exists,
+// the camera is connected and shows a wall at the distance in the file, millimetres; a second number is for
+// the left half. It mirrors the image unless mirroring is switched off, as OpenNI2's drivers do, or always
+// with $OCTOSKIN_TEST_CAMERA_MIRRORS. Its frames come at the mode's rate, with time stamps of its own clock.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -33,7 +33,7 @@ struct Wall {
     OniDepthPixel right_mm;
     OniDepthPixel left_mm;
 };
-/// What is in sight of the camera; empty if it is not plugged in.
+/// The scene of the camera; empty if it is not plugged in.
 std::optional<Wall> wall() {
     const char* const name = std::getenv("OCTOSKIN_TEST_CAMERA");
     if (name == nullptr) return std::nullopt;
@@ -131,7 +131,8 @@ class WallStream final : public oni::driver::StreamBase {
             std::fill_n(first, half, is_mirrored_ ? seen.right_mm : seen.left_mm);
             std::fill_n(first + half, half, is_mirrored_ ? seen.left_mm : seen.right_mm);
         }
-        // Noise: a camera whose images are equal to the last bit hangs, also if it shows a few by turns.
+        // Noise: images that are equal bit for bit, or that repeat in turn, are taken for those of a camera
+        // that hangs.
         OniDepthPixel* const last = pixels + mode_.resolutionX * mode_.resolutionY - 1;
         for (int bit = 0; bit < 16; ++bit) {
             if (last[-bit] > 0) last[-bit] = static_cast<OniDepthPixel>(last[-bit] + ((index >> bit) & 1));
@@ -166,7 +167,7 @@ class WallCamera final : public oni::driver::DeviceBase {
                           .pSupportedVideoModes = modes_.data()};
 };
 
-/// Tells OpenNI2 of the camera as a USB driver does: when it comes, and when it is gone.
+/// Reports the camera to OpenNI2 as a USB driver does: when it is connected and when it is disconnected.
 class PluggedDriver final : public oni::driver::DriverBase {
   public:
     explicit PluggedDriver(OniDriverServices* services) : DriverBase(services) {

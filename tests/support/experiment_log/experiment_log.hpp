@@ -1,4 +1,4 @@
-// What the experiment's arm and its sensor boards put onto the bus: real node cores, one virtual clock.
+// The CAN log of the experiment's arm and its sensor boards: real node cores on one virtual clock.
 #pragma once
 
 #include <cstdint>

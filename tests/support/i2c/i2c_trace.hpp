@@ -1,7 +1,7 @@
-// I2C transfers as text, so that a test quotes a bus trace as it was logged:
+// I2C transfers as text, so that a test can contain a bus trace as it was logged:
 //
 //     W 0087 40                register index and bytes of a write
-//     R 0089 2 -> 09 ??        register index and length of a read, and what it brings; ?? is any byte
+//     R 0089 2 -> 09 ??        register index and length of a read, and the bytes read; ?? is any byte
 //     R 0089 2 ! timeout       a transfer that fails, a write as well: with a name of i2c::TransferError
 //     ADDRESS 2A               the 7-bit address from here on, 29 at first
 //     WAIT 110                 milliseconds
@@ -31,7 +31,7 @@ struct TraceEntry {
 
 using Trace = std::vector<TraceEntry>;
 
-/// Throws std::invalid_argument with the entry's text if there is anything it does not understand.
+/// Throws std::invalid_argument with the entry's text if it cannot be parsed.
 [[nodiscard]] Trace parse_trace(std::string_view text);
 
 }  // namespace octoskin::test

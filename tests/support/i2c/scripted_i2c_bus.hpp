@@ -1,5 +1,5 @@
-// An I2C bus that follows a script: every transfer must be the next one expected, and nothing may be left
-// over. Whatever differs fails the running test.
+// An I2C bus that follows a script: every transfer must be the next one expected, and none may be left over.
+// A difference fails the running test.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,4 @@
-// What can be done to a served bus while it runs, as lines of text: `SENSOR FAULT` or `bus KIND COUNT
-// POSITION`.
+// Commands to a served bus while it runs, as lines of text: `SENSOR FAULT` or `bus KIND COUNT POSITION`.
 #pragma once
 
 #include <optional>
@@ -25,11 +24,14 @@ struct BusFaultCommand {
 using FaultCommand = std::variant<SensorFaultCommand, BusFaultCommand>;
 
 /// A line as one of
-///   SENSOR none | absent | never_boots | wrong_id | ignores_xshut | freezes_stream | never_ready |
-///   always_ready SENSOR brown_out SENSOR status BYTE                RESULT__RANGE_STATUS of every result bus
-///   KIND COUNT POSITION [ADDRESS]  KIND as in sim::I2cFaultKind; the next COUNT transfers, to ADDRESS if
-///   given
-/// with numbers in decimal or, after 0x, in hexadecimal. Empty: not understood.
+/// - `SENSOR FAULT`: none, absent, never_boots, wrong_id, ignores_xshut, freezes_stream, never_ready or
+///   always_ready;
+/// - `SENSOR brown_out`;
+/// - `SENSOR status BYTE`: RESULT__RANGE_STATUS of every result;
+/// - `bus KIND COUNT POSITION [ADDRESS]`: KIND as in sim::I2cFaultKind, for the next COUNT transfers, to
+///   ADDRESS if given;
+///
+/// with numbers in decimal or, after 0x, in hexadecimal. Empty: not a valid line.
 [[nodiscard]] std::optional<FaultCommand> parse_fault_command(const std::string& line);
 
 }  // namespace octoskin::test

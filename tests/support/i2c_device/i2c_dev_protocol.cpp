@@ -67,8 +67,9 @@ iovec caller_memory(const void* address, std::size_t size) {
     return {.iov_base = const_cast<void*>(address), .iov_len = size};
 }
 
-// What I2C_RDWR is about. CUSE copies from and to the caller's memory only where it was told to, so each
-// round asks for what the one before made known: the argument, then its messages, then their bytes.
+// The memory of an I2C_RDWR call. CUSE copies only requested parts of the caller's memory, so each round
+// requests the parts that the one before gave the addresses of: the argument, then its messages, then their
+// bytes.
 struct CombinedTransfer {
     std::vector<i2c_msg> messages;
     std::vector<iovec> in;   // argument, messages, bytes of every write
@@ -85,7 +86,7 @@ bool is_supported(const i2c_msg& message) {
     return (message.flags & ~I2C_M_RD) == 0 && message.addr <= kAddressMax && message.len <= kMessageBytesMax;
 }
 
-// What follows from the `size` bytes of `data` that are known so far; 0 or an error number.
+// Evaluates the `size` bytes of `data` received so far; 0 or an error number.
 int understand(const void* argument, const char* data, std::size_t size, CombinedTransfer& transfer) {
     transfer.in.push_back(caller_memory(argument, sizeof(i2c_rdwr_ioctl_data)));
     if (size < sizeof(i2c_rdwr_ioctl_data)) return 0;

@@ -1,5 +1,5 @@
-// A bus as the kernel's i2c-dev shows it: what open, ioctl, read and write of /dev/i2c-N do, served from user
-// space through CUSE.
+// A bus with the interface of the kernel's i2c-dev: open, ioctl, read and write of /dev/i2c-N, served from
+// user space through CUSE.
 #pragma once
 
 #include <memory>
@@ -16,10 +16,10 @@ namespace octoskin::test {
 /// combined transfers get a STOP between.
 class I2cDevice {
   public:
-    /// Throws std::runtime_error if the kernel does not take it. `bus` must outlive the device.
+    /// Throws std::runtime_error if the kernel refuses it. `bus` must outlive the device.
     I2cDevice(const std::string& name, ServedBus& bus);
 
-    /// The device is there from now on; until the process ends.
+    /// Creates the device; it exists until the process ends.
     void serve();
 
   private:

@@ -1,4 +1,4 @@
-// Lines that others write to a named pipe, taken without waiting.
+// Reads lines from a named pipe without blocking.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@ namespace octoskin::test {
 
 class LinePipe {
   public:
-    /// Opens a pipe that is there; throws std::runtime_error if it cannot.
+    /// Opens an existing pipe; throws std::runtime_error if it cannot.
     explicit LinePipe(const std::string& path);
     ~LinePipe();
     LinePipe(const LinePipe&) = delete;

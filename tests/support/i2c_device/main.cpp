@@ -1,4 +1,4 @@
-// Serves modelled VL53L1X as /dev/i2c-N of this machine, wired to GPIO lines of the kernel's simulator.
+// Serves simulated VL53L1X as /dev/i2c-N of this machine, wired to GPIO lines of the kernel's simulator.
 #include <sched.h>
 
 #include <CLI/CLI.hpp>
@@ -57,7 +57,7 @@ void declare(CLI::App& app, Options& options) {
         ->required();
 }
 
-// Throws std::runtime_error for a range that is not understood.
+// Throws std::runtime_error for a range that cannot be parsed.
 std::vector<DeviceOptions> devices_of(const Options& options) {
     std::vector<DeviceOptions> devices;
     for (const auto& sensor : options.sensors) {
@@ -75,8 +75,8 @@ std::vector<DeviceOptions> devices_of(const Options& options) {
     return devices;
 }
 
-// The sensors go on whatever the programs of the machine do: else they would miss a short pulse of XSHUT
-// while those keep the processor busy.
+// The sensors run at high priority: else they would miss a short pulse of XSHUT while other programs keep the
+// processor busy.
 void run_before_others() {
     const sched_param priority{.sched_priority = 1};
     if (::sched_setscheduler(0, SCHED_FIFO, &priority) != 0) {
@@ -84,7 +84,7 @@ void run_before_others() {
     }
 }
 
-// One device with what is written of it. The file is not waited for by any pin.
+// One device and its output file. Writing the file delays no pin.
 struct Served {
     Served(const DeviceOptions& options, const std::string& record_path)
         : bus(options.bus), device(options.name, bus) {
@@ -96,8 +96,7 @@ struct Served {
         const std::lock_guard lock(record_mutex);
         record << bus.take_record() << std::flush;
     }
-    // A device that ends by itself ends the program: else whoever waits for it would not learn why it is
-    // gone.
+    // A device that ends by itself ends the program, so that a test that waits for it learns the reason.
     [[noreturn]] void serve() {
         device.serve();
         std::fprintf(stderr, "i2c_device: a device has ended\n");
@@ -110,8 +109,8 @@ struct Served {
     std::mutex record_mutex;
 };
 
-// Calls `step` for each every `period`, in a thread of its own, as long as the process lives. One for all
-// devices: waking up costs an emulated processor more than what is done then.
+// Calls `step` for each every `period`, in a thread of its own, as long as the process runs. One thread for
+// all devices: on an emulated processor a wake-up costs more than the step.
 template <typename Step>
 void keep_doing(std::vector<std::unique_ptr<Served>>& all, std::chrono::microseconds period, Step step) {
     std::thread([&all, period, step] {
@@ -128,7 +127,7 @@ void keep_doing(std::vector<std::unique_ptr<Served>>& all, std::chrono::microsec
     sigemptyset(&ends);
     sigaddset(&ends, SIGINT);
     sigaddset(&ends, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &ends, nullptr);  // of the threads, too
+    pthread_sigmask(SIG_BLOCK, &ends, nullptr);  // for the threads, too
     std::vector<std::unique_ptr<Served>> all;
     for (const DeviceOptions& options : devices)
         all.push_back(std::make_unique<Served>(options, record_path));

@@ -1,4 +1,4 @@
-// What a served sensor sees, as a function of the machine's monotonic clock: so a test knows the truth.
+// The true range of a served sensor as a function of the machine's monotonic clock, so that a test knows it.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,12 @@ namespace octoskin::test {
 ///   none                            nothing in sight
 ///   constant:MM                     a wall
 ///   triangle:NEAR:FAR:PERIOD_MS     from NEAR at time 0 to FAR at half the period and back; NEAR <= FAR
-///   file:PATH                       as the file's first line says now, which is one of the above
-/// Outer empty optional: not understood (or, of a file, not readable).
+///   file:PATH                       the present first line of the file, which is one of the above
+/// Outer empty optional: cannot be parsed (or, for a file, not readable).
 [[nodiscard]] std::optional<std::optional<double>> true_range_mm(const std::string& text, sim::SimTime time);
 
-/// A scene that sees that range well: sigma 5 mm, 16 Mcps, no noise. What is not understood is out of sight.
+/// A scene with that range: sigma 5 mm, 16 Mcps, no noise. For a text that cannot be parsed nothing is in
+/// sight.
 [[nodiscard]] sim::RangingScene scene_of(std::string text);
 
 }  // namespace octoskin::test

@@ -83,7 +83,7 @@ struct ServedBus::Wired {
     sim::SimTime recorded_until{-1};  // when the newest ranging in the record was ready
 };
 
-// What GPIO1 of one sensor, or of several wired together, is wired to.
+// The line of GPIO1 of one sensor, or of several wired together.
 struct ServedBus::Gpio1Line {
     explicit Gpio1Line(const std::string& wired_to) : path(wired_to), file(open_line(path, O_WRONLY)) {}
     ~Gpio1Line() {
@@ -123,7 +123,7 @@ int ServedBus::transfer(i2c::Address address, std::span<const std::uint8_t> writ
     lock.lock();
     present_.time = end;
     const auto state = bus_.poll(sim::NodeClock{}.to_node(end));
-    drive_gpio1(end);  // what this transfer did to a pin, before the next range undoes it
+    drive_gpio1(end);  // applies this transfer's effect on a pin before the next range reverts it
     return state == i2c::TransferState::done ? 0 : error_number(bus_.error());
 }
 
@@ -135,7 +135,7 @@ void ServedBus::follow_lines() {
 
 void ServedBus::follow_lines_at(sim::SimTime now) {
     take_faults(now);
-    // The models remember 64 rangings: after a long pause, those of before it would be forgotten unrecorded.
+    // The models keep 64 rangings: after a long pause, those from before it would be lost unrecorded.
     for (const auto& sensor : sensors_) record(*sensor);
     for (const auto& sensor : sensors_) sensor->model.set_xshut(sensor->is_xshut_high(), now);
     drive_gpio1(now);

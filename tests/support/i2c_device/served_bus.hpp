@@ -1,5 +1,5 @@
-// Modelled sensors on a modelled bus, run on the machine's own clock: their XSHUT follows a GPIO line and
-// their GPIO1 drives one. Simulated time is CLOCK_MONOTONIC.
+// Simulated sensors on a simulated bus, run on the machine's clock: their XSHUT follows a GPIO line and their
+// GPIO1 drives one. Simulated time is CLOCK_MONOTONIC.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace octoskin::test {
 
-/// With the 200 us that a served part takes to boot, XSHUT is obeyed within the 1.2 ms of the datasheet
+/// With the 200 us that a served part takes to boot, XSHUT takes effect within the 1.2 ms of the datasheet
 /// (2.6.1).
 inline constexpr Microseconds kLinePeriod{1'000};
 
@@ -51,13 +51,13 @@ class ServedBus {
     [[nodiscard]] int transfer(i2c::Address address, std::span<const std::uint8_t> write,
                                std::span<std::uint8_t> read);
 
-    /// Lets the pins follow: reads every XSHUT, drives every GPIO1 that moved. Any thread; never waits for a
-    /// transfer. To be called every `kLinePeriod`, since what rises and falls in between is not seen.
+    /// Updates the pins: reads every XSHUT, drives every GPIO1 that changed. Any thread; never waits for a
+    /// transfer. Call every `kLinePeriod`: pulses in between are missed.
     void follow_lines();
 
-    /// What was ranged since it was last asked, as it truly was, a line each: `NAME INDEX MIDDLE_US READY_US
-    /// STATUS STREAM RANGE_MM`, times of CLOCK_MONOTONIC, STATUS the device's own code. Kept until it is
-    /// asked. Any thread.
+    /// The true data of the rangings since the last call, one per line: `NAME INDEX MIDDLE_US READY_US STATUS
+    /// STREAM RANGE_MM`, times of CLOCK_MONOTONIC, STATUS the device's own code. Kept until the next call.
+    /// Any thread.
     [[nodiscard]] std::string take_record();
 
   private:

@@ -1,4 +1,4 @@
-// An ELF file for the NUCLEO-G474RE, whole or with a defect made on purpose.
+// An ELF file for the NUCLEO-G474RE, valid or with an intended defect.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@ struct BuiltSegment {
     std::uint32_t type = 1;  ///< PT_LOAD
     std::uint32_t physical_address = 0;
     std::vector<std::uint8_t> bytes;
-    std::uint32_t memory_bytes = 0;  ///< more than `bytes`: what start-up clears
+    std::uint32_t memory_bytes = 0;  ///< more than `bytes`: the rest is cleared by start-up
 };
 
-/// The parts of a fit image; a test changes one.
+/// The parts of a valid image; a test changes one.
 struct ElfBuilder {
     /// A vector table of 118 entries and 64 bytes of code, the last 8 its identity, then 12 bytes of data
     /// that start-up copies to RAM.
@@ -28,7 +28,7 @@ struct ElfBuilder {
 
     /// Entry `index` of the vector table.
     void set_vector(std::uint32_t index, std::uint32_t value);
-    /// Which layout of configuration block it says it reads; 0: it says nothing.
+    /// The layout of the configuration block that it declares; 0: none.
     void set_layout(std::uint16_t layout);
     /// Changes one numeric build attribute.
     void set_attribute(std::uint8_t tag, std::uint8_t value);

@@ -22,7 +22,7 @@ std::optional<wire::MarkKind> mark_of(const wire::CanFrame& frame) {
     return mark != nullptr ? std::optional(mark->kind) : std::nullopt;
 }
 
-/// How far times and numbers have gone on for one node since the log.
+/// Offset of times and sequence numbers of one node relative to the log.
 class Advance {
   public:
     Advance(std::int64_t us, unsigned rounds) : us_(us), rounds_(rounds) {}

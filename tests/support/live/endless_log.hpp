@@ -1,5 +1,5 @@
-// The frames of a log that has no end: what lies between its two marks comes again and again, with times and
-// sequence numbers that go on.
+// The frames of an endless log: the part between its two marks is repeated, with times and sequence numbers
+// that continue.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ class EndlessLog {
     /// begin of each further round. `us_per_us`: the rate of each node's clock; that of another node is 1.
     EndlessLog(const std::vector<StampedFrame>& log, std::map<wire::NodeId, double> us_per_us);
 
-    /// In the order of their stamps. What the log's host sent, and what its nodes answered to SYNC, is left
-    /// out.
+    /// In the order of their time stamps, without the frames of the log's host and the nodes' answers to
+    /// SYNC.
     [[nodiscard]] StampedFrame next();
 
   private:
     using Sensor = std::pair<wire::NodeId, std::uint8_t>;
-    /// How many of each a round has.
+    /// The number of each in a round.
     struct Counts {
         std::map<Sensor, unsigned> readings;
         std::map<wire::NodeId, unsigned> joint_samples;
@@ -39,7 +39,7 @@ class EndlessLog {
     std::int64_t round_ns_ = 0;    ///< from START to STOP
     Counts per_round_;
     std::size_t next_ = 0;
-    unsigned round_ = 0;  ///< 0: as it is in the log
+    unsigned round_ = 0;  ///< 0: unchanged from the log
 };
 
 }  // namespace octoskin::test

@@ -19,8 +19,8 @@ std::int64_t steady_ns() {
     return std::chrono::steady_clock::now().time_since_epoch().count();
 }
 
-/// When the kernel was handed what it stamped so, on the clock of steady_ns(). A thread that is held up
-/// between the two clocks would be wrong by that, so the closest of several pairs counts.
+/// Converts a kernel time stamp to the clock of steady_ns(). A delay of the thread between reading the two
+/// clocks is an error, so the closest of several pairs is used.
 std::int64_t steady_of(WallTime stamp) {
     std::int64_t closest_ns = std::numeric_limits<std::int64_t>::max();
     std::int64_t steady_at_stamp_ns = 0;
@@ -52,7 +52,7 @@ LiveBus::~LiveBus() {
     thread_.join();
 }
 
-/// Two exchanges tell a clock: where it stood at the first, and how fast it ran until the last.
+/// Two exchanges determine a clock: its value at the first, and its rate until the last.
 void LiveBus::learn_clocks(const std::vector<StampedFrame>& log) {
     std::array<std::int64_t, wire::kSyncSequenceCount> sync_ns{};
     for (const StampedFrame& entry : log) {
@@ -87,7 +87,7 @@ std::map<wire::NodeId, double> LiveBus::clock_rates() const {
 }
 
 void LiveBus::play(EndlessLog& log) {
-    while (true) {  // until it is told to end
+    while (true) {  // until it is stopped
         const StampedFrame entry = log.next();
         listen_until(entry.stamp.ns);
         if (is_ending_) return;
@@ -104,7 +104,8 @@ void LiveBus::listen_until(std::int64_t due_ns) {
         pollfd readable{socket_.descriptor(), POLLIN, 0};
         const timespec patience{0, std::clamp<std::int64_t>(left_ns, 0, 20'000'000)};
         if (::ppoll(&readable, 1, &patience, nullptr) > 0 && !hear_one()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the other end is gone: time goes on
+            std::this_thread::sleep_for(
+                std::chrono::milliseconds(1));  // the other end is gone: time continues
         }
         if (log_now_ns() >= due_ns) return;
     }
@@ -114,7 +115,8 @@ bool LiveBus::hear_one() {
     auto received = socket_.receive();
     if (!received) return false;
     if (*received && !is_cut_) {
-        // A node's hardware stamps the end of a frame; here the kernel does, when it was handed over.
+        // A node's hardware has a time stamp of the end of a frame; here the kernel's time stamp of the
+        // hand-over is used.
         const StampedFrame& entry = (*received)->entry;
         answer(entry.frame, log_time_ns(steady_of(entry.stamp)));
     }
@@ -169,7 +171,7 @@ void LiveBus::be_host() {
 
 void LiveBus::put(const wire::CanFrame& frame) {
     if (is_cut_) return;
-    (void)socket_.send(frame);  // an end that takes nothing any more loses it, as on a bus
+    (void)socket_.send(frame);  // a full receiver loses it, as on a bus
 }
 
 void LiveBus::let_babble(std::optional<wire::NodeId> node) {

@@ -1,5 +1,5 @@
-// A bus that is alive: the frames of a log, played at their own times into one end of a socketpair, by nodes
-// that answer the SYNC of whoever is at the other end. After the log's STOP its robot goes round again.
+// A live bus: plays the frames of a log at their own times into one end of a socketpair; its nodes answer the
+// SYNC of the other end. After the log's STOP the motion is repeated.
 #pragma once
 
 #include <atomic>
@@ -19,32 +19,31 @@ namespace octoskin::test {
 
 class LiveBus {
   public:
-    /// `descriptor`: our end; becomes the bus's. What the log's host sent is left out: SYNC, FOLLOW_UP and
-    /// MARK are for the host at the other end to send. The log must hold SYNC and the nodes' reports, START
-    /// and STOP.
+    /// `descriptor`: the bus's end; the bus owns it. Frames of the log's host are left out: the host at the
+    /// other end sends SYNC, FOLLOW_UP and MARK. The log must hold SYNC and the nodes' reports, START and
+    /// STOP.
     LiveBus(int descriptor, const std::vector<StampedFrame>& log);
     ~LiveBus();
     LiveBus(const LiveBus&) = delete;
     LiveBus& operator=(const LiveBus&) = delete;
 
-    /// From now on another host sends SYNC and FOLLOW_UP once a second; its clock is so far ahead of this
-    /// machine's monotonic one.
+    /// From now on another host sends SYNC and FOLLOW_UP once a second; its clock is ahead of this machine's
+    /// monotonic one by this time.
     void speak_as_host(Nanoseconds ahead);
-    /// The other host's next FOLLOW_UP is wrong by so much, once.
+    /// The other host's next FOLLOW_UP has this error, once.
     void lie_once(Nanoseconds by);
     /// A node that is switched off: it sends and answers nothing.
     void silence(wire::NodeId node, bool is_silent);
-    /// A node that with each of its frames says its newest heartbeat a dozen times more. Empty: none.
+    /// A node that repeats its newest heartbeat a dozen times with each of its frames. Empty: none.
     void let_babble(std::optional<wire::NodeId> node);
-    /// A line that is broken: nothing comes through, either way, and what was sent meanwhile is gone. The
-    /// nodes and their robot go on.
+    /// A broken line: frames of both directions are lost. The nodes and their robot continue.
     void cut(bool is_cut) noexcept { is_cut_ = is_cut; }
     [[nodiscard]] std::uint64_t syncs_heard() const noexcept { return syncs_heard_; }
     /// Frames of the other end.
     [[nodiscard]] std::uint64_t frames_heard() const noexcept { return frames_heard_; }
 
   private:
-    /// A node's clock as its reports in the log tell it.
+    /// A node's clock by its reports in the log.
     struct Clock {
         std::int64_t stamp_ns = 0;
         std::uint32_t heard_us = 0;
@@ -53,7 +52,7 @@ class LiveBus {
     void learn_clocks(const std::vector<StampedFrame>& log);
     [[nodiscard]] std::map<wire::NodeId, double> clock_rates() const;
     void play(EndlessLog& log);
-    /// Until `due_ns` on the log's time scale, and answers what comes meanwhile.
+    /// Waits until `due_ns` on the log's time scale, and answers frames meanwhile.
     void listen_until(std::int64_t due_ns);
     /// False if the other end is gone.
     bool hear_one();
@@ -77,7 +76,7 @@ class LiveBus {
     mutable std::mutex mutex_;
     std::map<wire::NodeId, bool> silent_;
     std::optional<wire::NodeId> babbling_;
-    std::map<wire::NodeId, wire::CanFrame> heartbeats_;  ///< the newest of each node; of the thread alone
+    std::map<wire::NodeId, wire::CanFrame> heartbeats_;  ///< the newest of each node; used by the thread only
     std::optional<Nanoseconds> host_ahead_;              ///< of another host; empty while there is none
     Nanoseconds lie_{0};                                 ///< of its next FOLLOW_UP
     std::int64_t host_due_ns_ = 0;                       ///< its next SYNC, on the log's time scale

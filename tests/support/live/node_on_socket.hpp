@@ -1,5 +1,5 @@
-// A simulated node at the other end of a pair of sockets: the real node core and driver, modelled sensors.
-// Its time is the time, and passes while the host waits.
+// A simulated node at the other end of a socketpair: the real node core and driver, simulated sensors. It
+// runs in real time, also while the host waits.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ class NodeOnSocket {
     [[nodiscard]] NodeRig& rig() { return rig_; }
     /// Every frame of the host so far, decoded or not.
     [[nodiscard]] const std::vector<wire::CanFrame>& heard() const noexcept { return heard_; }
-    /// From now on nothing of the node reaches the host, or nothing of the host the node.
+    /// From now on frames of the node do not reach the host, or frames of the host do not reach the node.
     void cut_way_out() { is_way_out_cut_ = true; }
     void cut_way_in() { is_way_in_cut_ = true; }
     /// From now on a reset that is ordered is not performed.

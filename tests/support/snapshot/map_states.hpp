@@ -1,5 +1,5 @@
-// States of maps in which something of everything is: images, counts, times, readings of sensors that stand
-// still and of others.
+// States of maps with every kind of content: images, counts, times, readings of stationary and of moving
+// sensors.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,7 @@ class OneMap final : public EvidenceSink {
     FusedMap& map_;
 };
 
-/// A map and its range sensors, which measure one thing after the other.
+/// A map and its range sensors, which measure different objects one after the other.
 class MeasuredMap {
   public:
     explicit MeasuredMap(const MappingConfig& mapping) : map_(mapping.map), ranges_(mapping, true) {}
@@ -38,7 +38,7 @@ class MeasuredMap {
         ranges_.go_on_with(std::move(state.histories));
     }
 
-    /// So many measurements, 50 ms apart, from `from_s` on.
+    /// `count` measurements, 50 ms apart, from `from_s` on.
     void measure(unsigned seed, int steps, double from_s) {
         std::mt19937 random(seed);
         for (int step = 0; step < steps; ++step) {
@@ -86,7 +86,7 @@ class MeasuredMap {
     OneMap sink_{map_};
 };
 
-/// What is stale or forgotten within seconds.
+/// A configuration in which voxels become stale or expire within seconds.
 [[nodiscard]] inline MappingConfig quickly_aging() {
     MappingConfig mapping = fast_mapping();
     mapping.map.age = {.stale_after_s = 4, .unknown_after_s = 9};

@@ -1,4 +1,4 @@
-// Snapshots whose checksums are right whatever they hold: so that what lies behind the checksums is tested.
+// Corrects the checksums of damaged snapshots, so that the checks behind the checksums are tested.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,8 @@
 
 namespace octoskin::testing_support {
 
-/// The same bytes, but for the number and the checksum of each block, as far as their lengths lead.
+/// The same bytes with a corrected number and checksum of each block, as far as the blocks' lengths are
+/// valid.
 [[nodiscard]] inline std::string mended(std::string_view bytes) {
     constexpr std::size_t kHead = 12;
     constexpr std::size_t kWord = 4;

@@ -61,7 +61,7 @@ void AddressSpace::write(Address address, std::uint32_t value) {
 
 }  // namespace octoskin::test
 
-// What the port is linked with on the PC.
+// The definitions that the port is linked with on the PC.
 namespace octoskin::stm32g4 {
 
 std::uint32_t load(Address address) {

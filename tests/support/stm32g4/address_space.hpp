@@ -1,5 +1,5 @@
-// The chip's address space as a test sees it: words that hold what was written, and registers that do
-// something. Linked in the place of the real one; one lives at a time.
+// The chip's address space for tests: words that keep the written value, and registers with effects. Linked
+// in place of the real one; one object at a time.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class AddressSpace {
     AddressSpace(const AddressSpace&) = delete;
     AddressSpace& operator=(const AddressSpace&) = delete;
 
-    /// A word as it is, without what reading it does.
+    /// A word without the side effects of reading it.
     [[nodiscard]] std::uint32_t& operator[](Address address) { return words_[address]; }
     template <class Map>
     [[nodiscard]] std::uint32_t& word(const stm32g4::Peripheral<Map>& peripheral,
@@ -37,7 +37,7 @@ class AddressSpace {
 
     /// Called before a read; may change the word.
     void before_read(Address address, std::function<void(std::uint32_t& word)> action);
-    /// Called in the place of a write.
+    /// Called in place of a write.
     void on_write(Address address, std::function<void(std::uint32_t& word, std::uint32_t value)> action);
 
     /// Microseconds on timer 2, which reads one more each time: waiting takes time.

@@ -66,7 +66,7 @@ bool I2cModel::step() {
             shift();
             return true;
         case Phase::receiving:
-            if (is("ISR.RXNE")) return false;  // the clock is stretched until somebody reads
+            if (is("ISR.RXNE")) return false;  // the clock is stretched until RXDR is read
             receive();
             return true;
     }
@@ -95,7 +95,7 @@ void I2cModel::start() {
     }
 }
 
-/// A byte goes from TXDR to the wire as soon as it is there; then the next one is asked for.
+/// A byte goes from TXDR to the wire at once; then the next one is requested.
 void I2cModel::load() {
     if (is("ISR.TXE")) {
         raise("ISR.TXIS");
@@ -128,7 +128,7 @@ void I2cModel::receive() {
     if (moved_ == bytes()) end_of_bytes();
 }
 
-/// The hardware sends the STOP by itself, whatever AUTOEND says; what was in TXDR stays there.
+/// The hardware sends the STOP by itself, for any value of AUTOEND; TXDR keeps its content.
 void I2cModel::refuse() {
     log("n");
     lower("ISR.TXIS");

@@ -1,5 +1,5 @@
-// An I2C controller's registers and the targets behind it, one bus event at a time: what RM0440 says the
-// hardware does. Independent of the port's own idea of it.
+// An I2C controller's registers and the targets behind it, one bus event at a time, by RM0440. Independent of
+// the port's code.
 #pragma once
 
 #include <cstdint>
@@ -29,12 +29,12 @@ class I2cModel {
     bool reports_false_bus_error = false;     ///< once, at the next START
     bool is_stretched = false;                ///< nothing moves any more
 
-    /// The next thing that happens on the bus. False if nothing can.
+    /// Executes the next event on the bus. False if there is none.
     bool step();
     /// Whether one of the two interrupt lines is active.
     [[nodiscard]] bool is_interrupting();
 
-    /// What was on the bus: "S52w", "R52r", a byte written as "3A", one read as "(3A)", "n" for each refusal,
+    /// The log of the bus: "S52w", "R52r", a byte written as "3A", one read as "(3A)", "n" for each refusal,
     /// "P".
     [[nodiscard]] const std::string& trace() const { return trace_; }
     void clear_trace() { trace_.clear(); }

@@ -5,13 +5,12 @@
 #include <functional>
 #include <string>
 
-// GoogleTest runs a death test in a process of its own, which a board has not. Here the only death is a
-// failed assert, and a jump leads from it back into the test, so that asserts are tested on the board as
-// well.
+// GoogleTest runs a death test in a separate process, which a board does not have. Here the only death is a
+// failed assert, which jumps back into the test, so that asserts are tested on the board, too.
 namespace octoskin::target {
 
-// Runs the statement and says whether an assert in it failed whose message contains a match of the regular
-// expression (GoogleTest's simple syntax). What lives between here and the assert is not destroyed: its
+// Runs the statement and returns whether an assert in it failed with a message that matches the regular
+// expression (GoogleTest's simple syntax). Objects between here and the assert are not destroyed: their
 // memory is lost.
 [[nodiscard]] testing::AssertionResult asserts(const std::function<void()>& statement,
                                                const std::string& message_regex);

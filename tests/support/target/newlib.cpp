@@ -1,4 +1,4 @@
-// What newlib asks of a system and its rdimon library does not answer.
+// System functions that newlib needs and its rdimon library lacks.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,8 +9,7 @@
 
 extern "C" {
 
-// GCC's start files would bring these three, and a second start-up with them. Constructors are in
-// .init_array.
+// GCC's start files would define these three, but also a second start-up. Constructors are in .init_array.
 void* __dso_handle = nullptr;
 void _init() {}
 void _fini() {}
@@ -19,12 +18,13 @@ void _exit(int exit_code) {
     octoskin::target::end_machine(exit_code);
 }
 
-// abort() ends here. The signal's number is lost on purpose: any end by signal is a failure.
+// abort() ends here. The signal's number is dropped: any end by signal is a failure.
 int _kill(int, int) {
     octoskin::target::end_machine(1);
 }
 
-// No randomness and no folders: who asks gets an error, and GoogleTest asks only for its output files' names.
+// No randomness and no folders: these calls return an error. GoogleTest uses them only for the names of its
+// output files.
 int getentropy(void*, std::size_t) {
     errno = ENOSYS;
     return -1;

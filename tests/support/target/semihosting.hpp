@@ -1,7 +1,7 @@
 #pragma once
 
-// What a program under a debugger or emulator can ask of the machine outside. Source: ARM "Semihosting for
-// AArch32 and AArch64" 2.0. Newlib's rdimon library does files and output; here is what it lacks.
+// Requests of a program to its debugger or emulator. Source: ARM "Semihosting for AArch32 and AArch64" 2.0.
+// Newlib's rdimon library does files and output; these functions are missing there.
 namespace octoskin::target {
 
 // Ends the emulator with this exit code (SYS_EXIT_EXTENDED).

@@ -18,7 +18,7 @@ extern std::uint8_t bss_end[];
 extern char* __heap_limit;
 void initialise_monitor_handles();
 void __libc_init_array();
-int program(int argc, char** argv) asm("main");  // C++ lets nobody call main by its name.
+int program(int argc, char** argv) asm("main");  // C++ forbids a call of main by its name.
 [[noreturn]] void reset();
 [[noreturn]] void fault();
 [[noreturn]] void report_fault(const std::uint32_t* frame);
@@ -54,8 +54,8 @@ void protect(std::uint32_t region, std::uint32_t base, std::uint32_t len, std::u
     register_at(kMpuRasr) = access | (size_field << 1U) | 1U;
 }
 
-// What a PC's operating system catches is caught here too: null pointers, writes to constants, an overflowing
-// stack, division by zero. A later region wins over an earlier one.
+// Faults that a PC's operating system catches are caught here, too: null pointers, writes to constants, an
+// overflowing stack, division by zero. A later region wins over an earlier one.
 void set_traps() {
     protect(0, 0, kProgramLen, kAccessReadOnly);
     protect(1, 0, kGuardLen, kAccessNone);

@@ -1,5 +1,5 @@
-// Modelled sensors on one modelled bus, with a clock that the test moves: by hand, by playing a trace, or by
-// running the driver.
+// Simulated sensors on one simulated bus, with a clock that the test advances: directly, by playing a trace,
+// or by running the driver.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace octoskin::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A wall at `range_m` that is seen well: sigma 5 mm, 16 Mcps, ambient 0.125 Mcps.
+/// A wall at `range_m` with a good signal: sigma 5 mm, 16 Mcps, ambient 0.125 Mcps.
 [[nodiscard]] sim::RangingScene wall_at(double range_m);
 /// Nothing in sight.
 [[nodiscard]] sim::RangingScene empty_scene();
@@ -26,7 +26,7 @@ class SensorBench {
     /// No sensor yet; 400 kHz; the node's clock starts at `node_start`.
     explicit SensorBench(NodeTime node_start = {});
 
-    /// A part on the bus with XSHUT low.
+    /// Adds a part on the bus with XSHUT low.
     sim::SensorModel& add(const sim::RangingScene& scene, const sim::SensorPart& part = {});
     /// The same, out of reset and booted.
     sim::SensorModel& add_booted(const sim::RangingScene& scene, const sim::SensorPart& part = {});
@@ -42,7 +42,7 @@ class SensorBench {
     /// Must succeed.
     Bytes read(std::uint16_t index, std::size_t count, i2c::Address address = 0x29);
     void write(std::uint16_t index, const Bytes& bytes, i2c::Address address = 0x29);
-    /// Plays the transfers as they are; every byte read must be as the trace says. `WAIT` lets time pass.
+    /// Plays the transfers; every byte read must be that of the trace. `WAIT` advances the time.
     void play(std::string_view trace);
     /// Polls until data is ready by RESULT registers 0x30 and 0x31, every 100 us; false after `limit`.
     bool await_ready(Microseconds limit, i2c::Address address = 0x29);

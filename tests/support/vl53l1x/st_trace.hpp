@@ -1,5 +1,5 @@
-// What ST's own driver puts on the bus: ULD 3.5.2, compiled and run against registers of fixed values, its
-// transfers logged. The bytes written are ST's; the values read are those fixed ones.
+// Logged transfers of ST's driver: ULD 3.5.2, compiled and run against registers of fixed values. The bytes
+// written are ST's; the values read are those fixed ones.
 #pragma once
 
 namespace octoskin::vl53l1x::st {

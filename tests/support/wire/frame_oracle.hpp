@@ -1,5 +1,5 @@
-// What a frame looks like, said a second time and as plainly as possible: one bit after the other, straight
-// from docs/protocol.md. Tests compare the codec with this.
+// A second, simple implementation of the frame layout: one bit after the other, directly from
+// docs/protocol.md. Tests compare the codec with it.
 #pragma once
 
 #include <cstddef>
@@ -47,7 +47,7 @@ inline std::size_t checksum_len_of(std::uint32_t can_id) {
     return type == 31 ? 1 : kLengths[type];
 }
 
-/// The frame of `payload` as it is, checksum and all.
+/// The frame of `payload` unchanged, with its checksum.
 inline wire::CanFrame frame_of(std::uint32_t can_id, bool is_fd, const Payload& payload) {
     wire::CanFrame frame;
     frame.can_id = can_id;

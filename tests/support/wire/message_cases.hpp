@@ -1,5 +1,4 @@
-// One message of every layout, and for each of its fields where docs/protocol.md puts it and what its bits
-// mean.
+// One message of every layout, and for each field its position and meaning by docs/protocol.md.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@ struct FieldCase {
     std::string name;
     unsigned start = 0;
     unsigned bits = 0;
-    /// Puts the value that `raw` stands for into the message.
+    /// Sets the field of the message to the value of `raw`.
     std::function<void(wire::Message&, std::uint64_t raw)> set;
     /// False for raw values that a decoder must refuse.
     std::function<bool(std::uint64_t raw)> is_valid = [](std::uint64_t) { return true; };

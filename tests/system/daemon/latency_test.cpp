@@ -1,5 +1,5 @@
-// How soon a reading is on the map: what docs/results.md promises, measured where nothing else is tested
-// beside it.
+// How soon a reading is on the map: what docs/results/README.md promises, measured where nothing else is
+// tested beside it.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 

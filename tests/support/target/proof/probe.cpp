@@ -1,4 +1,4 @@
-// Ends in every way a test program can end. None of these tests is meant to pass but the first two.
+// Ends in every way a test program can end. Only the first two tests are meant to pass.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace {
 
-// The optimiser must not know the values, or it makes of the faults what it likes.
+// The optimiser must not know the values, or it may remove the faults.
 volatile std::uint32_t zero = 0;
 volatile std::uint32_t sink = 0;
 const std::uint32_t kConstant = 7;

@@ -1,4 +1,4 @@
-// When ranges of a sensor are confirmed at once: the rules of docs/method.md "A sensor that stands still",
+// When ranges of a sensor are confirmed at once: the rules of docs/concepts/stationary-sensors.md,
 // with 4 readings of the last 7.
 #include "host/core/mapping/confirmed_ranges.hpp"
 

@@ -1,5 +1,5 @@
 // Maps in which range sensors that see a cone have counted. The oracle keeps every voxel's counts in a
-// std::map and does the arithmetic of docs/method.md in double precision.
+// std::map and does the arithmetic of docs/concepts/map.md in double precision.
 #include <gtest/gtest.h>
 
 #include <cmath>
