@@ -1,5 +1,6 @@
-# Part of `cmake --install`: the documents link to each other, to data that is installed elsewhere, and to parts of the source
-# that are not installed at all. The first stay; the second are reached through a link; of the third the words stay.
+# Part of `cmake --install`: the documents link to each other, to data that is installed elsewhere, and to parts of the
+# source that are not installed. The first links stay, the second work through a symbolic link, and of the third only
+# the words stay.
 set(documents ${CMAKE_INSTALL_PREFIX}/share/doc/octoskin)
 set(link ${documents}/hw)
 message(STATUS "Installing: $ENV{DESTDIR}${link} -> ../../octoskin/hw")
@@ -7,12 +8,12 @@ file(REMOVE "$ENV{DESTDIR}${link}")
 file(CREATE_LINK ../../octoskin/hw "$ENV{DESTDIR}${link}" SYMBOLIC)
 list(APPEND CMAKE_INSTALL_MANIFEST_FILES ${link})
 
-# Takes the links of a document that lead to nothing out of it, and leaves their words.
+# Removes the dead links of a document, and keeps their words.
 function(drop_dead_links document)
     get_filename_component(folder ${document} DIRECTORY)
     file(READ ${document} rest)
     set(text "")
-    # Each round takes the text up to a link off. Not by a list of matches: brackets in one would disturb it.
+    # Each round removes the text up to a link. A list of matches would fail on brackets in a match.
     while(rest MATCHES "\\[([^][]*)\\]\\(([^()# ]+)(#[^() ]*)?\\)")
         set(whole "${CMAKE_MATCH_0}")
         set(words "${CMAKE_MATCH_1}")
@@ -31,7 +32,7 @@ function(drop_dead_links document)
 endfunction()
 
 set(there "$ENV{DESTDIR}${documents}")
-# Not through the link: what is behind it stays as it is.
+# Not through the symbolic link: its target stays unchanged.
 file(GLOB installed ${there}/*.md ${there}/docs/*.md ${there}/docs/*/*.md ${there}/packaging/*.md)
 foreach(document ${installed})
     drop_dead_links(${document})

@@ -1,4 +1,4 @@
-# What writes texts with the paths of the prefix. /usr has its settings in /etc.
+# Functions that write texts with the paths of the prefix. For the prefix /usr, settings are in /etc.
 set(etc ${CMAKE_INSTALL_PREFIX}/etc)
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
     set(etc /etc)
@@ -16,7 +16,7 @@ function(install_text file target)
     set(CMAKE_INSTALL_MANIFEST_FILES "${CMAKE_INSTALL_MANIFEST_FILES}" PARENT_SCOPE)
 endfunction()
 
-# Debian wants them compressed; -n leaves the time out, so that the same text is the same file.
+# Debian requires compressed texts; -n omits the time, so that the same text gives the same file.
 function(install_compressed file target)
     install_text(${file} ${target})
     execute_process(COMMAND ${octoskin_gzip} -9nf "$ENV{DESTDIR}${target}" COMMAND_ERROR_IS_FATAL ANY)

@@ -1,5 +1,5 @@
-# Part of `cmake --install`: links to the system's OpenNI2 and its driver for files, in the folder that what reads and writes
-# files loads it through. Debian wants them relative within /usr.
+# Part of `cmake --install`: links to the system's OpenNI2 and its driver for files, in the folder from which the
+# helpers that read and write .oni files load it. Debian requires relative links within /usr.
 get_filename_component(openni2_directory ${octoskin_openni2} DIRECTORY)
 foreach(file libOpenNI2.so.0 OpenNI2/Drivers/libOniFile.so.0)
     set(link ${octoskin_openni2_folder}/${file})

@@ -4,7 +4,7 @@ include(${octoskin_packaging}/install_functions.cmake)
 foreach(service ${octoskin_services})
     install_text(${service}.service ${CMAKE_INSTALL_PREFIX}/lib/systemd/system/${service}.service)
     install_compressed(man/${service}.1 ${CMAKE_INSTALL_PREFIX}/share/man/man1/${service}.1)
-    # Somebody's settings are not written over; in the package dpkg sees to that.
+    # Existing settings are not overwritten; in the package dpkg handles that.
     if(NOT EXISTS "$ENV{DESTDIR}${etc}/default/${service}")
         install_text(${service}.default ${etc}/default/${service})
     endif()

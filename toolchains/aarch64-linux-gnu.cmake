@@ -1,4 +1,4 @@
-# GCC for a 64-bit ARM Debian, libraries as fetch_aarch64_libraries leaves them, and QEMU to run the result.
+# GCC for a 64-bit ARM Debian, the libraries from fetch_aarch64_libraries, and QEMU to run the result.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
@@ -18,14 +18,14 @@ set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(ENV{PKG_CONFIG_SYSROOT_DIR} ${OCTOSKIN_AARCH64})
 set(ENV{PKG_CONFIG_LIBDIR} ${OCTOSKIN_AARCH64}/usr/lib/aarch64-linux-gnu/pkgconfig:${OCTOSKIN_AARCH64}/usr/share/pkgconfig)
-# What the linker follows from one shared library to the next.
+# Where the linker finds the shared libraries that other shared libraries need.
 string(APPEND CMAKE_EXE_LINKER_FLAGS_INIT " -Wl,-rpath-link,${OCTOSKIN_AARCH64}/usr/lib/aarch64-linux-gnu -Wl,-rpath-link,${OCTOSKIN_AARCH64}/lib/aarch64-linux-gnu")
 string(APPEND CMAKE_SHARED_LINKER_FLAGS_INIT "${CMAKE_EXE_LINKER_FLAGS_INIT}")
 find_program(OCTOSKIN_QEMU_AARCH64 qemu-aarch64)
 if(OCTOSKIN_QEMU_AARCH64)
     set(CMAKE_CROSSCOMPILING_EMULATOR ${OCTOSKIN_QEMU_AARCH64} -L ${OCTOSKIN_AARCH64})
 endif()
-# Unit tests that cannot run there, as GoogleTest's filter has them; they run in every other build. A death test starts its own
-# program anew, for which this machine's kernel would have to start programs of another architecture. And a program that cannot be
-# started seems to start and to end at once: QEMU makes a copy of the process where posix_spawn relies on sharing its memory.
+# Unit tests that cannot run there, as a filter of GoogleTest; they run in every other build. A death test restarts its
+# program, but this machine's kernel does not start programs of another architecture. A program that cannot be started
+# seems to start and end at once: QEMU copies the process where posix_spawn relies on sharing its memory.
 set(OCTOSKIN_NOT_IN_QEMU_USER "*DeathTest.*:HelperProcessTest.that_is_not_there_is_an_error_with_its_name:OpenocdRunTest.one_that_is_not_there_or_cannot_be_started_is_told_apart")

@@ -1,5 +1,6 @@
-# The firmware's compiler and flags, and a machine to run the result on: QEMU's model of ARM's MPS2 board with a Cortex-M4F
-# (AN386). Not the board we flash, but its instruction set; start-up and linker script are in tests/support/target.
+# The firmware's compiler and flags, and a machine to run the result on: QEMU's model of ARM's MPS2 board with a
+# Cortex-M4F (AN386). It is not the flashed board, but has its instruction set; start-up and linker script are in
+# tests/support/target.
 include(${CMAKE_CURRENT_LIST_DIR}/arm-none-eabi-cortex-m4.cmake)
 find_program(OCTOSKIN_QEMU qemu-system-arm)
 if(NOT OCTOSKIN_QEMU)

@@ -1,5 +1,5 @@
-# octoskin_build_id(<target>): defines OCTOSKIN_BUILD_ID, what NODE_INFO tells: the first 32 bits of the commit, or 0 where
-# there is none. A commit makes CMake look again.
+# octoskin_build_id(<target>): defines OCTOSKIN_BUILD_ID, the build that NODE_INFO reports: the first 32 bits of the
+# commit, or 0 without one. A new commit makes CMake configure again.
 function(octoskin_build_id target)
     execute_process(COMMAND git rev-parse --short=8 HEAD WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
         OUTPUT_VARIABLE build_id OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)

@@ -1,8 +1,8 @@
-# One interface target carries warnings, sanitizers and coverage; every target of ours links it privately.
+# One interface target carries warnings, sanitizers and coverage; every target of the project links it privately.
 add_library(octoskin_compile_options INTERFACE)
 target_compile_options(octoskin_compile_options INTERFACE
     -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wdouble-promotion -Wundef -Wswitch-enum -Werror
-    # Equal inputs give equal map bytes, and ray stepping equals OctoMap's, only without fused multiply-add.
+    # Without fused multiply-add, equal inputs give equal map bytes and ray stepping equals OctoMap's.
     -ffp-contract=off)
 
 # Asserts stay on in every build: a programmer's mistake must stop the program where it was made.
@@ -22,15 +22,17 @@ if(OCTOSKIN_SANITIZE)
     target_compile_definitions(octoskin_compile_options INTERFACE OCTOSKIN_SANITIZED)
 endif()
 if(OCTOSKIN_SANITIZE MATCHES "address")
-    # The address sanitizer stops at a null pointer that is followed and at a place beyond an object, too, and a PC reads
-    # what is not aligned: asked again at every access this takes a quarter of the compiler's time. A board faults on it.
+    # Off except for code that runs on a board, which faults on such accesses. The address sanitizer also detects null
+    # pointers and accesses beyond an object, and a PC reads unaligned data. At every access these checks take a quarter
+    # of the compile time.
     set(runs_on_a_board $<IN_LIST:$<TARGET_PROPERTY:OCTOSKIN_ROOM>,common$<SEMICOLON>firmware/drivers$<SEMICOLON>firmware/core$<SEMICOLON>firmware/port>)
     target_compile_options(octoskin_compile_options INTERFACE
         $<$<NOT:${runs_on_a_board}>:-fno-sanitize=null,alignment,object-size>)
 endif()
-# Code that runs once or works on nothing large: programs, tests, commands, texts, JSON. Where much of a build's time goes, and little
-# of a program's. Under sanitizers it is not optimised, which takes half the compiler's time. octoskin_program_options is for
-# programs, octoskin_test_options for tests, octoskin_app_options for the libraries of OCTOSKIN_APP_ROOMS: after the above.
+# Options for code that runs once or processes little data: programs, tests, commands, texts, JSON. It takes much of the
+# build time and little of the run time. Under sanitizers it is not optimised, which halves the compile time.
+# octoskin_program_options is for programs, octoskin_test_options for tests, octoskin_app_options for the libraries of
+# OCTOSKIN_APP_ROOMS; link them after the options above.
 add_library(octoskin_program_options INTERFACE)
 add_library(octoskin_test_options INTERFACE)
 add_library(octoskin_app_options INTERFACE)
@@ -39,8 +41,8 @@ if(OCTOSKIN_SANITIZE)
     target_link_libraries(octoskin_test_options INTERFACE octoskin_program_options)
     target_link_libraries(octoskin_app_options INTERFACE octoskin_program_options)
 elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
-    # When it optimises little, GCC 12 warns in vain of optional values, and of `std::string(...) + "..."` as if the longer
-    # string lay in the short one's own bytes. The address sanitizer sees what does overflow.
+    # At low optimisation GCC 12 has false warnings about optional values and about `std::string(...) + "..."`, as if the
+    # longer string overflowed the short one's internal buffer. The address sanitizer detects real overflows.
     target_compile_options(octoskin_app_options INTERFACE -O1
         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized$<SEMICOLON>-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overflow$<SEMICOLON>-Wno-stringop-overread>)
     target_link_libraries(octoskin_test_options INTERFACE octoskin_app_options)
@@ -50,11 +52,11 @@ if(OCTOSKIN_COVERAGE)
     target_link_options(octoskin_compile_options INTERFACE --coverage)
 endif()
 if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
-    # Simulation and tests, which no board runs outside an emulator, may throw.
+    # Simulation and tests may throw: a board runs them only in an emulator.
     set(may_throw $<IN_LIST:$<TARGET_PROPERTY:OCTOSKIN_ROOM>,hw/sim$<SEMICOLON>tests>)
     target_compile_options(octoskin_compile_options INTERFACE
         $<$<NOT:${may_throw}>:-fno-exceptions> -fno-rtti -fno-threadsafe-statics
         -ffunction-sections -fdata-sections -fstack-usage
-        # Says only that arguments are passed otherwise than before GCC 7.1; everything here is one compiler's work.
+        # Only a note that arguments are passed differently from before GCC 7.1; one compiler builds everything here.
         -Wno-psabi)
 endif()

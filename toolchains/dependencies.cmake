@@ -1,5 +1,5 @@
-# Third-party libraries, all from Debian 12 (packages.txt has the reason for each). Found here, once, so that their
-# targets are visible everywhere; which folder may use which is decided by its own CMakeLists.txt.
+# Third-party libraries, all from Debian 12 (packages.txt has the reason for each). Found here once, so that their targets
+# are visible everywhere. Each folder's CMakeLists.txt decides which of them it uses.
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(octomap 1.9 REQUIRED)
@@ -30,22 +30,22 @@ elseif(OCTOSKIN_LAB)
 endif()
 pkg_check_modules(HIGHWAY REQUIRED IMPORTED_TARGET libhwy)
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
-    # Vectors of a length that is known at run time cannot be members; NEON is used.
+    # SVE vectors have a run-time length and cannot be members; NEON is used instead.
     target_compile_definitions(PkgConfig::HIGHWAY INTERFACE
         "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
 endif()
 if(OCTOSKIN_EMULATED_BOARD)
     pkg_check_modules(UNICORN REQUIRED IMPORTED_TARGET unicorn)
 endif()
-pkg_check_modules(FUSE3 QUIET IMPORTED_TARGET fuse3)      # optional: only I2C devices for tests are made of it
-pkg_check_modules(GPIOD QUIET IMPORTED_TARGET libgpiod)   # optional: only a Linux board's node is made of it
-find_package(fcl QUIET)                                   # optional: only an oracle of a test is made of it
+pkg_check_modules(FUSE3 QUIET IMPORTED_TARGET fuse3)      # optional: for the I2C devices of tests only
+pkg_check_modules(GPIOD QUIET IMPORTED_TARGET libgpiod)   # optional: for the node of a Linux board only
+find_package(fcl QUIET)                                   # optional: for the oracle of a test only
 find_package(Threads REQUIRED)
 pkg_check_modules(OPENNI2 REQUIRED IMPORTED_TARGET libopenni2)
 pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
 
-# OctoMap, KDL and urdfdom name directories and files rather than targets: give them one each. SYSTEM keeps our
-# warnings out of their headers.
+# OctoMap, KDL and urdfdom export directories and files instead of targets: each gets a target here. SYSTEM suppresses the
+# project's warnings in their headers.
 add_library(octoskin_external_octomap INTERFACE)
 target_include_directories(octoskin_external_octomap SYSTEM INTERFACE ${OCTOMAP_INCLUDE_DIRS})
 target_link_libraries(octoskin_external_octomap INTERFACE ${OCTOMAP_LIBRARIES})

@@ -1,1 +1,1 @@
-// A target needs a source; what it precompiles is told in CMake.
+// A target needs a source; CMake lists the precompiled headers.

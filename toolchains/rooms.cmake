@@ -1,4 +1,5 @@
-# The rooms of the house and who may depend on whom. A target that breaks the rule fails to configure.
+# The rooms (top-level parts) of the project, and which may depend on which. A target that breaks a rule fails to
+# configure.
 #
 #   octoskin_library(<name> ROOM <room> [FOLDER <folder>] SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS octoskin::x ...]
 #                    [PRIVATE_DEPENDS octoskin::y ...] [EXTERNAL lib ...] [PRIVATE_EXTERNAL lib ...] [APART]
@@ -7,31 +8,34 @@
 #   octoskin_test(<name> [FOLDER <folder>] LABELS unit SOURCES ... [HOST_SOURCES ...] DEPENDS ... [EXTERNAL ...] [APART ...] [HALF_IN_QEMU <filter>]
 #                 [ALONE | WAITS] [COST <seconds>] [RELEASE_TOO] [THREADED <source>...])
 #
-# In the rooms that OCTOSKIN_UNITY names the sources of a library or a test program are compiled several at once, but for a
-# library that is told to keep them APART, and those of a test program that it names as APART: the name of something that is
-# a file's own is that of something else in another file.
+# In the rooms of OCTOSKIN_UNITY, several sources of a library or a test program are compiled at once. Exceptions are a
+# library with APART, and the sources that a test program lists as APART: a file-local name in them also occurs in another
+# file.
 #
-# SOURCES, HEADERS and the like are below FOLDER, which is below the folder of the CMakeLists.txt: a room has one of these,
-# and so has the room of the tests that mirrors it.
+# SOURCES, HEADERS and the like are below FOLDER, which is below the folder of the CMakeLists.txt: each room has one, and
+# so has the folder of tests for it.
 #
-# DEPENDS names our own targets only; EXTERNAL names third-party ones. Includes are written from the
-# repository's root ("common/wire/codec.hpp"), so every include line says which room it reaches into.
+# DEPENDS lists the project's targets only; EXTERNAL lists third-party ones. Includes are written from the repository's
+# root ("common/wire/codec.hpp"), so every include line contains the room that it uses.
 #
-# In the rooms of OCTOSKIN_APP_ROOMS a library is optimised little, unless it has LONG_LOOPS: what works on voxels is in others.
+# In the rooms of OCTOSKIN_APP_ROOMS a library is optimised little, unless it has LONG_LOOPS: code that processes voxels
+# is in other rooms.
 #
-# A library that is linked into a module, which is loaded when it is needed, is one IN_MODULE.
+# IN_MODULE: a library that is linked into a module loaded at run time.
 #
-# Built for a board (preset target-tests), a test program or a library of tests is left out if it depends on a library that
-# is not built for one, and of the others the HOST_SOURCES, which need an operating system, or minutes there. Each is named
-# when configuring. A program that mostly WAITS takes half a processor: run with twice as many at once as there are
-# processors. What HALF_IN_QEMU selects there, a filter of GoogleTest's, is a test of its own, and the rest another.
+# Built for a board (preset target-tests), a test program or a library of tests is left out if it depends on a library
+# that is not built for one. Of the others the HOST_SOURCES are left out, which need an operating system, or minutes
+# there. Each is named when configuring. A program that mostly WAITS counts as half a processor: twice as many run at once
+# as there are processors. HALF_IN_QEMU, a filter of GoogleTest, splits a program there into two tests: the selected cases
+# and the rest.
 #
-# The test with the highest COST begins first: one that takes half a minute, begun last, has all processors but one wait for it.
+# The test with the highest COST starts first: if a test of half a minute started last, all processors but one would wait
+# for it.
 #
-# What ./check runs in which build: a test of label unit under the address sanitizer alone, which its label `sanitized` says,
-# unless it is one for RELEASE_TOO, for a sanitizer has it do less or measure something else; a test of another label in the release
-# build (target octoskin_release_tests), and what the preset host-asan-ubsan names once more. THREADED are those of its sources
-# that have to do with threads: under the thread sanitizer, where there is nothing else (octoskin_thread_tests), it is made of these.
+# Builds of ./check: a test of label unit runs under the address sanitizer only (label `sanitized`), unless it has
+# RELEASE_TOO, because under a sanitizer it does less or measures something else. A test of another label runs in the
+# release build (target octoskin_release_tests); those that the preset host-asan-ubsan lists run there, too. THREADED are
+# the sources that use threads: under the thread sanitizer a test consists of these only (octoskin_thread_tests).
 
 set(OCTOSKIN_MAY_USE_common common)
 set(OCTOSKIN_MAY_USE_firmware/drivers common firmware/drivers)
@@ -44,7 +48,7 @@ set(OCTOSKIN_MAY_USE_hw/image common hw/image hw/rigfile)
 set(OCTOSKIN_MAY_USE_hw/sim common firmware/drivers firmware/core host/io/folder hw/image hw/rigfile hw/sim)
 set(OCTOSKIN_MAY_USE_host/core common host/core)
 set(OCTOSKIN_MAY_USE_host/io common host/core hw/rigfile host/io host/io/folder)
-# The product: it neither knows nor needs the simulator and the laboratory.
+# The product: it does not depend on the simulator or the laboratory.
 set(OCTOSKIN_MAY_USE_host/apps common firmware/drivers firmware/core hw/image hw/rigfile host/core host/io host/io/folder
     host/apps)
 set(OCTOSKIN_ALL_ROOMS common firmware/drivers firmware/core firmware/port hw/dbc hw/image hw/rigfile hw/sim host/core
@@ -54,7 +58,7 @@ set(OCTOSKIN_MAY_USE_firmware/app ${OCTOSKIN_ALL_ROOMS})
 set(OCTOSKIN_MAY_USE_tests ${OCTOSKIN_ALL_ROOMS})
 
 set(OCTOSKIN_APP_ROOMS "host/(apps|lab)")
-if(OCTOSKIN_SANITIZE)  # what reads and writes files, too
+if(OCTOSKIN_SANITIZE)  # the rooms that read and write files, too
     set(OCTOSKIN_APP_ROOMS "host/(apps|io|io/folder|lab)|hw/(dbc|image|rigfile)|firmware/app")
 endif()
 
@@ -77,7 +81,7 @@ function(octoskin_check_room target room)
     endforeach()
 endfunction()
 
-# An include line that reaches into a forbidden room is refused too, so that a header-only leak is not missed.
+# Refuses an include line of a forbidden room, too, so that a dependency on a header alone is detected.
 function(octoskin_check_includes target room)
     foreach(file IN LISTS ARGN)
         file(STRINGS ${file} lines REGEX "^#include \"(common|firmware|hw|host|tests)/")
@@ -89,14 +93,15 @@ function(octoskin_check_includes target room)
                 endif()
             endforeach()
             if(NOT is_allowed)
-                message(FATAL_ERROR "${target}: ${file} of room '${room}' must not say: ${line}")
+                message(FATAL_ERROR "${target}: ${file} of room '${room}' must not contain: ${line}")
             endif()
         endforeach()
     endforeach()
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
 endfunction()
 
-# The headers that no source proves to compile alone: one of the same name does, for its first include is its header.
+# The headers that no source proves to compile alone. A source of the same name proves it: its first include is its
+# header.
 function(octoskin_headers_to_verify result sources)
     set(unproven "")
     foreach(header IN LISTS ARGN)
@@ -113,13 +118,13 @@ function(octoskin_headers_to_verify result sources)
     set(${result} "${unproven}" PARENT_SCOPE)
 endfunction()
 
-# TRUE and a message if this is a build for a board and one of the dependencies is not built for it.
+# TRUE, with a message, if this is a build for a board and a dependency is not built for it.
 function(octoskin_is_left_out result target)
     set(${result} FALSE PARENT_SCOPE)
     if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
         foreach(dependency IN LISTS ARGN)
             if(NOT TARGET ${dependency})
-                message(STATUS "Not on the target: ${target}, for it needs ${dependency}")
+                message(STATUS "Not on the target: ${target}, which needs ${dependency}")
                 set(${result} TRUE PARENT_SCOPE)
                 return()
             endif()
@@ -135,11 +140,11 @@ macro(octoskin_set_folder)
     endif()
 endmacro()
 
-# What says what there is to say, and works on nothing large.
+# Rooms of applications: commands, messages and output, which process little data.
 function(octoskin_compile_as_app target)
     target_link_libraries(${target} PRIVATE octoskin_app_options)
     if(TARGET octoskin_app_headers)
-        # With the definitions that the headers were read with.
+        # With the definitions of the precompiled headers.
         target_link_libraries(${target} PRIVATE fmt::fmt nlohmann_json::nlohmann_json spdlog::spdlog)
         target_precompile_headers(${target} REUSE_FROM octoskin_app_headers)
     endif()
@@ -168,7 +173,7 @@ function(octoskin_library name)
         target_sources(${target} PRIVATE ${sources})
         if(OCTOSKIN_UNITY AND ARG_ROOM MATCHES "^(${OCTOSKIN_UNITY})$" AND NOT ARG_APART)
             set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-            # A class whose parts are in an unnamed namespace is then no longer in the compiler's main file.
+            # In a unity build, a class with members of an unnamed namespace is not in the compiler's main file.
             target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
         endif()
         if(ARG_IN_MODULE)
@@ -206,24 +211,24 @@ function(octoskin_program name)
     target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
     target_compile_features(${name} PRIVATE cxx_std_20)
     target_link_libraries(${name} PRIVATE octoskin_compile_options octoskin_program_options ${ARG_DEPENDS} ${ARG_EXTERNAL})
-    # No search path of libraries, but for a program that sets its own; and the same one where it is built and where it
-    # is installed: CMake fills up the shorter one with empty folders, and each of them means the working directory.
+    # No search path of libraries, except for a program that sets its own. The path is the same in the build and when
+    # installed: CMake pads the shorter one with empty folders, each of which means the working directory.
     set_target_properties(${name} PROPERTIES OCTOSKIN_ROOM ${ARG_ROOM} RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
         INSTALL_RPATH "" BUILD_WITH_INSTALL_RPATH ON)
 endfunction()
 
-# The programs that others start, and find beside themselves.
+# The helper programs that other programs start from their own folder.
 set(OCTOSKIN_HELPERS octoskin-camera octoskin-film octoskin-oni-read octoskin-oni-write)
 set(OCTOSKIN_LAB_HELPERS octoskin-world-read)
 
-# Has tests that are built in this folder find them, too.
+# Lets tests that are built in this folder find them, too.
 function(octoskin_helpers_beside_tests)
     foreach(helper IN LISTS OCTOSKIN_HELPERS OCTOSKIN_LAB_HELPERS)
         file(CREATE_LINK ${PROJECT_BINARY_DIR}/bin/${helper} ${CMAKE_CURRENT_BINARY_DIR}/${helper} SYMBOLIC)
     endforeach()
 endfunction()
 
-# A hundred tests are linked in each build; the linker of LLVM takes a fifth to a half of the other one's time.
+# Each build links about a hundred tests; LLVM's linker takes a fifth to a half of the time of the default one.
 find_program(OCTOSKIN_TEST_LINKER ld.lld)
 
 function(octoskin_test name)
@@ -238,14 +243,14 @@ function(octoskin_test name)
     endif()
     if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
         foreach(source IN LISTS ARG_HOST_SOURCES)
-            message(STATUS "Not on the target: ${source} of ${name}, for it needs an operating system or minutes")
+            message(STATUS "Not on the target: ${source} of ${name}, which needs an operating system or minutes")
         endforeach()
     else()
         list(APPEND ARG_SOURCES ${ARG_HOST_SOURCES})
     endif()
     if(OCTOSKIN_SANITIZE OR CMAKE_SYSTEM_NAME STREQUAL "Generic")  # or in an emulator
         math(EXPR ARG_TIMEOUT "5 * ${ARG_TIMEOUT}")
-    elseif(CMAKE_CROSSCOMPILING)  # in an emulator that other work slows down
+    elseif(CMAKE_CROSSCOMPILING)  # in an emulator, which other work slows down
         math(EXPR ARG_TIMEOUT "20 * ${ARG_TIMEOUT}")
     endif()
     if(ARG_THREADED AND OCTOSKIN_SANITIZE MATCHES "thread")
@@ -269,7 +274,8 @@ function(octoskin_test name)
         set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
         set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
-    # Long simulations lose more time than their few files gain: of an inline function the test's copy is linked.
+    # Not for long simulations: the linker uses the test's less optimised copy of an inline function, which costs more
+    # time than their few files save.
     if(NOT "sim" IN_LIST ARG_LABELS)
         target_link_libraries(${name} PRIVATE octoskin_test_options)
         if(TARGET octoskin_test_headers)
@@ -284,7 +290,7 @@ function(octoskin_test name)
         set(cost COST ${ARG_COST})
     endif()
     set(halves 2)
-    if(ARG_WAITS AND NOT OCTOSKIN_SANITIZE)  # a sanitizer has much to do
+    if(ARG_WAITS AND NOT OCTOSKIN_SANITIZE)  # a sanitizer needs processor time
         set(halves 1)
     endif()
     if("unit" IN_LIST ARG_LABELS)
@@ -300,7 +306,7 @@ function(octoskin_test name)
         add_dependencies(octoskin_thread_tests ${name})
     endif()
     if("unit" IN_LIST ARG_LABELS OR "property" IN_LIST ARG_LABELS)
-        # One process for the whole file: the unit suite has to stay under ten seconds.
+        # One process for the whole file: the unit suite must stay under ten seconds.
         set(tests ${name})
         if(ARG_HALF_IN_QEMU AND CMAKE_SYSTEM_NAME STREQUAL "Generic")
             list(APPEND tests ${name}.other_half)

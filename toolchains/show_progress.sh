@@ -1,7 +1,7 @@
-# For ./demo, ./check and firmware/flash, which source it: show_progress LOG COMMAND... runs a build with all its output
-# in LOG, and shows how far it is: on a terminal ninja's count and the time in one line, which is gone at the end;
-# elsewhere a line at every tenth. Returns what COMMAND does. The watcher, not the build, is in the background: Ctrl-C
-# must reach the build.
+# For ./demo, ./check and firmware/flash, which source it: show_progress LOG COMMAND... runs a build with all output in
+# LOG, and shows its progress: on a terminal ninja's count and the time in one line that is cleared at the end; elsewhere
+# a line at every tenth. Returns the exit code of COMMAND. The watcher runs in the background, not the build: Ctrl-C must
+# reach the build.
 
 watch_progress() {
     local log=$1 start=$SECONDS count tenth tenths=0

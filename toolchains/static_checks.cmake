@@ -1,4 +1,4 @@
-# format, format-check and tidy as targets, over the files that git tracks.
+# The targets format, format-check and tidy for the files that git tracks.
 find_program(OCTOSKIN_CLANG_FORMAT clang-format)
 find_program(OCTOSKIN_RUN_CLANG_TIDY NAMES run-clang-tidy run-clang-tidy-14)
 execute_process(COMMAND git ls-files *.cpp *.hpp WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
@@ -11,15 +11,16 @@ if(OCTOSKIN_CLANG_FORMAT AND OCTOSKIN_SOURCES)
         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
 endif()
 if(OCTOSKIN_RUN_CLANG_TIDY)
-    # Tests are left out: GoogleTest's macros trip most checks. The path filter is a regular expression. Of the debug build,
-    # the only one that compiles every file by itself: a file that is compiled within another would be left out unseen.
+    # Tests are left out: GoogleTest's macros trip most checks. The path filter is a regular expression. Only in the debug
+    # build, which compiles every file by itself: a file that is compiled within another would be left out without a
+    # message.
     if(CMAKE_BUILD_TYPE STREQUAL "Debug")
         add_custom_target(tidy COMMAND ${OCTOSKIN_RUN_CLANG_TIDY} -quiet -p ${PROJECT_BINARY_DIR}
             "${PROJECT_SOURCE_DIR}/(common|firmware|host|hw)/.*\\.cpp$" WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
     endif()
-    # What runs on a board, but for the analyzer, which takes as long as all the rest: the part that every check can afford.
-    # Where sources are compiled several at once they are looked at several at once, in a fifth of the time: the file that
-    # includes them is CMake's, and they then count as its headers.
+    # For code that runs on a board, in every check; without the analyzer, which takes as long as all other checks
+    # together. Sources that are compiled several at once are checked several at once, in a fifth of the time: CMake
+    # generates the file that includes them, so they count as its headers.
     add_custom_target(tidy-firmware COMMAND ${OCTOSKIN_RUN_CLANG_TIDY} -quiet -p ${PROJECT_BINARY_DIR}
         -checks=-clang-analyzer-*,-bugprone-suspicious-include "-header-filter=/(common|firmware)/.*\\.[ch]pp$"
         "${PROJECT_SOURCE_DIR}/(common|firmware)/.*\\.cpp$" "${PROJECT_BINARY_DIR}/(common|firmware)/.*/Unity/.*\\.cxx$"

@@ -1,6 +1,6 @@
 # Writes the commit that is being built into a C++ file, at build time: cmake -DSOURCE_DIR=.. -DOUT=commit.cpp -P this.
-# The file is touched only when its content changes, so that nothing else is built again. Without git, or in a tree that
-# is no clone of its own (a tarball), the commit is "unknown".
+# The file is written only if its content changes, so that nothing else is rebuilt. Without git, or in a tree that is not
+# a clone (a tarball), the commit is "unknown".
 execute_process(COMMAND git -C ${SOURCE_DIR} rev-parse --show-toplevel
     OUTPUT_VARIABLE top OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 file(REAL_PATH ${SOURCE_DIR} source_dir)

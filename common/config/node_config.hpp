@@ -1,5 +1,6 @@
-// The configuration block: all that one node needs of the rig, as a value. hw/rigfile compiles it, flash or a
-// process start hands it to the node core, and its CRC-32 is the node_hash that the host requires.
+// The configuration block: all that one node needs of the rig, as a value. hw/rigfile compiles it. The node
+// core receives it from flash or from the process that runs it. Its CRC-32 is the node_hash that the host
+// requires.
 #pragma once
 
 #include <array>
@@ -14,16 +15,16 @@ namespace octoskin {
 inline constexpr std::size_t kNodeSensorsMax = 34;
 inline constexpr std::size_t kNodeBusesMax = 4;
 inline constexpr std::size_t kSensorZonesMax = 9;
-inline constexpr std::uint16_t kReflexLimitMaxMm = 4'000;  ///< the sensor sees no farther
+inline constexpr std::uint16_t kReflexLimitMaxMm = 4'000;  ///< the sensor's longest range
 inline constexpr std::uint8_t kNodeXshutLinesMax = 48;     ///< five 74HC595 and eight pins
-inline constexpr std::size_t kRegistersLeftOutMax = 32;    ///< a node that needs more verifies nothing
-/// A sensor's timer alone strays by less than the first.
+inline constexpr std::size_t kRegistersLeftOutMax = 32;    ///< for more, switch the verification off
+/// A sensor's timer alone strays by less than kReadyJitterMinUs.
 inline constexpr std::uint16_t kReadyJitterMinUs = 30;
 inline constexpr std::uint16_t kReadyJitterMaxUs = 2'000;
-/// At most this share of a sensor's period: with more its period would never be known well enough to be
+/// The jitter is at most 1/20 of a sensor's period. With more, the period is never known well enough to be
 /// trimmed.
 inline constexpr std::uint32_t kReadyJittersPerPeriodMin = 20;
-/// With more a ready time says nothing about a sensor's phase.
+/// The largest jitter for a rig that holds phases: with more, a ready time does not give a sensor's phase.
 inline constexpr std::uint16_t kReadyJitterOfPhasesMaxUs = 100;
 
 enum class DistanceMode : std::uint8_t { short_range = 1, medium_range = 2, long_range = 3 };
@@ -50,7 +51,7 @@ struct SensorConfig {
     std::uint16_t crosstalk_raw = 0;             ///< 7.9 kcps per SPAD
     std::uint16_t sigma_limit_quarter_mm = 360;  ///< 14.2: 90 mm
     std::uint16_t signal_limit_raw = 128;        ///< 9.7 Mcps: 1.0
-    std::uint16_t reflex_below_mm = 0;           ///< a hit closer than this is told by REFLEX; 0: never
+    std::uint16_t reflex_below_mm = 0;           ///< a hit closer than this is reported by REFLEX; 0: never
     bool applies_gain_factor = false;            ///< 2011/2048 of ST's full API; off as in ST's ULD
     std::uint8_t zone_count = 1;
     std::array<Roi, kSensorZonesMax> zones{};
@@ -69,26 +70,26 @@ struct NodeConfig {
     StreamGate stream_gate = StreamGate::advanced;
     std::uint8_t aux_every = 0;          ///< classical: RANGE_AUX with every n-th reading; 0 = never
     std::uint16_t zone_guard_us = 1000;  ///< a zone write this close to a range start makes its zone unknown
-    bool holds_phases = false;           ///< sensors that walk out of their phase are started anew
+    bool holds_phases = false;           ///< sensors that drift out of their phase are restarted
     std::uint8_t data_ready_buses = 0;   ///< bit b: bus b has a data-ready line; below 2^kNodeBusesMax
     std::uint8_t sensor_count = 0;
     std::array<SensorConfig, kNodeSensorsMax> sensors{};
-    bool verifies_registers = true;  ///< what is written to a sensor is read back, and must agree
-    /// By how much ranges may differ in length, so that their ends stray from an even rhythm:
-    /// kReadyJitterMinUs, of ranges that do not differ, to kReadyJitterMaxUs.
+    bool verifies_registers = true;  ///< what is written to a sensor is read back and must match
+    /// How far ready times stray from an even grid because ranges differ in length: from kReadyJitterMinUs
+    /// (ranges of equal length) to kReadyJitterMaxUs.
     std::uint16_t ready_jitter_us = kReadyJitterMinUs;
-    bool refuses_commands = false;  ///< each COMMAND is refused; SYNC is answered all the same
+    bool refuses_commands = false;  ///< every COMMAND is refused; SYNC is still answered
     std::uint8_t left_out_count = 0;
-    /// Registers that may read as they like: each `is_verified`, in ascending order.
+    /// Registers that are not compared: each `is_verified`, in ascending order.
     std::array<std::uint8_t, kRegistersLeftOutMax> left_out{};
     friend constexpr bool operator==(const NodeConfig&, const NodeConfig&) = default;
 };
 
-/// Speaks as nobody of a rig: never valid in a configuration.
+/// The id of a node without a configuration; never valid in a configuration.
 inline constexpr std::uint8_t kUnconfiguredNodeId = 62;
-/// For a board whose block `decode_node_config` refuses: not valid, so that the node does not range and says
-/// `bad_config` in its heartbeat. At which bit rate nobody told it: a port sends nothing before it has heard
-/// a valid frame at the rate it tries.
+/// The configuration of a board whose block `decode_node_config` refuses. It is not valid, so the node does
+/// not range and its heartbeat reports `bad_config`. The bit rate is unknown: a port sends nothing until it
+/// has received a valid frame at the rate that it tries.
 [[nodiscard]] constexpr NodeConfig without_configuration() noexcept {
     NodeConfig config;
     config.node_id = kUnconfiguredNodeId;
@@ -96,30 +97,30 @@ inline constexpr std::uint8_t kUnconfiguredNodeId = 62;
 }
 
 /// Whether every field is within what a board can do: counts, indices, addresses (8..119, never 0x29), bit
-/// rates, ROI sizes, offsets of 13 bits, jitter, registers left out; two sensors share neither an XSHUT line
-/// nor an address on one bus. Whether a sensor accepts a budget in a mode is the driver's to say.
+/// rates, ROI sizes, offsets of 13 bits, jitter, registers left out. Two sensors share neither an XSHUT line
+/// nor an address on one bus. The driver checks whether a sensor accepts a timing budget in a distance mode.
 [[nodiscard]] bool is_valid(const NodeConfig& config) noexcept;
 
 /// In the order of the checks.
 enum class NodeConfigError : std::uint8_t {
     truncated,      ///< shorter than a header, or than the length in it
-    wrong_magic,    ///< not a configuration block: an erased page, for one
+    wrong_magic,    ///< not a configuration block, for example an erased page
     wrong_length,   ///< the length in the header is impossible
     wrong_crc,      ///< damaged
-    wrong_version,  ///< whole, but of another layout
+    wrong_version,  ///< intact, but of another layout
     invalid_field,  ///< not `is_valid`, a flag that is neither 0 nor 1, or fields and length that disagree
 };
 inline constexpr std::size_t kNodeConfigBytesMax = 2048;
 
 /// Canonical binary form: "OSKC", version and length (16 bits each), fields little-endian, CRC-32 of all
-/// before. Only sensors, zones and registers within their counts are in it. What came with layout 5 (the
-/// verification, the jitter, the refusal of commands) is there only if any of it is not the default; else the
-/// block is one of layout 4, with the hash that it always had. Returns the bytes used in `out`. More sensors,
-/// zones or registers than the arrays have is a programmer's mistake.
+/// bytes before it. It contains only the sensors, zones and registers within their counts. The fields of
+/// layout 5 (verification, jitter, refusal of commands) are written only if one of them differs from its
+/// default. Otherwise the block has layout 4 and its hash is unchanged. Returns the bytes used in `out`.
+/// Counts above the array sizes are a programmer's error.
 [[nodiscard]] std::span<const std::uint8_t> encode(const NodeConfig& config,
                                                    std::span<std::uint8_t, kNodeConfigBytesMax> out) noexcept;
-/// The block at the start of `memory`, which may be longer than the block: a flash page is. Of the layouts 4
-/// and 5.
+/// The configuration in the block at the start of `memory`, which may be longer than the block (a flash
+/// page). Accepts the layouts 4 and 5.
 [[nodiscard]] Result<NodeConfig, NodeConfigError> decode_node_config(
     std::span<const std::uint8_t> memory) noexcept;
 /// The node_hash: the CRC-32 that ends the canonical form.

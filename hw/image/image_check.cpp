@@ -14,10 +14,10 @@ namespace {
 
 using Faults = std::vector<std::string>;
 
-/// A vector may be 0 where nothing can come: 7 to 10 and 13 of the core, and interrupt 85, a hole.
+/// Vectors that may be 0, since they are reserved: 7 to 10 and 13 of the core, and interrupt 85.
 constexpr std::array<std::uint32_t, 6> kReservedVectors = {7, 8, 9, 10, 13, 16 + 85};
 
-/// The word at an address, if the image has all four bytes of it in one segment.
+/// The word at an address; empty unless one segment contains all four bytes.
 std::optional<std::uint32_t> word_at(const ElfImage& image, std::uint32_t address) {
     for (const ElfSegment& segment : image.segments()) {
         if (address < segment.physical_address) continue;
@@ -102,7 +102,7 @@ void check_vectors(const ElfImage& image, const rig::BoardHardware& board, Fault
 void check_target(const ElfImage& image, Faults& faults) {
     const auto attributes = build_attributes(image.attributes());
     if (!attributes) {
-        faults.push_back("it does not say what it was compiled for: no ARM build attributes");
+        faults.push_back("its target is unknown: it has no ARM build attributes");
         return;
     }
     const auto expect = [&](BuildTag tag, std::uint32_t wanted, const char* what) {
@@ -118,11 +118,11 @@ void check_target(const ElfImage& image, Faults& faults) {
     expect(BuildTag::vfp_arguments, kArgumentsInVfpRegisters, "with arguments in floating-point registers");
 }
 
-/// The layout that the image says it reads.
+/// The layout of configuration block that the image reads, from its identity; empty if it has none.
 std::optional<std::uint16_t> layout_of(const ElfImage& image) {
     for (const ElfSegment& segment : image.segments()) {
         auto from = segment.bytes.begin();
-        while (true) {  // each round passes one occurrence of the magic
+        while (true) {  // each iteration checks one occurrence of the magic
             from = std::search(from, segment.bytes.end(), kImageIdentityMagic.begin(),
                                kImageIdentityMagic.end());
             if (segment.bytes.end() - from < static_cast<std::ptrdiff_t>(kImageIdentityBytes)) break;
@@ -139,11 +139,11 @@ void check_layout(const ElfImage& image, Faults& faults) {
     const auto layout = layout_of(image);
     if (!layout) {
         faults.push_back(
-            "it does not say which layout of configuration block it reads: it is no image of octoskin, or an "
+            "its layout of configuration block is unknown: it is not an image of octoskin, or an "
             "old one");
     } else if (*layout != kNodeConfigLayout) {
         faults.push_back(
-            fmt::format("it reads configuration blocks of layout {}, and this octoskin writes layout {}: "
+            fmt::format("it reads configuration blocks of layout {}, but this octoskin writes layout {}: "
                         "build both from the same commit (firmware/flash does)",
                         *layout, kNodeConfigLayout));
     }

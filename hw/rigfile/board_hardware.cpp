@@ -31,7 +31,7 @@ void read_memory(const Table& top, BoardHardware& board) {
     board.vector_count = memory.integer<std::uint32_t>("vector_count", {2, 512});
     const MemoryRange& page = board.configuration_page;
     if (!board.flash.contains(page.address, page.size_bytes) || page.end() != board.flash.end()) {
-        memory.fail("configuration_page", "expected the end of flash, found another place");
+        memory.fail("configuration_page", "expected a range at the end of flash, found another place");
     }
 }
 
@@ -110,7 +110,7 @@ void read_signals(const Table& top, BoardHardware& board) {
                                           first->second));
         }
         if (!names.insert(signal.signal).second) {
-            table.fail("signal", fmt::format("expected one of a kind, found {} again", signal.signal));
+            table.fail("signal", fmt::format("expected each signal once, found {} again", signal.signal));
         }
         board.signals.push_back(std::move(signal));
     }

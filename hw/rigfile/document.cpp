@@ -26,7 +26,7 @@ constexpr std::size_t kKeysMax = 1000;              ///< of one table
 constexpr std::size_t kDepthMax = 16;
 constexpr std::size_t kExtendsMax = 8;
 
-/// What it looks like; empty: not like XML.
+/// A description of the kind of XML; empty: not XML.
 std::string_view xml_kind(std::string_view text) {
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
@@ -55,8 +55,8 @@ std::string read_text(const FilePlace& place) {
     if (!bytes) throw Fault{{file, 0, "", "cannot be read: " + bytes.error().reason()}};
     std::string text = std::move(*bytes);
     if (const std::string_view what = xml_kind(text); !what.empty()) {
-        throw Fault{{file, 0, "",
-                     fmt::format("expected YAML, found {}: is it given in another file's place?", what)}};
+        throw Fault{
+            {file, 0, "", fmt::format("expected YAML, found {}: is the path that of another file?", what)}};
     }
     if (text.size() > kFileBytesMax) {
         throw Fault{
@@ -65,8 +65,8 @@ std::string read_text(const FilePlace& place) {
     return text;
 }
 
-/// Builds the tree from yaml-cpp's events rather than from its nodes: nodes drop a repeated key, forget the
-/// file, and expand aliases without a bound.
+/// Builds the tree from yaml-cpp's events instead of its nodes: nodes drop a repeated key, do not keep the
+/// file of a value, and expand aliases without a bound.
 class TreeBuilder final : public YAML::EventHandler {
   public:
     TreeBuilder(std::shared_ptr<const FilePlace> file, Quotes quotes)
@@ -159,7 +159,7 @@ class TreeBuilder final : public YAML::EventHandler {
         keys_.pop_back();
         (open_.empty() ? root_ : open_.back().items.emplace_back()) = std::move(value);
     }
-    /// An entry stands where its key does: a table or list below it begins a line later.
+    /// An entry has its key's line: a table or list below it begins one line later.
     void take_key(Value& value) {
         if (has_key_) value.line = pending_key_line_;
         value.key = std::exchange(pending_key_, {});
@@ -172,8 +172,8 @@ class TreeBuilder final : public YAML::EventHandler {
 
     std::shared_ptr<const FilePlace> file_;
     Quotes quotes_;
-    std::vector<Value> open_;  ///< tables and lists begun and not ended, outermost first
-    std::vector<std::unordered_map<std::string, int>> keys_;  ///< of each of them, with its line
+    std::vector<Value> open_;                                 ///< open tables and lists, outermost first
+    std::vector<std::unordered_map<std::string, int>> keys_;  ///< keys of each open table, with their lines
     std::string pending_key_;
     int pending_key_line_ = 0;
     bool has_key_ = false;
@@ -187,7 +187,7 @@ bool is_orientation(const Value& item) {
     return std::find(kOrientationKeys.begin(), kOrientationKeys.end(), item.key) != kOrientationKeys.end();
 }
 
-void mark_replacing(Value& value) {  // no deeper than kDepthMax: so much a file may be nested
+void mark_replacing(Value& value) {  // recursion is at most kDepthMax deep, the limit for files
     value.replaces_inherited = true;
     for (Value& item : value.items) mark_replacing(item);
 }
@@ -211,7 +211,7 @@ void merge_item(Value& base, const Value& item) {
     }
 }
 
-/// The file that `extends:` names, or none; the key itself is taken out.
+/// The file that `extends:` names, or none. Removes the key.
 FilePlace take_extends(Value& document) {
     const Value* extends = document.find("extends");
     if (!extends) return {};
@@ -220,7 +220,7 @@ FilePlace take_extends(Value& document) {
     return path;
 }
 
-void emit(YAML::Emitter& out, const Value& value) {  // no deeper than kDepthMax
+void emit(YAML::Emitter& out, const Value& value) {  // recursion is at most kDepthMax deep
     switch (value.kind) {
         case Value::Kind::null:
             out << YAML::Null;
@@ -281,7 +281,8 @@ Value load_document(const FilePlace& place, Quotes quotes) {
 }
 
 FilePlace existing_file(const Value& value, const std::string& key_path) {
-    // A recording of somebody else chooses no file outside of it, also where one's own rig names its rig.
+    // A recording from an untrusted source cannot name a file outside its folder, even if a trusted rig
+    // extends its rig.
     FilePlace place = confined_to_recording(value.file->beside(value.text));
     const auto opened = place.open();
     const bool is_scalar = value.kind == Value::Kind::scalar;
@@ -303,7 +304,7 @@ FilePlace existing_file(const Value& value, const std::string& key_path) {
 
 Value merge(Value base, const Value& overlay) {
     for (const Value& item : overlay.items) merge_item(base, item);
-    // What is missing or wrong as a whole is reported where the overlay was written.
+    // Faults of the merged document as a whole are reported at the overlay's file.
     base.file = overlay.file;
     base.line = overlay.line;
     base.replaces_inherited = overlay.replaces_inherited;
@@ -317,8 +318,9 @@ Value load_with_extends(const FilePlace& file, std::vector<FilePlace>* extended)
         if (layers.size() == kExtendsMax) {
             throw Fault{
                 {file.shown(), 0, "extends",
-                 fmt::format("expected at most {} files one upon the other, found more: is it a circle?",
-                             kExtendsMax)}};
+                 fmt::format(
+                     "expected at most {} files that extend each other, found more: is there a circle?",
+                     kExtendsMax)}};
         }
         layers.push_back(load_document(next, Quotes::withheld));
     }

@@ -15,8 +15,8 @@ RigError one_error_of(std::vector<ElementFault> faults) {
     std::ranges::stable_sort(faults, {}, [](const ElementFault& fault) { return fault.error.line; });
     RigError error = std::move(faults[0].error);
     if (faults.size() == 1) return error;
-    error.what += fmt::format(". {} more cannot be taken: ", faults.size() - 1);
-    // A file may have thousands, with names of kilobytes.
+    error.what += fmt::format(". {} more refused: ", faults.size() - 1);
+    // A file may have thousands of them, with names of kilobytes.
     constexpr std::size_t kNamed = 20;
     constexpr std::size_t kKeyMax = 100;
     const std::size_t end = std::min(faults.size(), 1 + kNamed);

@@ -47,7 +47,7 @@ std::optional<std::string> nearest_word(std::string_view word, std::span<const s
     return near == known.end() ? std::nullopt : std::optional(*near);
 }
 
-std::string hint_for_key(std::string_view key, std::initializer_list<std::string_view> known_keys,
+std::string hint_for_key(std::string_view key, std::span<const std::string_view> known_keys,
                          const std::string& table_path) {
     const std::string prefix = table_path.empty() ? "" : table_path + ".";
     for (const auto known : known_keys) {

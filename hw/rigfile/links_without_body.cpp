@@ -32,11 +32,11 @@ struct GroupLink {
     [[nodiscard]] bool is_seen() const { return has_mesh || !visuals.empty(); }
 };
 
-/// Links between which there are fixed joints alone. Its frame is that of its first link.
+/// Links that are connected by fixed joints only. The group's frame is that of its first link.
 struct Group {
-    const urdf::Joint* joint = nullptr;  ///< that moves it; none: the base's, which nothing moves
+    const urdf::Joint* joint = nullptr;  ///< the joint that moves the group; null: the base's group
     std::vector<GroupLink> links;        ///< parents first
-    std::vector<Axis> carried;           ///< that other groups turn about
+    std::vector<Axis> carried;           ///< axes of the joints of other groups
     std::vector<Capsule> body;           ///< of all its links
 };
 
@@ -69,7 +69,7 @@ GroupLink group_link(const urdf::Link& link, const Eigen::Isometry3d& T_group_li
     return made;
 }
 
-/// At or below `base`. urdfdom has made sure that it is a tree: each link comes once.
+/// The groups at or below `base`. urdfdom guarantees a tree: each link occurs once.
 std::vector<Group> groups_of(const urdf::Link& base, const BodyOfLink& bodies) {
     std::vector<Group> groups(1);
     groups[0].links.push_back(group_link(base, Eigen::Isometry3d::Identity(), bodies));
@@ -117,8 +117,8 @@ bool is_way_covered(const Stretch& stretch, double share, std::span<const Capsul
     return length_m < kAlike_m || covered_m(stretch, body) >= share * length_m;
 }
 
-/// A link's metal goes from the axis that turns it to those that it carries, wherever on them the joints'
-/// origins are.
+/// A link extends from the axis that turns it to the axes that it carries. The joints' origins may be
+/// anywhere on these axes.
 bool are_axes_joined(const Group& group) {
     if (!is_turning(*group.joint)) return true;
     const Axis own = axis_of(*group.joint, Eigen::Isometry3d::Identity());
@@ -127,7 +127,7 @@ bool are_axes_joined(const Group& group) {
     });
 }
 
-/// How large a mesh is, is not known: that something far smaller stands for it is seen all the same.
+/// The size of a mesh is unknown. This check still detects a body that is far smaller than the link.
 bool is_large_enough_for_a_mesh(const Group& group) {
     const bool has_long = std::ranges::any_of(group.body, [](const Capsule& capsule) {
         return (capsule.p_link_b - capsule.p_link_a).norm() + 2.0 * capsule.radius_m >= kCapsuleLengthMin_m;
@@ -153,7 +153,7 @@ bool is_body_enough(const Group& group) {
            (!has_mesh_alone || is_large_enough_for_a_mesh(group));
 }
 
-/// The link whose capsule is the longest: the one that a person looks for.
+/// The link with the longest capsule, for the message.
 std::string lender_of(const Group& group) {
     const auto longest = std::ranges::max_element(group.body, {}, [](const Capsule& capsule) {
         return (capsule.p_link_b - capsule.p_link_a).norm() + 2.0 * capsule.radius_m;
@@ -182,7 +182,7 @@ Result<BodylessLinks, RigError> bodyless_links(const Rig& rig, std::span<const C
     const auto base = document->model().getLink(rig.base_link);
     if (!base)
         return unexpected(
-            document->error("link", rig.base_link, "expected this base link, found none of its name"));
+            document->error("link", rig.base_link, "expected this base link, found no link of this name"));
     BodyOfLink bodies;
     for (const Capsule& capsule : body) bodies.emplace(capsule.link, &capsule);
     BodylessLinks found;

@@ -19,23 +19,22 @@ namespace {
 constexpr std::size_t kNodesMax = 61;
 constexpr std::uint32_t kI2cHzMax = 400'000;
 
-/// Remembers who took a thing first.
+/// Records the first user of each resource.
 class Taken {
   public:
-    /// Fails at `table.key` if `thing` is taken already.
+    /// Fails at `table.key` if `thing` is already in use.
     void take(const Table& table, std::string_view key, const std::string& thing) {
         const auto [first, is_new] = first_.try_emplace(thing, table.path_of(key));
         if (!is_new)
             table.fail(
-                key, fmt::format("expected one of a kind, found {} again: {} has it", thing, first->second));
+                key, fmt::format("expected a unique value, found {} again: {} has it", thing, first->second));
     }
 
   private:
     std::map<std::string, std::string> first_;
 };
 
-/// `verification: {enabled: true, leave_out: [0x47]}`: registers that may read otherwise than they are
-/// written.
+/// `verification: {enabled: true, leave_out: [0x47]}`: registers that may read back a different value.
 void read_verification(const Table& node, NodeConfig& config) {
     const Value* value = node.find("verification");
     if (value == nullptr) return;
@@ -69,7 +68,7 @@ void read_ready_jitter(const Table& table, NodeConfig& config) {
     if (!config.holds_phases || config.ready_jitter_us <= kReadyJitterOfPhasesMaxUs) return;
     table.fail("ready_jitter_us",
                fmt::format("expected at most {} with holds_phases, found {}: where ranges differ more in "
-                           "length nobody sees what a sensor's phase is; use one of the two",
+                           "length a sensor's phase cannot be measured; use one of the two",
                            kReadyJitterOfPhasesMaxUs, config.ready_jitter_us));
 }
 
@@ -106,7 +105,8 @@ void refuse_shared_wiring(const Table& sensor, const SensorConfig& config, Taken
     taken.take(sensor, "xshut_line", fmt::format("xshut_line {}", config.xshut_line));
 }
 
-/// A zone is written only where no range can begin meanwhile: elsewhere the sensor would stay in its first.
+/// A zone is written only while no range can begin. Without such a pause the sensor would stay in its first
+/// zone.
 void refuse_zones_without_a_pause(const Table& sensor, const NodeConfig& node, const SensorConfig& config) {
     if (config.zone_count < 2) return;
     const std::int64_t pause_ms = (zone_pause(node, config).count() + 999) / 1'000;
@@ -183,8 +183,8 @@ void refuse_jitter_of_whole_periods(const Table& table, const Node& node) {
     const std::uint32_t most_us = 1000U * shortest->inter_measurement_ms / kReadyJittersPerPeriodMin;
     if (node.config.ready_jitter_us == kReadyJitterMinUs || node.config.ready_jitter_us <= most_us) return;
     table.fail("ready_jitter_us",
-               fmt::format("expected at most {} with an inter_measurement_ms of {}, found {}: nobody could "
-                           "tell what the sensor's period is; use a longer one",
+               fmt::format("expected at most {} with an inter_measurement_ms of {}, found {}: the "
+                           "sensor's period could not be measured; use a longer one",
                            most_us, shortest->inter_measurement_ms, node.config.ready_jitter_us));
 }
 
@@ -226,7 +226,7 @@ Board read_board(const Value& value, const std::string& path) {
                       {"name", "board_type", "i2c_bus_count", "xshut_line_count", "sensors_max",
                        "sensors_per_bus_max", "supports_can_fd", "has_data_ready_lines"});
     Board board;
-    board.name = table.folder_name("name");  // files of the shipped ones are found by it
+    board.name = table.folder_name("name");  // the shipped boards' files are found by this name
     board.board_type = table.integer<std::uint8_t>("board_type", {0, 255});
     board.i2c_bus_count = table.integer<std::uint8_t>("i2c_bus_count", {1, kNodeBusesMax});
     board.xshut_line_count = table.integer<std::uint8_t>("xshut_line_count", {1, kNodeXshutLinesMax});

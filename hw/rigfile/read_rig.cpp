@@ -1,4 +1,4 @@
-// From a rig file to a Rig: the top level, and what does not belong to a node.
+// Reads a rig file into a Rig: the top level, and all keys that do not belong to a node.
 #include <fmt/format.h>
 #include <urdf_model/model.h>
 
@@ -27,7 +27,7 @@ UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_in
     const Value& named = robot.require("urdf");
     rig.urdf = urdf_instead.empty() ? existing_file(named, robot.path_of("urdf"))
                                     : confined_to_recording(urdf_instead);
-    // A typed path stays right if this process changes its folder.
+    // Absolute, so that it stays valid if this process changes its working directory.
     if (rig.urdf.folder() == nullptr)
         rig.urdf = FilePlace(std::filesystem::absolute(rig.urdf.name()).lexically_normal());
     auto document = UrdfDocument::read(rig.urdf);
@@ -106,7 +106,7 @@ void read_attached_capsules(const Table& robot, const UrdfDocument& document, Ri
     }
 }
 
-/// Whether what the link has is too little for a body.
+/// Whether the link's capsules are too few or too small for a body.
 bool is_without_body(const std::string& link, const Rig& rig) {
     const auto body = padded_body(rig);
     if (!body) throw Fault{body.error()};
@@ -115,7 +115,7 @@ bool is_without_body(const std::string& link, const Rig& rig) {
     return std::ranges::find(found->without_body, link) != found->without_body.end();
 }
 
-/// What gives the link a body; empty if nothing does.
+/// The source of the link's body; empty if there is none.
 std::string body_of(const std::string& link, const UrdfDocument& robot, const Rig& rig) {
     const auto found = robot.model().links_.find(link);
     if (found != robot.model().links_.end() && !found->second->collision_array.empty())
@@ -171,12 +171,13 @@ Bus read_bus(const Value& value) {
     return bus;
 }
 
-/// The robot has more moving joints than a rig can name, or some that it does not.
+/// The error for a robot with more moving joints than a rig can name, or with joints that the rig does not
+/// name.
 [[noreturn]] void fail_unnamed(const Value& list, const std::string& path, const UrdfDocument& robot,
                                const std::vector<std::string>& moving,
                                const std::vector<std::string>& unnamed) {
     const std::string file = robot.file().filename().string();
-    const std::string fix = "make each that stays as it is type=\"fixed\" in " + file;
+    const std::string fix = "make each joint that does not move type=\"fixed\" in " + file;
     if (moving.size() > wire::kJointsPerSample) {
         fail(list, path,
              fmt::format("expected at most {} moving joints, found {} in {}; not named are {}: {}",
@@ -226,8 +227,8 @@ JointSource read_joints(const Value& value, const UrdfDocument& robot, const Rig
     joints.node_id = table.integer<std::uint8_t>("node_id", {1, kUnconfiguredNodeId - 1});
     for (const Node& node : rig.nodes) {
         if (node.config.node_id != joints.node_id) continue;
-        table.fail("node_id", fmt::format("expected an id of its own, found {}: node '{}' has it",
-                                          joints.node_id, node.name));
+        table.fail("node_id", fmt::format("expected a unique id, found {}: node '{}' has it", joints.node_id,
+                                          node.name));
     }
     joints.joints = read_joint_names(table, robot, rig.base_link);
     joints.rate_hz = table.number("rate_hz", {1.0, 1000.0});
@@ -235,8 +236,8 @@ JointSource read_joints(const Value& value, const UrdfDocument& robot, const Rig
 }
 
 RangeLimits read_range_limits(const Value& value) {
-    // SENSOR_HEALTH tells a bound of up to 16.32 ms, and that one also for anything above it: no limit
-    // reaches it.
+    // SENSOR_HEALTH reports a bound of up to 16.32 ms, which also stands for all greater values. The limit
+    // must be below it.
     constexpr Range<double> kUncertaintyMs{0.1, 16.0};
     const Table table(value, "range_limits", {"min_m", "max_m", "sigma_max_m", "time_uncertainty_max_ms"});
     RangeLimits limits;
@@ -262,7 +263,7 @@ void refuse_overloaded_bus(const Table& top, const Rig& rig) {
 Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instead) {
     Rig rig;
     const Value document = load_with_extends(file, &rig.extended_files);
-    // `extends` is gone by now; it is named for the hint beside an unknown key.
+    // `extends` is already removed; it is listed for the hint about an unknown key.
     const Table top(document, "",
                     {"name", "robot", "T_map_base", "bus", "range_limits", "joints", "camera",
                      "sensor_defaults", "nodes", "extends"});

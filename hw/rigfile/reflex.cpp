@@ -14,7 +14,7 @@ struct Reach {
     const char* mode;
     double max_m;
 };
-/// In the dark, of a white target: datasheet DS12385 rev 7, table 4.
+/// Greatest range in the dark, white target: datasheet DS12385 rev 7, table 4.
 Reach reach_of(DistanceMode mode) {
     if (mode == DistanceMode::short_range) return {"short", 1.36};
     if (mode == DistanceMode::medium_range) return {"medium", 2.9};
@@ -57,8 +57,8 @@ std::vector<std::string> reflex_warnings(const Rig& rig) {
                                                 node.sensors[i].name, limit_m);
             if (limit_m > reach.max_m) {
                 warnings.push_back(
-                    fmt::format("{} is more than mode {} can measure, about {} m: what is "
-                                "farther sends no REFLEX",
+                    fmt::format("{} is more than mode {} can measure, about {} m: an object "
+                                "farther away sends no REFLEX",
                                 who, reach.mode, reach.max_m));
             }
             if (limit_m < rig.range_limits.min_m) {

@@ -18,26 +18,26 @@ namespace {
 constexpr double kSameM =
     1e-4;  ///< a sphere this close to a cylinder's end, and this close in radius, is its end
 constexpr double kRadiusMaxM = 5.0;
-constexpr std::size_t kCollisionsMax = 1000;  ///< of one link: each sphere is looked for at each cylinder
+constexpr std::size_t kCollisionsMax = 1000;  ///< of one link: each sphere is compared with each cylinder
 
-/// Ends at the centres of the flat faces.
+/// A cylinder from face centre to face centre.
 struct Cylinder {
     Capsule capsule;
-    bool is_round_a = false;  ///< a sphere of the link is its end
+    bool is_round_a = false;  ///< a sphere of the link forms this end
     bool is_round_b = false;
 };
 
-/// A capsule about an element, and one within it.
+/// The capsule that encloses an element, and one that lies within it.
 struct Fitted {
     Capsule around;
     Capsule within;
 };
 
-/// One link's collision elements, cylinders apart from spheres.
+/// The collision elements of one link, by shape.
 struct Bodies {
     std::vector<Cylinder> cylinders;
     std::vector<Capsule> spheres;
-    std::vector<Fitted> boxes;  ///< ends of nothing else
+    std::vector<Fitted> boxes;  ///< not combined with spheres
 };
 
 const char* shape_name(const urdf::Geometry& geometry) {
@@ -59,8 +59,7 @@ std::string name_of(const urdf::Collision& collision) {
                                   : fmt::format("<collision name=\"{}\">", collision.name);
 }
 
-/// Capsules about the box's longest side, through its middle: the one that its corners lie on, and the
-/// largest within it.
+/// Two capsules along the box's longest axis: the one through its corners, and the largest within it.
 Fitted fit_box(const urdf::Vector3& size_m, const std::string& link, const Eigen::Isometry3d& T_link_body) {
     const Eigen::Vector3d half = 0.5 * Eigen::Vector3d(size_m.x, size_m.y, size_m.z);
     Eigen::Index longest = 0;
@@ -73,13 +72,13 @@ Fitted fit_box(const urdf::Vector3& size_m, const std::string& link, const Eigen
     return {along(half[longest], across.norm()), along(half[longest] - half.minCoeff(), half.minCoeff())};
 }
 
-/// The largest capsule about its axis that reaches no flat end from within.
+/// The largest capsule along the axis that stays within the flat ends.
 Capsule within_cylinder(const Cylinder& cylinder) {
     Capsule within = cylinder.capsule;
     const Eigen::Vector3d axis = within.p_link_b - within.p_link_a;
     const double length_m = axis.norm();
     const double flat_ends = (cylinder.is_round_a ? 0.0 : 1.0) + (cylinder.is_round_b ? 0.0 : 1.0);
-    // Of a flat disc: a ball that touches both ends, round or flat.
+    // For a flat disc: a ball that touches both ends, round or flat.
     within.radius_m =
         std::min(within.radius_m, 0.5 * (length_m + (2.0 - flat_ends) * cylinder.capsule.radius_m));
     if (length_m == 0.0) return within;
@@ -92,7 +91,7 @@ Capsule within_cylinder(const Cylinder& cylinder) {
     return within;
 }
 
-/// Adds one collision element to `bodies`; returns what is wrong with it, or nothing.
+/// Adds one collision element to `bodies`. Returns a message if it is refused.
 std::string add_body(const urdf::Collision& collision, const std::string& link, BoxRule boxes,
                      Bodies& bodies) {
     if (!collision.geometry) return fmt::format("{} has no geometry", name_of(collision));
@@ -128,7 +127,8 @@ std::string add_body(const urdf::Collision& collision, const std::string& link, 
                                   name_of(collision), kRadiusMaxM);
 }
 
-/// A cylinder takes its end from the sphere at that end: the sphere's centre is written without a rotation.
+/// The end of a cylinder is set to the centre of the sphere at that end, which has no rounding from a
+/// rotation.
 bool absorb(const Capsule& sphere, Cylinder& cylinder) {
     if (std::abs(sphere.radius_m - cylinder.capsule.radius_m) > kSameM) return false;
     const auto is_end = [&](Eigen::Vector3d& end, bool& is_round) {
@@ -145,7 +145,7 @@ std::vector<Fitted> to_capsules(Bodies bodies) {
     std::vector<Fitted> lone_spheres;
     for (const Capsule& sphere : bodies.spheres) {
         bool is_end = false;
-        // A sphere may end two cylinders that meet in it.
+        // A sphere may form the end of two cylinders that meet there.
         for (Cylinder& cylinder : bodies.cylinders) is_end = absorb(sphere, cylinder) || is_end;
         if (!is_end) lone_spheres.push_back({sphere, sphere});
     }
@@ -181,7 +181,7 @@ Result<std::vector<Fitted>, RigError> read_fitted(const FilePlace& urdf,
         if (link->collision_array.size() > kCollisionsMax) {
             return unexpected(document->error(
                 "link", name,
-                fmt::format("expected at most {} <collision> elements, found {}: take simpler shapes",
+                fmt::format("expected at most {} <collision> elements, found {}: use fewer, larger shapes",
                             kCollisionsMax, link->collision_array.size())));
         }
         for (const auto& collision : link->collision_array) {
@@ -209,7 +209,7 @@ Result<std::vector<Capsule>, RigError> all_of(const Result<std::vector<Fitted>, 
     return capsules;
 }
 
-/// With what the rig attaches, as it is.
+/// With the capsules that the rig attaches, without padding.
 Result<std::vector<Capsule>, RigError> with_attached(Result<std::vector<Capsule>, RigError> body,
                                                      const Rig& rig) {
     if (!body) return body;

@@ -40,7 +40,7 @@ std::string xml_syntax_hint(const std::string& error_name, const std::string& el
     if (error_name == "XML_ERROR_PARSING_ATTRIBUTE")
         return fmt::format("an attribute of {} is not name=\"value\", with both quotes", which);
     if (error_name == "XML_ERROR_PARSING_DECLARATION")
-        return "an <?xml ...?> that is not the first in the file, or not closed with ?>: remove what is "
+        return "an <?xml ...?> that is not the first in the file, or not closed with ?>: remove the text "
                "before it";
     if (error_name == "XML_ERROR_PARSING_COMMENT") return "a comment is not closed with -->";
     return error_name;

@@ -27,7 +27,7 @@ std::optional<T> parse_all(std::string_view text, auto... format) {
 template <class T>
 std::optional<T> parse_integer(std::string_view text) {
     if (text.starts_with("0x") || text.starts_with("0X")) {
-        // No sign may hide behind the prefix: from_chars would read "0x-1".
+        // No sign after the prefix: from_chars would read "0x-1".
         if (text.size() > 2 && text[2] == '-') return std::nullopt;
         return parse_all<T>(text.substr(2), 16);
     }
@@ -39,7 +39,7 @@ bool is_name_character(char c) {
            c == '-' || c == '.' || c == '/';
 }
 
-/// What was found where a plain value was expected, with what is wrong about it.
+/// Describes the value that was found instead of a plain value, and its error.
 template <class Parse>
 std::string describe_misread(const Value& value, Parse parse) {
     if (value.kind != Value::Kind::scalar) return describe(value);
@@ -57,7 +57,7 @@ bool is_number_of_digits(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Where else a key belongs; empty if nowhere.
+/// Hint with the tables that know the key; empty if there is none.
 std::string hint_below(std::string_view key, std::span<const std::string> keys_below) {
     const std::string ending = fmt::format(".{}", key);
     std::string found;
@@ -68,8 +68,8 @@ std::string hint_below(std::string_view key, std::span<const std::string> keys_b
     return found.empty() ? found : found + "?";
 }
 
-/// The length of the character that `text`, which is not empty, begins with; 0 if it begins with none that
-/// can be written to a YAML file again: not UTF-8, a surrogate, or a code point that is set aside.
+/// The length of the first character of `text`, which is not empty; 0 if it cannot be written to a YAML file:
+/// not UTF-8, a surrogate, or a noncharacter.
 std::size_t character_length(std::string_view text) {
     const auto first = static_cast<unsigned char>(text[0]);
     const std::size_t length = first < 0x80U   ? 1U
@@ -99,7 +99,7 @@ bool is_writable_text(std::string_view text) {
     return true;
 }
 
-/// ASCII's, and in UTF-8 those from U+0080 to U+009F.
+/// Control characters: ASCII's, and in UTF-8 those from U+0080 to U+009F.
 bool has_control_character(std::string_view text) {
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);
@@ -141,7 +141,7 @@ std::string describe(const Value& value) {
 
 double read_number(const Value& value, const std::string& path, Range<double> range) {
     const auto number = is_plain_scalar(value) ? parse_all<double>(value.text) : std::nullopt;
-    // Written so that NaN, which from_chars reads, is out of every range.
+    // NaN, which from_chars reads, must be outside every range.
     if (!number || !(*number >= range.min && *number <= range.max)) {
         fail(value, path,
              fmt::format(
@@ -210,7 +210,7 @@ const std::vector<Value>& read_list(const Value& value, const std::string& path)
     return value.items;
 }
 
-Table::Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys,
+Table::Table(const Value& value, std::string path, std::span<const std::string_view> known_keys,
              std::span<const std::string> keys_below)
     : value_(value), path_(std::move(path)) {
     if (value.kind != Value::Kind::table) {
@@ -221,7 +221,7 @@ Table::Table(const Value& value, std::string path, std::initializer_list<std::st
     };
     for (const Value& item : value.items) {
         if (is_known(item)) continue;
-        // Another file altogether, which a foreign `extends` may have named: what is in it is not shown.
+        // An untrusted `extends` may name any file of this machine: its content is not shown.
         const bool is_of_another_kind =
             std::none_of(value.items.begin(), value.items.end(),
                          [&](const Value& other) { return other.file == item.file && is_known(other); });
@@ -230,7 +230,7 @@ Table::Table(const Value& value, std::string path, std::initializer_list<std::st
                          "expected a known key, found none in this file: known here are " +
                              joined(known_keys) + "; is it a file of another kind?"}};
         }
-        // Between braces a comma ends a value: {a: 0,02} has the keys a and 02.
+        // In a flow table a comma ends a value: {a: 0,02} has the keys a and 02.
         const bool is_fraction = item.kind == Value::Kind::null && is_number_of_digits(item.key);
         std::string hint = is_fraction ? fmt::format(
                                              "if it is part of a number such as 0,{0}, write a decimal "

@@ -1,6 +1,6 @@
 // Strict access to a table of the rig file: every key known, every value of its type and within its range.
-// Each function throws Fault with file, line and key; the message says what was expected, what was found,
-// what to do.
+// Each function throws Fault with file, line and key; the message has the expected value, the found value and
+// the remedy.
 #pragma once
 
 #include <concepts>
@@ -24,20 +24,20 @@ struct Range {
     T max;
 };
 
-/// `value` is at fault: throws with its file and line.
+/// Throws Fault with the file and line of `value`.
 [[noreturn]] void fail(const Value& value, const std::string& path, std::string what);
 
 [[nodiscard]] double read_number(const Value& value, const std::string& path, Range<double> range);
 [[nodiscard]] std::int64_t read_integer(const Value& value, const std::string& path,
                                         Range<std::int64_t> range);
-/// Every whole number that 64 bits hold without a sign.
+/// Any unsigned 64-bit number.
 [[nodiscard]] std::uint64_t read_unsigned(const Value& value, const std::string& path);
 /// Any scalar in UTF-8, as it is written.
 [[nodiscard]] std::string read_text(const Value& value, const std::string& path);
 /// A name: 1..64 letters, digits and _ - . /
 [[nodiscard]] std::string read_name(const Value& value, const std::string& path);
-/// A name that a robot description or a world gives to something: 1..256 bytes of UTF-8 without control
-/// characters. Blanks and colons may be in it.
+/// A name of an element in a robot description or a world: 1..256 bytes of UTF-8 without control characters.
+/// Blanks and colons are allowed.
 [[nodiscard]] std::string read_element_name(const Value& value, const std::string& path);
 [[nodiscard]] const std::vector<Value>& read_list(const Value& value, const std::string& path);
 
@@ -46,12 +46,15 @@ class Table {
     /// `path`: where the table is, "nodes[0].sensors[3]"; empty at the top. Refuses a value that is no table
     /// and any key that is not in `known_keys`, with a hint if the unit in its name is the only difference,
     /// or if it belongs further down: `keys_below`, whole paths as "map.resolution_m".
-    Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys,
+    Table(const Value& value, std::string path, std::span<const std::string_view> known_keys,
           std::span<const std::string> keys_below = {});
+    Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys,
+          std::span<const std::string> keys_below = {})
+        : Table(value, std::move(path), std::span(known_keys.begin(), known_keys.size()), keys_below) {}
 
     [[nodiscard]] const Value& value() const noexcept { return value_; }
     [[nodiscard]] std::string path_of(std::string_view key) const;
-    /// Absent and null are the same.
+    /// nullptr if the key is absent or null.
     [[nodiscard]] const Value* find(std::string_view key) const noexcept;
     [[nodiscard]] const Value& require(std::string_view key) const;
 
@@ -67,14 +70,13 @@ class Table {
     [[nodiscard]] std::uint64_t unsigned_integer(std::string_view key, std::uint64_t fallback) const;
     [[nodiscard]] std::string name(std::string_view key) const;
     [[nodiscard]] std::string element_name(std::string_view key) const;
-    /// A name() that stays in its place as part of a path: without `/` and `..`, and not `.`.
+    /// A name() that is a safe path component: without `/` and `..`, and not `.`.
     [[nodiscard]] std::string folder_name(std::string_view key) const;
     /// read_text(); empty if the key is absent.
     [[nodiscard]] std::string text(std::string_view key) const;
     /// One of a few words.
     template <class Enum>
-    [[nodiscard]] Enum choice(std::string_view key,
-                              std::initializer_list<std::pair<std::string_view, Enum>> words,
+    [[nodiscard]] Enum choice(std::string_view key, std::span<const std::pair<std::string_view, Enum>> words,
                               std::optional<Enum> fallback = std::nullopt) const {
         if (!find(key) && fallback) return *fallback;
         std::string expected;
@@ -83,6 +85,12 @@ class Table {
             expected += (expected.empty() ? "" : " or ") + std::string(word);
         }
         fail_choice(key, expected);
+    }
+    template <class Enum>
+    [[nodiscard]] Enum choice(std::string_view key,
+                              std::initializer_list<std::pair<std::string_view, Enum>> words,
+                              std::optional<Enum> fallback = std::nullopt) const {
+        return choice(key, std::span(words.begin(), words.size()), fallback);
     }
     [[noreturn]] void fail(std::string_view key, std::string what) const;
 
@@ -93,7 +101,7 @@ class Table {
     std::string path_;
 };
 
-/// What a message says it found: the text of a scalar, or "a list of 3" and the like.
+/// Description of a found value for a message: the text of a scalar, or "a list of 3" and the like.
 [[nodiscard]] std::string describe(const Value& value);
 
 }  // namespace octoskin::rig

@@ -15,14 +15,14 @@ using linux_port::LineName;
 
 constexpr const char* kAbout =
     "A sensor node on a Linux board: VL53L1X on its I2C buses to a CAN interface.\n"
-    "docs/linux-node.md has the wiring, the permissions, and first light.";
+    "Wiring, permissions and the first start: docs/hardware/linux-node.md.";
 constexpr const char* kFooter =
-    "SIGTERM, SIGINT: all sensors into reset, all lines let go, end. A CAN interface that is down or gone is "
-    "waited for.\n"
-    "Exit codes: 0 ended by a signal; 64 command line; 66 no such file; 69 a device is missing or taken;\n"
+    "SIGTERM, SIGINT: puts all sensors into reset, releases all lines, ends.\n"
+    "Waits for a CAN interface that is down or gone.\n"
+    "Exit codes: 0 ended by a signal; 64 command line; 66 no such file; 69 a device is missing or in use;\n"
     "70 a defect of octoskin-node; 77 no permission; 78 the configuration block.";
 
-/// Why it is not understood; empty if it is.
+/// Appends the lines of `texts` to `lines`. Returns the error; empty if there is none.
 std::string add_lines(const std::vector<std::string>& texts, std::vector<LineName>& lines) {
     for (const std::string& text : texts) {
         const auto parsed = linux_port::parse_lines(text);
@@ -59,7 +59,7 @@ void declare(CLI::App& app, Arguments& arguments, Texts& texts) {
                    "The node's configuration block: `octoskin rig RIG --node NAME --block FILE` writes it")
         ->required()
         ->type_name("FILE");
-    app.add_option("--can", arguments.can, "CAN interface, which somebody else brings up")
+    app.add_option("--can", arguments.can, "CAN interface; the program does not bring it up")
         ->type_name("INTERFACE")
         ->capture_default_str();
     app.add_option("--i2c", arguments.i2c,
@@ -69,23 +69,24 @@ void declare(CLI::App& app, Arguments& arguments, Texts& texts) {
         ->expected(1, static_cast<int>(kNodeBusesMax));
     app.add_option(
            "--xshut", texts.xshut,
-           "XSHUT outputs, in the order of the rig's `xshut_line`: gpiochip0:17,27,22; several chips one "
-           "after the other")
+           "XSHUT outputs, in the order of the rig's `xshut_line`: gpiochip0:17,27,22; several chips: "
+           "one value after the other")
         ->required()
         ->type_name("CHIP:LINES");
     app.add_option("--data-ready", texts.data_ready,
                    "Data-ready input of each bus, in the order of the rig's `bus`: gpiochip0:23,24")
         ->type_name("CHIP:LINES");
-    app.add_option("--i2c-lateness-ms", texts.i2c_lateness_ms,
-                   "So much longer than on the wire a transfer may take before it is given up: how late this "
-                   "machine may be")
+    app.add_option(
+           "--i2c-lateness-ms", texts.i2c_lateness_ms,
+           "A transfer is given up after three times its time on the wire plus this time, for a thread that "
+           "the machine runs late")
         ->check(CLI::Range(1, 1'000))
         ->capture_default_str();
     app.add_option("--uid", texts.uid, "24 hexadecimal digits, instead of a unique id from /etc/machine-id")
         ->type_name("DIGITS");
 }
 
-/// Why not; empty if all is understood.
+/// Parses `texts` into `arguments`. Returns the error; empty if there is none.
 std::string take_texts(const Texts& texts, Arguments& arguments) {
     if (const auto why = add_lines(texts.xshut, arguments.xshut); !why.empty()) return "--xshut " + why;
     if (const auto why = add_lines(texts.data_ready, arguments.data_ready); !why.empty())

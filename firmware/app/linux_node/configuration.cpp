@@ -28,20 +28,20 @@ const char* words(NodeConfigError error) {
         case NodeConfigError::wrong_version:
             return "of another version of octoskin";
         case NodeConfigError::invalid_field:
-            return "whole, but what it says is impossible";
+            return "complete, but a field has an impossible value";
     }
     return "?";
 }
 
 Result<NodeConfig, StartFailure> read_block(const std::filesystem::path& file) {
-    // To open a pipe is to wait for its other end, and a device may have no end.
+    // Opening a pipe would block until its other end is opened, and reading a device may never end.
     std::error_code error;
     const auto kind = std::filesystem::status(file, error);
     if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind))
-        return refuse(ExitCode::no_input, file.string() + ": is no ordinary file");
+        return refuse(ExitCode::no_input, file.string() + ": is not an ordinary file");
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return refuse(ExitCode::no_input, file.string() + ": cannot be read");
-    // One byte more than a block can have: a file that is longer is not one.
+    // One byte over the largest block: a longer file is refused.
     std::vector<std::uint8_t> bytes(kNodeConfigBytesMax + 1);
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<std::size_t>(stream.gcount()));
@@ -50,27 +50,27 @@ Result<NodeConfig, StartFailure> read_block(const std::filesystem::path& file) {
     if (config->board_type != kBoardType) {
         return refuse(ExitCode::bad_config,
                       file.string() + ": for boards of type " + std::to_string(config->board_type) +
-                          ", and a Linux board is of type " + std::to_string(kBoardType) +
-                          " (the rig must say board: ../boards/linux_board.yaml)");
+                          ", but a Linux board is of type " + std::to_string(kBoardType) +
+                          " (set board: ../boards/linux_board.yaml in the rig)");
     }
     return *config;
 }
 
-/// What the block needs and the command line lacks; empty: nothing.
+/// Device that the block needs and the command line does not name; empty if there is none.
 std::string lacking(const NodeConfig& config, const Arguments& arguments) {
     for (std::size_t i = 0; i < config.sensor_count; ++i) {
         const SensorConfig& sensor = config.sensors.at(i);
         const std::string which = "sensor " + std::to_string(i) + " is on ";
         if (sensor.bus >= arguments.i2c.size())
-            return which + "bus " + std::to_string(sensor.bus) + ", and --i2c names " +
+            return which + "bus " + std::to_string(sensor.bus) + ", but --i2c names " +
                    std::to_string(arguments.i2c.size());
         if (sensor.xshut_line >= arguments.xshut.size())
-            return which + "xshut_line " + std::to_string(sensor.xshut_line) + ", and --xshut names " +
+            return which + "xshut_line " + std::to_string(sensor.xshut_line) + ", but --xshut names " +
                    std::to_string(arguments.xshut.size());
     }
     const auto data_ready = static_cast<std::size_t>(std::bit_width(config.data_ready_buses));
     if (data_ready > arguments.data_ready.size())
-        return "bus " + std::to_string(data_ready - 1) + " has a data-ready line, and --data-ready names " +
+        return "bus " + std::to_string(data_ready - 1) + " has a data-ready line, but --data-ready names " +
                std::to_string(arguments.data_ready.size());
     return {};
 }

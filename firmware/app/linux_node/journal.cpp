@@ -30,7 +30,7 @@ const char* words(node::CanState state) {
         case node::CanState::active:
             return "the controller takes part";
         case node::CanState::passive:
-            return "error-passive: nobody acknowledges, or the lines are disturbed";
+            return "error-passive: no node acknowledges, or the lines are disturbed";
         case node::CanState::bus_off:
             return "bus-off; waiting for the kernel to restart it (`restart-ms`)";
     }
@@ -40,7 +40,7 @@ const char* words(node::CanState state) {
 }  // namespace
 
 void say(const std::string& what) {
-    // One write a line, so that lines of several nodes do not mix.
+    // One write per line, so that the lines of several nodes do not mix.
     static linux_port::LineWriter writer(STDERR_FILENO);
     writer.add("octoskin-node: " + what + "\n");
 }
@@ -68,7 +68,7 @@ void Journal::update(const node::Node& node, const linux_port::CanInterface& can
     }
     if (const std::uint8_t ignored = node.ignored_data_ready(); ignored != ignored_data_ready_) {
         ignored_data_ready_ = ignored;
-        say("data-ready lines that are noise, ignored: buses " + hex(ignored) + " (one bit each)");
+        say("noisy data-ready lines, ignored: buses " + hex(ignored) + " (one bit each)");
     }
     say_troubles(node);
     if (can.unconfirmed() != unconfirmed_) {
@@ -77,7 +77,7 @@ void Journal::update(const node::Node& node, const linux_port::CanInterface& can
     }
     for (const auto& gone = data_ready.gone(); data_ready_gone_ < gone.size(); ++data_ready_gone_)
         say("data-ready line " + gone[data_ready_gone_] +
-            ": gone with its GPIO chip; the sensors of its bus are asked over I2C");
+            ": gone with its GPIO chip; the sensors of its bus are polled over I2C");
     if (xshut.failures() != xshut_failures_) {
         xshut_failures_ = xshut.failures();
         say("XSHUT: the kernel refused to set a line, " + std::to_string(xshut_failures_) +
@@ -97,7 +97,7 @@ void Journal::say_troubles(const node::Node& node) {
             (trouble && trouble->difference ? ", " + text_of(*trouble->difference) : ""));
     }
     for (const auto& told : node.alike().subspan(alike_told_))
-        say(text_of(told.difference) + ", alike on several sensors: nothing is withheld for it");
+        say(text_of(told.difference) + ", alike on several sensors: their readings are still sent");
     alike_told_ = node.alike().size();
 }
 

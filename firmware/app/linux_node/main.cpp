@@ -24,12 +24,13 @@ using linux_port::ExitCode;
 using linux_port::refuse;
 using linux_port::StartFailure;
 
-/// Readable once this process is to end. Before any thread: they inherit that the signals are blocked.
+/// A descriptor that is readable once a signal asks this process to end. Call before any thread starts:
+/// threads inherit the blocked signals.
 int take_signals() {
     sigset_t signals{};
     ::sigemptyset(&signals);
     for (const int signal : {SIGTERM, SIGINT, SIGQUIT}) ::sigaddset(&signals, signal);
-    // First the descriptor: signals that nobody could take would be blocked for ever.
+    // The descriptor first: if it cannot be made, the signals must not stay blocked.
     const int descriptor = ::signalfd(-1, &signals, SFD_CLOEXEC);
     if (descriptor >= 0) ::sigprocmask(SIG_BLOCK, &signals, nullptr);
     return descriptor;
@@ -43,20 +44,21 @@ Result<node::Identity, StartFailure> identity_of(const Arguments& arguments) {
     return node::Identity{.uid = *uid, .build_id = OCTOSKIN_BUILD_ID, .board_type = kBoardType};
 }
 
-/// A thread that the kernel holds cannot be ended; what is left of it is the kernel's.
+/// A thread blocked in the kernel cannot be ended. Ends the process with the thread still in the kernel.
 [[noreturn]] void leave_behind(const Board::Left& left, ExitCode code) {
     for (const std::string& bus : left.stuck)
-        say(bus + ": a transfer does not come back from the kernel, and is left behind");
-    std::exit(static_cast<int>(code));  // what was said is still written; the board is not destroyed
+        say(bus + ": a transfer does not return from the kernel; ending without it");
+    std::exit(static_cast<int>(code));  // writes the queued lines, but does not destroy the board
 }
 
 void say_stopped(const Board::Left& left) {
     if (left.xshut_refused == 0) return say("stopped: all sensors are in reset");
     say("stopped: the kernel refused to set " + std::to_string(left.xshut_refused) +
-        " XSHUT lines low, and their sensors may go on ranging");
+        " XSHUT lines low; their sensors may still range");
 }
 
-/// Node after node: an ordered reset ends one and begins another, as on a microcontroller.
+/// Runs one node after the other: a reset ordered by the host ends one and starts the next, as on a
+/// microcontroller.
 Result<Done, StartFailure> run(const Arguments& arguments) {
     const auto config = load_configuration(arguments);
     if (!config) return unexpected(config.error());
@@ -81,8 +83,8 @@ Result<Done, StartFailure> run(const Arguments& arguments) {
             if (!left.stuck.empty()) leave_behind(left, ExitCode::ok);
             return Done{};
         }
-        say("reset, as the host has ordered");
-        // Its service begins it anew.
+        say("reset, ordered by the host");
+        // The service manager restarts the program.
         if (!left.stuck.empty()) leave_behind(left, ExitCode::unavailable);
         identity->reset_cause = wire::ResetCause::software;
     }

@@ -10,7 +10,7 @@ namespace octoskin::stm32g4 {
 namespace {
 
 constexpr Microseconds kLossesPause{10'000'000};
-// From one look at the sensors to the next.
+// Time between two checks of the sensors.
 constexpr Microseconds kSensorsPause{50'000};
 
 std::string_view words(ClockSource source) {
@@ -38,7 +38,7 @@ std::string_view words(NodeConfigError error) {
         case NodeConfigError::wrong_version:
             return "of another version";
         case NodeConfigError::invalid_field:
-            return "whole but impossible";
+            return "complete, but a field is impossible";
     }
     return "?";
 }
@@ -120,7 +120,7 @@ void Report::update(const node::Node& node, const CanController& can, NodeTime n
     const std::uint8_t ignored = node.ignored_data_ready();
     if (ignored_data_ready_ != ignored) {
         TextLine line;
-        serial_.say(line.text("data-ready lines that are noise, ignored: buses ").hex(ignored, 1).view());
+        serial_.say(line.text("noisy data-ready lines, ignored: buses ").hex(ignored, 1).view());
     }
     state_ = state;
     ignored_data_ready_ = ignored;
@@ -130,7 +130,7 @@ void Report::update(const node::Node& node, const CanController& can, NodeTime n
     show(state, can.is_started());
 }
 
-/// One that is in trouble, or has another or none any more: one a look, for the serial port is slow.
+/// Reports at most one changed sensor per check, since the serial port is slow.
 void Report::tell_sensors(const node::Node& node, NodeTime now) {
     sensors_pause_.update(now);
     if (!sensors_pause_.is_over()) return;
@@ -155,16 +155,17 @@ void Report::tell_sensors(const node::Node& node, NodeTime now) {
     if (!has_told) tell_alike(node);
 }
 
-/// One a look, likewise.
+/// At most one per check.
 void Report::tell_alike(const node::Node& node) {
     const auto alike = node.alike();
     if (alike_told_ >= alike.size()) return;
     TextLine line;
     add(line, alike[alike_told_++].difference);
-    serial_.say(line.text(", alike on several sensors: nothing is withheld for it").view());
+    serial_.say(line.text(", alike on several sensors: their readings are still sent").view());
 }
 
-/// With nobody to acknowledge there are some every second: a line now and then is enough.
+/// Without another node to acknowledge, frames are lost every second: reported at most once per
+/// `kLossesPause`.
 void Report::tell_losses(const CanCounts& counts, NodeTime now) {
     const bool is_news = counts.given_up != told_.given_up || counts.receive_lost != told_.receive_lost;
     losses_pause_.update(now);
@@ -176,7 +177,7 @@ void Report::tell_losses(const CanCounts& counts, NodeTime now) {
     losses_pause_.begin(now, kLossesPause);
 }
 
-/// One thing at a time: what must be mended first.
+/// Shows one problem at a time: the one to repair first.
 void Report::show(wire::NodeState state, bool is_can_started) {
     const bool is_ranging = state == wire::NodeState::ranging || state == wire::NodeState::starting;
     if (!has_crystal_) {

@@ -1,5 +1,5 @@
-// What each operation of the driver does: tables of stages, in the order of ST's driver (ULD 3.5.2; UM2510).
-// Private to the driver: read device.hpp first, and the tables at the end of this file next.
+// The operations of the driver as tables of stages, in the order of ST's driver (ULD 3.5.2; UM2510). Private
+// to the driver: read device.hpp first, then the tables at the end of this file.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,8 @@ struct Device::Method {
         return d.answer16() == kModelAndModuleType ? Verdict::proceed : d.fail(Error::wrong_id);
     }
 
-    // It may answer at its address or at 0x29 until it is released: nothing public says when it forgets.
+    // Until reset is released, the sensor may answer at its own address or at 0x29: no public document says
+    // when the address is lost.
     static void enter_soft_reset(Device& d) {
         d.read_back_.forget();
         d.written_roi_.reset();
@@ -57,7 +58,7 @@ struct Device::Method {
                            return Verdict::proceed;
                        }});
     }
-    /// While it boots it does not answer.
+    /// A booting sensor does not acknowledge.
     static void ask_boot_state_patiently(Device& d) {
         d.line_up({.index = reg::FIRMWARE_SYSTEM_STATUS,
                    .count = 1,
@@ -65,7 +66,7 @@ struct Device::Method {
                    .on_refused = [](Device&, NodeTime) { return Verdict::repeat_stage; }});
     }
 
-    /// Who is not there is not waited for.
+    /// Ends at once if no device answers.
     static void ask_boot_state_of_somebody(Device& d) {
         d.line_up({.index = reg::FIRMWARE_SYSTEM_STATUS,
                    .count = 1,
@@ -73,7 +74,7 @@ struct Device::Method {
                    .on_refused = [](Device&, NodeTime) { return Verdict::end; }});
     }
 
-    // The part listens at its new address from the next START on.
+    // The sensor uses its new address from the next START on.
     static void write_address(Device& d) {
         d.write8(reg::I2C_SLAVE_DEVICE_ADDRESS, d.new_address_, [](Device& device, NodeTime) {
             device.live_address_ = device.new_address_;
@@ -85,8 +86,8 @@ struct Device::Method {
     }
 
     static void forget_registers(Device& d) { d.read_back_.forget(); }
-    /// The offset of a part is the factory's unless the rig has one. Known before the first write that could
-    /// go astray to it: what is read later may be what such a write left there.
+    /// The factory offset is used unless the rig has one. It is read before the first write that a bus error
+    /// could misdirect to its registers: a later read could return such a wrong value.
     static void learn_factory_offset(Device& d) {
         if (!d.options_.reads_factory_offset) return;
         d.read(kFactoryRun.first, kFactoryRun.count, [](Device& device, NodeTime) {
@@ -115,7 +116,7 @@ struct Device::Method {
                    }});
     }
 
-    // VHV: the bias voltage of the SPADs. Bound to two search loops from the value found last, or the full
+    // VHV: the bias voltage of the SPADs. Either two search loops from the last value found, or the full
     // search.
     static void bound_vhv_search(Device& d) {
         d.write8(reg::VHV_CONFIG_TIMEOUT_MACROP_LOOP_BOUND, 0x09);
@@ -159,7 +160,7 @@ struct Device::Method {
             return Verdict::proceed;
         });
     }
-    /// The budget in force cannot be taken along into a mode without it.
+    /// Fails if the new mode does not support the current budget.
     static void check_budget(Device& d) {
         if (!range_timeouts(d.settings_.distance_mode, d.budget_ms_)) d.fail(Error::unsupported_config);
     }
@@ -179,12 +180,13 @@ struct Device::Method {
             return Verdict::proceed;
         });
     }
-    /// ST's mode setter applies the old budget to the new mode; pointless where the new budget follows.
+    /// ST's mode setter applies the old budget to the new mode. Only needed to match ST's transfers, since
+    /// the new budget follows.
     static void write_same_budget_as_st(Device& d) {
         if (d.options_.rereads_settings) write_same_budget(d);
     }
 
-    /// Read twice: a wrong value would make a wrong period, written and read back without a fault.
+    /// Read twice: a wrong value would set a wrong period that the read-back cannot detect.
     static void ask_oscillator(Device& d) {
         d.read(reg::RESULT_OSC_CALIBRATE_VAL, 2, [](Device& device, NodeTime) {
             device.oscillator_ = device.answer16();
@@ -208,7 +210,7 @@ struct Device::Method {
     static void write_roi(Device& d) {
         const bool is_size_new = !d.written_roi_ || d.written_roi_->width != d.roi_.width ||
                                  d.written_roi_->height != d.roi_.height;
-        d.written_roi_.reset();  // unknown until it is written
+        d.written_roi_.reset();  // unknown until the write is acknowledged
         const std::uint8_t size = size_register(d.roi_);
         if (!is_size_new) {
             d.write8(reg::ROI_CONFIG_USER_ROI_CENTRE_SPAD, d.roi_.centre_spad, note_roi);
@@ -225,7 +227,7 @@ struct Device::Method {
         return Verdict::proceed;
     }
 
-    /// ST's SetROI, which moves the centre too.
+    /// ST's SetROI, which also moves the centre.
     static void write_roi_size(Device& d) {
         d.written_roi_.reset();
         d.read(reg::ROI_CONFIG_MODE_ROI_CENTRE_SPAD, 1, [](Device& device, NodeTime) {
@@ -275,8 +277,8 @@ struct Device::Method {
     static constexpr std::uint8_t kWithoutTargetToo = 0x40;
     static void write_every_sample(Device& d) { d.write8(reg::SYSTEM_INTERRUPT_CONFIG_GPIO, kOnEverySample); }
 
-    // ST's driver keeps the old window's bits and merges two windows into a third; here the new one replaces
-    // it.
+    // ST's driver keeps the bits of the old window, so two windows merge into a third. Here the new window
+    // replaces the old one.
     static void write_range_threshold(Device& d) {
         if (d.options_.rereads_settings) d.read(reg::SYSTEM_INTERRUPT_CONFIG_GPIO, 1, nullptr);
         const unsigned without_target = d.threshold_.fires_without_target ? kWithoutTargetToo : 0U;
@@ -326,8 +328,8 @@ struct Device::Method {
             return Verdict::proceed;
         });
     }
-    /// Had the first answer been altered, data that became ready since would seem to have been ready then:
-    /// where that may be long ago, only the second one counts.
+    /// If the first answer was altered on the bus, the data may have become ready after it. So if the second
+    /// poll is much later, its time is used.
     static Verdict confirm_ready(Device& d, NodeTime now) {
         constexpr Microseconds kAtOnce{300};
         d.is_confirming_ready_ = false;
@@ -342,7 +344,7 @@ struct Device::Method {
         return Verdict::end;
     }
 
-    // I2C has no checksum: a result counts if two reads of it agree.
+    // I2C has no checksum: a result is accepted if two reads of it agree.
     static void read_result(Device& d) {
         d.read(reg::RESULT_RANGE_STATUS, ResultBlock{}.size(), [](Device& device, NodeTime) {
             device.block_ = device.answered_block();
@@ -352,7 +354,7 @@ struct Device::Method {
     }
     static Verdict compare_result(Device& d, NodeTime) {
         if (d.answered_block() == d.block_) return judge_result(d);
-        // A new result between the two reads is no error, but it comes once a period.
+        // A new result between the two reads is no error, but it can happen once per period only.
         const bool has_moved = d.answer_[kStreamCountOffset] != d.block_[kStreamCountOffset];
         if (!has_moved || d.has_read_again_) return d.fail(Error::reads_disagree);
         d.has_read_again_ = true;
@@ -368,7 +370,7 @@ struct Device::Method {
             return Verdict::proceed;
         });
     }
-    /// The last step of a read: only now does the reading count.
+    /// The last step of a read: the measurement is published only after the clear succeeded.
     static void clear_and_publish(Device& d) {
         d.write8(reg::SYSTEM_INTERRUPT_CLEAR, 0x01, [](Device& device, NodeTime) {
             device.reading_ = {.measurement = unpack(device.block_, device.settings_.applies_gain_factor),
@@ -405,7 +407,7 @@ struct Device::Method {
         }
         return Verdict::proceed;
     }
-    /// A bit may have flipped on its way to us.
+    /// The second read distinguishes a bit flipped on the bus from a wrong register.
     static Verdict judge_run_again(Device& d, NodeTime) {
         const RegisterRun& run = d.run_;
         if (d.read_back_.agrees(run, d.answer_)) {
@@ -420,10 +422,10 @@ struct Device::Method {
     // --- the stages that wait
 
     static constexpr Stage kAwaitBoot{ask_boot_state, 1'000, 500'000, Error::boot_timeout};
-    // For ranges of tens of milliseconds: polling every 5 ms leaves the bus free.
+    // Ranges take tens of milliseconds: polling every 5 ms leaves the bus free.
     static constexpr Stage kAwaitReady{await_ready, 5'000, 1'000'000, Error::not_ready};
-    // Stopped within the pause after the first range, 5 ms at the defaults, a sensor does not range while it
-    // is configured.
+    // Polled every 1 ms, so that the stop falls into the pause after the first range (5 ms at the defaults).
+    // The sensor then does not range while it is configured.
     static constexpr Stage kAwaitFirst{await_ready, 1'000, 1'000'000, Error::not_ready};
     static constexpr Stage kReadResult{read_result, 0, 50'000, Error::reads_disagree};
 
@@ -435,12 +437,12 @@ struct Device::Method {
                                         {leave_soft_reset},
                                         {ask_boot_state_patiently, 1'000, 500'000, Error::boot_timeout},
                                         {ask_identity}};
-    // Real parts were seen to answer before bit 0 was there, and to have it a few milliseconds later (ST
-    // community: facts of 0xE5). What is written to such a part may be overwritten once it has booted.
+    // Real sensors may answer before bit 0 is set; it is set a few milliseconds later (ST community, posts on
+    // register 0xE5). The boot may overwrite what was written to such a sensor.
     static constexpr Stage kAwaitBootAtDefault[]{
         {ask_boot_state_of_somebody, 500, 5'000, Error::boot_timeout}};
     static constexpr Stage kAwaitBootAtDefaultPatiently[]{
-        {ask_boot_state_of_somebody, 500, 100'000, Error::boot_timeout}};  // as long as Linux's driver
+        {ask_boot_state_of_somebody, 500, 100'000, Error::boot_timeout}};  // the limit of Linux's driver
     static constexpr Stage kAwaitBootOnly[]{kAwaitBoot};
     static constexpr Stage kLoadConfiguration[]{
         {forget_registers}, {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};
@@ -452,8 +454,8 @@ struct Device::Method {
                                          {clear_before_start},
                                          {start}};
     static constexpr Stage kFinishInitialise[]{kAwaitFirst, {clear}, {stop}, {bound_vhv_search}};
-    // Stopped once more: a stop that was lost would leave it ranging by the defaults, and whether a start
-    // then begins anything anew is not documented.
+    // Stops again. If the first stop was lost, the sensor would still range with the defaults, and it is not
+    // documented whether a start then restarts it.
     static constexpr Stage kConfigure[]{
         // clang-format off
         {stop},

@@ -23,7 +23,7 @@ namespace octoskin::linux_port {
 namespace {
 
 constexpr Microseconds kLookEvery{100'000};
-/// A bus without errors confirms within milliseconds; later, the confirmation is lost.
+/// A bus without errors confirms within milliseconds. After this time the confirmation counts as lost.
 constexpr Microseconds kConfirmedWithin{1'000'000};
 
 struct Datagram {
@@ -32,7 +32,7 @@ struct Datagram {
     std::optional<WallTime> stamp;
 };
 
-/// errno says why `count` is negative.
+/// If `count` is negative, errno holds the reason.
 Datagram receive_datagram(int socket, std::span<std::byte> bytes) {
     alignas(cmsghdr) std::array<char, 128> control{};
     iovec part{bytes.data(), bytes.size()};
@@ -55,8 +55,8 @@ Datagram receive_datagram(int socket, std::span<std::byte> bytes) {
     return datagram;
 }
 
-/// What the core looks at: SYNC, commands for this node or for all, and whoever uses its id; and, for that
-/// same reason, the node's own frames on their way back.
+/// The frames that the core handles: SYNC, commands for this node or for all, and frames of any sender with
+/// the node's own id. The filter for the own id also passes the confirmations of the node's own frames.
 std::array<can_filter, 3> filters_for(wire::NodeId node_id) {
     constexpr std::uint32_t kNodeBits = 63;
     constexpr std::uint32_t kStandardData = CAN_EFF_FLAG | CAN_RTR_FLAG;
@@ -81,7 +81,7 @@ ifreq request_for(const std::string& name) {
 std::string can_remedy(int error_number) {
     switch (error_number) {
         case ENODEV:
-            return " (`ip link show type can` names the interfaces there are)";
+            return " (`ip link show type can` lists the interfaces)";
         case ENETDOWN:
             return " (bring it up: `sudo ip link set NAME up type can bitrate ... restart-ms 100`)";
         case EAFNOSUPPORT:
@@ -111,7 +111,7 @@ void CanInterface::open() {
         return close(error_number, "cannot use this interface");
 }
 
-/// 0, or the kernel's error number.
+/// Returns 0 or the kernel's error number.
 int CanInterface::set_up(int index) {
     const auto filters = filters_for(node_id_);
     const can_err_mask_t errors = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED | CAN_ERR_CRTL;
@@ -147,8 +147,8 @@ bool CanInterface::is_up() const {
     return ::ioctl(socket_, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
 }
 
-/// The kernel takes the carrier away from a controller that is bus-off. What cannot be read does not matter:
-/// then the next error frame tells.
+/// The kernel removes the carrier of a controller that is bus-off. A failed read counts as no carrier; the
+/// next error frame then gives the state.
 bool CanInterface::has_carrier() const {
     char carrier = '0';
     std::ifstream("/sys/class/net/" + name_ + "/carrier") >> carrier;
@@ -163,7 +163,7 @@ bool CanInterface::send(const wire::CanFrame& frame) {
         in_flight_.add(frame, now_);
         return true;
     }
-    // ENOBUFS: the interface's queue is full, as when somebody else fills it.
+    // ENOBUFS: the interface's queue is full, for example with frames of other programs.
     if (errno == ENETDOWN) {
         fail(errno, "link down");
     } else if (errno == ENXIO || errno == ENODEV) {
@@ -177,8 +177,8 @@ node::CanState CanInterface::state() const {
 }
 
 std::optional<CanInterface::Received> CanInterface::receive() {
-    // Each turn takes one datagram, or the socket's error, out of it. What is no frame for the node must not
-    // hold it up: empty after so many, and the descriptor stays readable.
+    // Each iteration takes one datagram, or the socket's error. The limit keeps frames that are not for the
+    // node from delaying it. At the limit the result is empty and the descriptor stays readable.
     constexpr int kDatagramsMax = 64;
     for (int i = 0; i < kDatagramsMax && socket_ >= 0; ++i) {
         std::array<std::byte, CANFD_MTU> bytes{};
@@ -219,9 +219,9 @@ void CanInterface::poll(NodeTime now) {
     }
     if (socket_ < 0) return;
     if (!is_up()) return fail(ENETDOWN, "link down");
-    if (!can_carry_frames()) {  // which only changes while it is down
+    if (!can_carry_frames()) {  // can only change while the interface is down
         return fail(EPROTONOSUPPORT,
-                    "the configuration asks for CAN FD, and the interface is not set to it "
+                    "the configuration asks for CAN FD, but the interface is not set to it "
                     "(`ip link set NAME type can ... dbitrate ... fd on`)");
     }
     if (!trouble_.empty() || has_carrier()) errors_ = node::CanState::active;

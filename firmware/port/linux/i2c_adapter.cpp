@@ -13,10 +13,10 @@
 namespace octoskin::linux_port {
 namespace {
 
-constexpr unsigned long kTimeoutTens = 2;  // I2C_TIMEOUT counts in 10 ms
+constexpr unsigned long kTimeoutTens = 2;  // I2C_TIMEOUT, in units of 10 ms
 
 i2c_msg message(const i2c::Transfer& transfer, bool is_read) {
-    // The kernel's type has no const; it writes to messages with I2C_M_RD only.
+    // The kernel's type has no const. The kernel writes to messages with I2C_M_RD only.
     auto* bytes = is_read ? transfer.read.data() : const_cast<std::uint8_t*>(transfer.write.data());
     const std::size_t size = is_read ? transfer.read.size() : transfer.write.size();
     return {.addr = transfer.address,
@@ -51,8 +51,8 @@ Result<I2cDevice, StartFailure> I2cDevice::open(const std::string& path) {
         return refuse(ExitCode::unavailable, path + ": not an I2C adapter of i2c-dev");
     if ((functions & I2C_FUNC_I2C) == 0)
         return refuse(ExitCode::unavailable,
-                      path + ": this adapter knows SMBus only; a sensor's registers need plain I2C");
-    // Not every driver has them; then its own limits hold.
+                      path + ": this adapter supports SMBus only; a sensor's registers need plain I2C");
+    // Not every driver supports these; then its own limits apply.
     (void)::ioctl(device.descriptor_, I2C_TIMEOUT, kTimeoutTens);
     (void)::ioctl(device.descriptor_, I2C_RETRIES, 0UL);
     return device;

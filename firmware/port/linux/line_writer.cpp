@@ -19,7 +19,7 @@ struct LineWriter::Work {
     std::mutex mutex;
     std::condition_variable changed;
     std::deque<std::string> lines;
-    std::size_t dropped = 0;  ///< since the newest line that waits
+    std::size_t dropped = 0;  ///< since the newest queued line
     bool is_ending = false;
     bool has_ended = false;
 };
@@ -27,16 +27,17 @@ struct LineWriter::Work {
 namespace {
 
 void write_all(int descriptor, std::string_view rest) {
-    while (!rest.empty()) {  // each round writes some of it
+    while (!rest.empty()) {  // each iteration writes a part
         const ssize_t count = ::write(descriptor, rest.data(), rest.size());
         if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) return;  // there is nowhere to say it
+        if (count <= 0) return;  // the error cannot be reported anywhere
         rest.remove_prefix(static_cast<std::size_t>(count));
     }
 }
 
 std::string of_dropped(std::size_t count) {
-    return "octoskin-node: " + std::to_string(count) + " lines are left out here: nothing read them\n";
+    return "octoskin-node: " + std::to_string(count) +
+           " lines are left out here: the reader did not keep up\n";
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ LineWriter::LineWriter(int descriptor, Microseconds end_patience)
     sigset_t all;
     sigset_t before;
     ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are for the thread that waits for them
+    ::pthread_sigmask(SIG_SETMASK, &all, &before);  // the main thread handles signals
     struct Restored {
         const sigset_t& mask;
         ~Restored() { ::pthread_sigmask(SIG_SETMASK, &mask, nullptr); }
@@ -77,12 +78,12 @@ void LineWriter::add(std::string line) {
 
 void LineWriter::run(Work& work) {
     std::unique_lock lock(work.mutex);
-    while (true) {  // until the end
+    while (true) {
         work.changed.wait(lock, [&work] { return !work.lines.empty() || work.is_ending; });
         if (work.lines.empty()) break;
         std::string line = std::move(work.lines.front());
         work.lines.pop_front();
-        // With nothing behind it that could tell of them.
+        // No further line is queued that could report the dropped lines.
         if (work.lines.empty() && work.dropped > 0) line += of_dropped(std::exchange(work.dropped, 0));
         lock.unlock();
         write_all(work.descriptor, line);

@@ -10,9 +10,9 @@ const char* device_remedy(int error_number) {
     switch (error_number) {
         case EACCES:
         case EPERM:
-            return "; its group may use it: `ls -l` names the group, `sudo usermod -aG GROUP $USER` adds you";
+            return "; its group has access: `ls -l` names the group, `sudo usermod -aG GROUP $USER` adds you";
         case EBUSY:
-            return "; somebody else has it: `gpioinfo` names who has a line";
+            return "; another process holds it: `gpioinfo` names the holder of a line";
         case ENOENT:
         case ENXIO:
         case ENODEV:

@@ -31,7 +31,7 @@ Result<Question, AppError> question_of(const rig::Rig& rig, const Wish& wish, st
         return fail(ExitCode::usage,
                     fmt::format("no sensor '{}' on node {}: it has {}", wish.sensor, node.name, sensors));
     }
-    if (wish.node.empty()) return fail(ExitCode::usage, "which node? --node takes one of: " + names);
+    if (wish.node.empty()) return fail(ExitCode::usage, "--node is missing; it takes one of: " + names);
     return fail(ExitCode::usage,
                 fmt::format("no node '{}' in rig {}: it has {}", wish.node, rig.name, names));
 }
@@ -55,7 +55,7 @@ Result<std::filesystem::path, AppError> write_into_rig(const std::filesystem::pa
                                                        const rig::SensorEdit& edit) {
     const auto save = [](const FilePlace& file, const std::string& text) -> std::optional<std::string> {
         std::error_code error;
-        FilePlace itself = file;  // in a recording, behind no link
+        FilePlace itself = file;  // a file of a recording is never reached through a link
         if (file.folder() == nullptr) itself = std::filesystem::canonical(file.name(), error);
         if (error) return error.message();
         const auto saved =

@@ -17,31 +17,31 @@ using wire::CalibrationOutcome;
 
 constexpr Nanoseconds kAnswerWithin{1'000'000'000};
 constexpr Nanoseconds kEndWithin{10'000'000'000};
-constexpr std::int64_t kPeriodsMax = 130;  // 60 ranges, at worst at half the rate, and 3 in vain
+constexpr std::int64_t kPeriodsMax =
+    130;  // 60 ranges, at worst at half the rate, and 3 periods without a range
 constexpr int kAsksMax = 3;
 
 const char* explanation(CalibrationOutcome outcome) {
     switch (outcome) {
         case CalibrationOutcome::refused:
-            return "the node refuses: another calibration is under way on it, it does not range (safe mode, "
-                   "no valid configuration), or its rig has it refuse all commands (refuses_commands)";
+            return "the node refuses: another calibration is running on it, it does not range (safe mode, no "
+                   "valid configuration), or its rig makes it refuse all commands (refuses_commands)";
         case CalibrationOutcome::not_brought_up:
-            return "the sensor could not be initialised: its SENSOR_HEALTH says why";
+            return "the sensor could not be initialised: see its SENSOR_HEALTH";
         case CalibrationOutcome::device_failed:
-            return "the sensor failed meanwhile: its SENSOR_HEALTH says why";
+            return "the sensor failed during the calibration: see its SENSOR_HEALTH";
         case CalibrationOutcome::no_result:
-            return "the sensor gave no range for 2 s, nor for 3 of its periods";
+            return "the sensor gave no range for 2 s and for 3 of its periods";
         case CalibrationOutcome::no_target:
-            return "it saw no valid target in more than 10 of 50 ranges: is the target before it, grey, and "
-                   "the "
-                   "room dark?";
+            return "the sensor had no valid target in more than 10 of 50 ranges: is the target grey and in "
+                   "front of the sensor, and is the room dark?";
         case CalibrationOutcome::out_of_range:
-            return "its ranges are over a metre off: is the target where --target-mm says?";
+            return "the ranges are more than one metre off: is the target at the distance of --target-mm?";
         case CalibrationOutcome::under_way:
         case CalibrationOutcome::done:
             break;
     }
-    return "it ended in a way that this program does not know";
+    return "the calibration ended with an outcome that this program does not know";
 }
 
 }  // namespace
@@ -82,17 +82,15 @@ void Dialogue::on_heartbeat(const wire::Heartbeat& heartbeat, HostTime now) {
     if (step_ != Step::awaiting_heartbeat) return;
     const std::uint32_t expected = question_.node_hash & 0xFFFFU;
     if (heartbeat.node_hash_low != expected) {
-        give_up(
-            ExitCode::bad_config,
-            fmt::format("it has another configuration than the rig file (low half of node_hash {:04x}, the "
-                        "rig has {:04x}): flash it first",
-                        heartbeat.node_hash_low, expected));
+        give_up(ExitCode::bad_config, fmt::format("its configuration is not that of the rig file (low half "
+                                                  "of node_hash {:04x}, the rig has {:04x}): flash it first",
+                                                  heartbeat.node_hash_low, expected));
         return;
     }
     ask(now);
 }
 
-/// Always the same command: a node that has begun answers that it has, and does not begin again.
+/// Sends the same command each time. A node that has begun only answers again; it does not begin again.
 void Dialogue::ask(HostTime now) {
     ++asks_;
     const auto code = question_.quantity == wire::CalibrationQuantity::offset
@@ -130,9 +128,9 @@ void Dialogue::on_time(HostTime now) {
         case Step::awaiting_answer:
             if (asks_ < kAsksMax) return ask(now);
             return give_up(ExitCode::unavailable,
-                           "it does not answer: its firmware may be older than the command; flash it");
+                           "the node does not answer: its firmware may be older than the command; flash it");
         case Step::awaiting_end:
-            return give_up(ExitCode::io_failed, "it began, and its end never came");
+            return give_up(ExitCode::io_failed, "the calibration began, but its result never arrived");
     }
 }
 

@@ -15,7 +15,8 @@ namespace {
 AppError absent(const std::string& name) {
     const std::vector<std::string> built_in(kBuiltInMappings.begin(), kBuiltInMappings.end());
     const auto near = rig::nearest_word(name, built_in);
-    return {ExitCode::no_input, "configuration '" + name + "': no such file, and built in are " +
+    return {ExitCode::no_input, "configuration '" + name +
+                                    "': no such file, and no built-in configuration; built in are " +
                                     rig::joined(built_in) + (near ? "; did you mean " + *near + "?" : "")};
 }
 
@@ -34,7 +35,7 @@ Result<NamedMapping, AppError> named_mapping(const std::string& name_or_file) {
     const std::string name = is_built_in ? name_or_file : std::filesystem::path(name_or_file).stem().string();
     if (name == kReservedName) {
         return fail(ExitCode::usage,
-                    "a configuration cannot be called '" + name + "': rename " + name_or_file);
+                    "a configuration cannot have the name '" + name + "': rename " + name_or_file);
     }
     return NamedMapping{name, *mapping, is_built_in && name == "paper_noise_free_robot_seen"};
 }

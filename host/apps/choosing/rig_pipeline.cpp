@@ -18,14 +18,13 @@ AppError too_large(const std::string& rig_file, const HostRig& rig, const Mappin
     const std::string length_key =
         cone.has_range ? "range_limits.max_m of the rig" : "no_return_clear_m of the mapping";
     return {ExitCode::bad_config,
-            fmt::format(
-                "{}: a reading of {} with a half angle of {:.3g} degrees and {:.3g} m ({}) may have {:.2g} "
-                "voxels of {} m (map.resolution_m of the mapping), and one may have {:.0f} at most: raise "
-                "map.resolution_m to {:.2g} or more, or lower {}, or half_angle_deg or sigma_deg of the "
-                "sensor's cone",
-                rig_file, sensor_text(rig.nodes[cone.node], cone.sensor),
-                kDegreesPerRad * cone.optics.half_angle_rad, cone.length_m, length_key, cone.voxels,
-                mapping.map.resolution_m, kConeVoxelsMax, cone.resolution_min_m, length_key)};
+            fmt::format("{}: a reading of {} with a half angle of {:.3g} degrees and {:.3g} m ({}) can cover "
+                        "{:.2g} voxels of {} m (map.resolution_m of the mapping), and the limit is {:.0f}: "
+                        "raise map.resolution_m to {:.2g} or more, or lower {}, or half_angle_deg or "
+                        "sigma_deg of the sensor's cone",
+                        rig_file, sensor_text(rig.nodes[cone.node], cone.sensor),
+                        kDegreesPerRad * cone.optics.half_angle_rad, cone.length_m, length_key, cone.voxels,
+                        mapping.map.resolution_m, kConeVoxelsMax, cone.resolution_min_m, length_key)};
 }
 
 }  // namespace
@@ -37,7 +36,7 @@ Result<Pipeline, AppError> build_pipeline(const std::string& rig_file, const Hos
     auto pipeline = Pipeline::build(rig, std::move(robot), mapping, config);
     if (pipeline) return std::move(pipeline).value();
     return fail(ExitCode::bad_config,
-                rig_file + ": the robot has no '" + pipeline.error().element + "' that the rig speaks of");
+                rig_file + ": the robot has no '" + pipeline.error().element + "' that the rig names");
 }
 
 }  // namespace octoskin

@@ -39,7 +39,7 @@ std::string is_seed(std::string& text) {
 }
 
 void check_interface_name(const std::string& interface) {
-    // A recording's log has it on each line.
+    // A recording's log repeats the name on each line.
     if (wire::is_interface_name(interface)) return;
     throw CommandFailure({ExitCode::usage, fmt::format("'{}': {}", interface, wire::kInterfaceNameRule)});
 }
@@ -48,12 +48,13 @@ void check_frame_socket(const std::string& interface, int descriptor) {
     int type = 0;
     socklen_t size = sizeof(type);
     if (::getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) != 0) {
-        throw CommandFailure({ExitCode::usage, interface + " is no socket: give one that carries frames as a "
-                                                           "raw CAN socket does"});
+        throw CommandFailure(
+            {ExitCode::usage,
+             interface + " is not a socket: give one that carries frames as a raw CAN socket does"});
     }
     if (type == SOCK_STREAM) {
-        throw CommandFailure({ExitCode::usage, interface + " is a stream, in which frames have no borders: "
-                                                           "give a socket of datagrams (SOCK_SEQPACKET)"});
+        throw CommandFailure({ExitCode::usage, interface + " is a stream socket, which does not keep frames "
+                                                           "apart: give a datagram socket (SOCK_SEQPACKET)"});
     }
 }
 
@@ -65,9 +66,9 @@ CLI::Validator existing_file() {
                 std::error_code error;
                 if (std::filesystem::is_directory(path, error)) return path + " is a directory, not a file";
                 if (const auto kind = rig::other_than_a_file(path); !kind.empty()) {
-                    throw CommandFailure({ExitCode::no_input, absolute(path) + ": is " + std::string(kind) +
-                                                                  "; give an ordinary file: it is read more "
-                                                                  "than once"});
+                    throw CommandFailure(
+                        {ExitCode::no_input, absolute(path) + ": is " + std::string(kind) +
+                                                 "; give a regular file: it is read more than once"});
                 }
                 if (std::filesystem::exists(path, error)) return {};
                 throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file"});
@@ -102,8 +103,8 @@ void check_command_name(const CLI::App& app, const std::string& others, int argc
     const auto near = rig::nearest_word(word, names);
     throw CommandFailure({ExitCode::usage, "there is no command '" + word + "'" +
                                                (near ? ": did you mean '" + *near + "'?" : ".") +
-                                               " There are " + rig::joined(names) +
-                                               "; --help says what they do" + others});
+                                               " The commands are " + rig::joined(names) +
+                                               "; --help explains them" + others});
 }
 
 std::optional<int> descriptor_of(const std::string& interface) {
@@ -117,7 +118,7 @@ std::optional<int> descriptor_of(const std::string& interface) {
         throw CommandFailure(
             {ExitCode::usage, interface + ": expected fd: and the number of an open descriptor"});
     if (descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
-        throw CommandFailure({ExitCode::usage, interface + ": no descriptor of that number is open"});
+        throw CommandFailure({ExitCode::usage, interface + ": no open descriptor has that number"});
     check_frame_socket(interface, descriptor);
     return descriptor;
 }

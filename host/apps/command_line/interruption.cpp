@@ -18,7 +18,8 @@
 namespace octoskin::app {
 namespace {
 
-/// In this thread, which alone can take them: a disk may hang.
+/// Runs in the thread that receives the signals: removing the files may block on a slow disk, and a second
+/// signal must end the process all the same.
 void let_the_next_one_kill() {
     sigset_t signals;
     sigemptyset(&signals);
@@ -27,13 +28,12 @@ void let_the_next_one_kill() {
 }
 
 [[noreturn]] void end(int signal) {
-    constexpr int kSignalled = 128;  // as shells have it
+    constexpr int kSignalled = 128;  // the convention of shells
     let_the_next_one_kill();
     const RemovedUnfinished removed = remove_unfinished();
-    spdlog::warn(
-        "interrupted{}",
-        removed.is_any ? ": what was not finished is removed, what was there before is as it was" : "");
-    ::_exit(kSignalled + signal);  // other threads are at work on what exit() would take away
+    spdlog::warn("interrupted{}",
+                 removed.is_any ? ": unfinished files are removed, files from before are unchanged" : "");
+    ::_exit(kSignalled + signal);  // exit() would destroy objects that other threads still use
 }
 
 }  // namespace
@@ -52,10 +52,10 @@ Interruption::~Interruption() {
 }
 
 void Interruption::watch() const {
-    while (true) {  // until there is nothing more to watch over
+    while (true) {  // until the owner ends it
         std::array<pollfd, 2> ready{{{signals_.descriptor(), POLLIN, 0}, {ended_, POLLIN, 0}}};
         ::poll(ready.data(), ready.size(), -1);
-        // The signal first: what failed because a helper got it, too, is no failure to tell of.
+        // First the signal: a helper process gets it, too, and its failure is then not to be reported.
         if (const auto signal = signals_.came(std::chrono::milliseconds(0))) end(*signal);
         if (ready[1].revents != 0) return;
     }

@@ -23,7 +23,7 @@
 
 namespace {
 
-/// What is wrong with the command line, in which files of others may be named, on one line; then CLI11's own.
+/// The error in the command line as one printable line (it may contain file names), then CLI11's hint.
 std::string harmless_message(const CLI::App* app, const CLI::Error& error) {
     const std::string what = error.what();
     const std::string whole = CLI::FailureMessage::simple(app, error);
@@ -42,7 +42,7 @@ int run(const octoskin::app::Program& program, int argc, char** argv) {
         app::check_command_name(app, program.others, argc, argv);
         app.parse(argc, argv);
         return static_cast<int>(ExitCode::ok);
-    } catch (const CLI::RuntimeError& outcome) {  // said already
+    } catch (const CLI::RuntimeError& outcome) {  // reported already
         return outcome.get_exit_code();
     } catch (const CLI::ParseError& error) {
         std::ostringstream said;
@@ -50,14 +50,16 @@ int run(const octoskin::app::Program& program, int argc, char** argv) {
         app::print_text(said.str());
         return exit_code == 0 ? 0 : static_cast<int>(ExitCode::usage);
     } catch (const app::CommandFailure& failure) {
-        // First what was printed: the message may be about it. A failure to print is reported at the end.
+        // First the output that was printed: the message may refer to it. A failed write is reported at the
+        // end.
         static_cast<void>(app::flush_standard_output());
         spdlog::error("{}", failure.what());
         return static_cast<int>(failure.code());
     }
 }
 
-/// Work that was done and whose output could not be written is a failure, too; so is an answer (1, 2).
+/// If the output cannot be written, the command fails, even if its work succeeded or its exit code is a
+/// result (1, 2).
 int checked(int exit_code) {
     const auto failure = octoskin::app::flush_standard_output();
     if (!failure) return exit_code;
@@ -66,30 +68,30 @@ int checked(int exit_code) {
     return is_done ? static_cast<int>(failure->code) : exit_code;
 }
 
-/// With less a command fails somewhere in its midst: of the stack with a fault that nothing can catch, of
-/// descriptors with a file that it calls unreadable. Empty: there is enough to begin with.
+/// With lower limits a command would fail halfway: a stack overflow cannot be caught, and without descriptors
+/// a file looks unreadable. Returns the message, or nothing if the limits suffice.
 std::optional<std::string> too_little() {
     constexpr rlim_t kStackLeast = rlim_t{1} << 20U;
     constexpr rlim_t kDescriptorsLeast = 16;
     rlimit limit{};
     if (::getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < kStackLeast)
-        return fmt::format(
-            "this process may have {} KiB of stack, and needs {}: raise that limit (ulimit -s)",
-            limit.rlim_cur >> 10U, kStackLeast >> 10U);
+        return fmt::format("this process may have {} KiB of stack and needs {}: raise that limit (ulimit -s)",
+                           limit.rlim_cur >> 10U, kStackLeast >> 10U);
     if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < kDescriptorsLeast)
         return fmt::format(
-            "this process may have {} descriptors open at once, and needs {}: raise that limit (ulimit -n)",
+            "this process may have {} descriptors open at once and needs {}: raise that limit (ulimit -n)",
             limit.rlim_cur, kDescriptorsLeast);
     return std::nullopt;
 }
 
-/// Files are opened by their descriptors' names there, so that no link is followed in between; and the
-/// helpers are found by it. Without it each file would be "no such file".
+/// /proc serves two purposes: files are reopened by their descriptors, so that no link is followed in
+/// between, and the helper programs are found through it. Without /proc every file would be reported as "no
+/// such file".
 bool has_proc() {
     return ::access("/proc/self/fd", R_OK | X_OK) == 0 && ::access("/proc/self/exe", F_OK) == 0;
 }
 
-/// What was thrown, and the exit code for it. There may be no memory to say it in.
+/// Prints the message of an exception and returns its exit code. Must work without free memory.
 int tell(const std::exception& thrown) noexcept {
     constexpr int kInternal = 70;
     try {
@@ -101,7 +103,7 @@ int tell(const std::exception& thrown) noexcept {
         spdlog::critical("a defect of octoskin, please report it: {}", thrown.what());
         return kInternal;
     } catch (...) {
-        constexpr std::string_view kWords = "octoskin: no memory (ulimit -v)\n";
+        constexpr std::string_view kWords = "octoskin: out of memory (see ulimit -v)\n";
         (void)!::write(STDERR_FILENO, kWords.data(), kWords.size());
         return static_cast<int>(octoskin::ExitCode::no_resources);
     }
@@ -113,8 +115,8 @@ namespace octoskin::app {
 
 int run_program(const Program& program, int argc, char** argv) noexcept {
     reserve_standard_descriptors();
-    // A reader that goes away (`| head`) must not end the program in the middle of a file, nor must the limit
-    // of a file's size (ulimit -f): both are errors of the write, which are reported.
+    // A closed reader (`| head`) or a file size limit (ulimit -f) must not end the process in the middle of a
+    // file. With these signals ignored, both become write errors, which are reported.
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt(program.name));
@@ -124,7 +126,7 @@ int run_program(const Program& program, int argc, char** argv) noexcept {
             return static_cast<int>(ExitCode::no_resources);
         }
         if (!has_proc()) {
-            spdlog::error("there is no /proc here, through which octoskin opens files: mount it");
+            spdlog::error("/proc is not mounted, and octoskin opens files through it: mount it");
             return static_cast<int>(ExitCode::unavailable);
         }
         return checked(run(program, argc, argv));

@@ -22,8 +22,8 @@ void note(bool is_done) {
 void reserve_standard_descriptors() {
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-        // The lowest free number is this one. For the wrong direction: what is written there is not lost in
-        // silence.
+        // open() returns the lowest free number, which is `descriptor`. The opposite access mode makes every
+        // later write to it (or read from it) fail instead of being lost without an error.
         static_cast<void>(::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
     }
 }
@@ -45,9 +45,9 @@ std::optional<AppError> flush_standard_output() {
     errno = 0;
     note(std::fflush(stdout) == 0 && std::ferror(stdout) == 0);
     if (first_error == 0 || first_error == EPIPE) return std::nullopt;
-    return AppError{ExitCode::io_failed, "standard output: cannot write (" +
-                                             std::generic_category().message(first_error) +
-                                             "); what was printed is not whole, files that were written are"};
+    return AppError{ExitCode::io_failed,
+                    "standard output: cannot write (" + std::generic_category().message(first_error) +
+                        "); the printed output is incomplete; files that were written are complete"};
 }
 
 }  // namespace octoskin::app

@@ -16,15 +16,15 @@ namespace {
 
 using wire::CommandCode;
 
-/// All seven pages: unasked, two at most would come in it.
+/// The time for all seven pages of NODE_INFO. Unrequested, at most two pages arrive in it.
 constexpr Nanoseconds kInfoWithin{300'000'000};
 constexpr Nanoseconds kSentWithin{1'000'000'000};
-/// A node gives up after 20 ms what it cannot send.
+/// A node discards after 20 ms a frame that it cannot send.
 constexpr Nanoseconds kRest{100'000'000};
 constexpr Nanoseconds kEffectWithin{5'000'000'000};
 constexpr Nanoseconds kUptimeRetry{500'000'000};
 constexpr std::uint16_t kUptimeMinS = 3;
-constexpr int kUptimeWaitsMax = 8;  // a node that resets itself over and over gets no older
+constexpr int kUptimeWaitsMax = 8;  // the uptime of a node that keeps resetting does not grow
 constexpr int kAsksMax = 3;
 constexpr std::uint8_t kCountFull = 255;
 
@@ -92,10 +92,10 @@ void Dialogue::on_first_heartbeat(HostTime now) {
     if (order_.is_sensor_by_name && view_.state() == wire::NodeState::bad_config)
         return give_up(ExitCode::bad_config, obstacle(wire::NodeState::bad_config));
     if (order_.is_sensor_by_name && !difference.empty())
-        return give_up(ExitCode::bad_config,
-                       difference +
-                           ", so the name may mean another sensor: flash it, or give the sensor's "
-                           "number");
+        return give_up(
+            ExitCode::bad_config,
+            difference +
+                ", so the name may mean another sensor: flash the node, or give the sensor's number");
     ask(Step::asking_before, now);
 }
 
@@ -105,7 +105,7 @@ void Dialogue::ask(Step step, HostTime now) {
     ask_again(now);
 }
 
-/// What was heard before does not count.
+/// Discards what arrived before this request.
 void Dialogue::ask_again(HostTime now) {
     ++asks_;
     view_.info = {};
@@ -113,7 +113,7 @@ void Dialogue::ask_again(HostTime now) {
     deadline_ = now + kSentWithin;
 }
 
-/// Never twice in a row the same frame, which a node would take for a repeated one.
+/// Never the same frame twice in succession: a node treats it as a repetition.
 void Dialogue::send(CommandCode code) {
     wire::Command command = order_.command;
     if (code != command.code) command = {.code = code};
@@ -133,7 +133,7 @@ void Dialogue::on_sent(HostTime now) {
 
 void Dialogue::command(HostTime now) {
     if (order_.command.sensor != wire::kAllSensors && order_.command.sensor >= view_.sensor_count())
-        return give_up(ExitCode::usage, fmt::format("it has no sensor {}: it has {} of them, from 0",
+        return give_up(ExitCode::usage, fmt::format("it has no sensor {}; it has {} of them, numbered from 0",
                                                     order_.command.sensor, view_.sensor_count()));
     const bool is_young = view_.info.build->uptime_s < kUptimeMinS;
     if (order_.command.code == CommandCode::reset && is_young && uptime_waits_ < kUptimeWaitsMax) {
@@ -156,15 +156,15 @@ void Dialogue::judge(HostTime now) {
                                                      refusal(order_, before_)));
     if (refused_before == kCountFull)
         return give_up(ExitCode::failed,
-                       fmt::format("whether it refused {} cannot be told: it has counted {} refused frames, "
-                                   "and counts no further; the command 'reset' begins anew",
+                       fmt::format("whether it refused {} is unknown: its counter of refused frames is at "
+                                   "its maximum ({}); the command 'reset' restarts it",
                                    wire::name(order_.command.code), kCountFull));
     step_ = Step::awaiting_effect;
     deadline_ = commanded_ + kEffectWithin;
     advance(now);
 }
 
-/// A run that is shorter than the one before is another one.
+/// An uptime shorter than the one before means that the node has restarted.
 void Dialogue::judge_reset(HostTime now) {
     if (view_.info.build->uptime_s < before_.info.build->uptime_s) return succeed();
     if (now >= commanded_ + kEffectWithin) return on_no_effect();
@@ -183,9 +183,9 @@ void Dialogue::succeed() {
 
 void Dialogue::on_no_effect() {
     const char* const why = obstacle(view_.state());
-    give_up(ExitCode::failed,
-            fmt::format("it did not refuse {}, and 5 s later: {}{}", wire::name(order_.command.code),
-                        state_text(view_, order_), why != nullptr ? std::string(": ") + why : ""));
+    give_up(ExitCode::failed, fmt::format("it did not refuse {}, but 5 s later its state is: {}{}",
+                                          wire::name(order_.command.code), state_text(view_, order_),
+                                          why != nullptr ? std::string(": ") + why : ""));
 }
 
 void Dialogue::on_time(HostTime now) {
@@ -196,19 +196,20 @@ void Dialogue::on_time(HostTime now) {
         case Step::awaiting_uptime:
             return ask(Step::asking_before, now);
         case Step::commanding:
-            return give_up(ExitCode::unavailable, "the interface took nothing for 1 s: is its bus alive?");
+            return give_up(ExitCode::unavailable,
+                           "the interface sent nothing for 1 s: is its bus connected and powered?");
         case Step::awaiting_rest:
             view_ = {};
             return ask(Step::asking_after, now);
         case Step::asking_before:
             if (asks_ < kAsksMax) return ask_again(now);
             return give_up(ExitCode::unavailable,
-                           "its heartbeats come, and no answer: may this interface send (not listen-only), "
+                           "its heartbeats arrive, but no answer: may this interface send (not listen-only), "
                            "and is this a sensor board? A joint source takes no commands");
         case Step::asking_after:
             if (asks_ < kAsksMax || now < commanded_ + kEffectWithin) return ask_again(now);
             return give_up(ExitCode::io_failed,
-                           fmt::format("silent since {}: wait for its light, look at the serial line",
+                           fmt::format("silent since {}: wait for its light, or read its serial line",
                                        wire::name(order_.command.code)));
         case Step::awaiting_effect:
             return on_no_effect();

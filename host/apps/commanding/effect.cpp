@@ -17,7 +17,8 @@ using Health = std::optional<wire::SensorHealth>;
 }  // namespace
 
 bool is_in_effect(const Order& order, const NodeView& now, bool has_sent_black_box) {
-    // None of the sensors that are meant; what is not known yet may be in any state.
+    // True if none of the command's sensors is known to be in this state. An unknown sensor may be in any
+    // state.
     const auto none_is = [&](SensorState state) {
         return !now.any_of(order.command,
                            [state](const Health& health) { return !health || health->state == state; });
@@ -34,7 +35,7 @@ bool is_in_effect(const Order& order, const NodeView& now, bool has_sent_black_b
         case CommandCode::reinitialise_sensor:
             return none_is(SensorState::starting);
         case CommandCode::set_rate:
-            return now.heartbeat.has_value();  // a rate that is the configured one is no other rate
+            return now.heartbeat.has_value();  // the configured rate is not flagged as overridden
         case CommandCode::send_black_box:
             return has_sent_black_box;
         case CommandCode::identify:
@@ -51,15 +52,15 @@ std::string refusal(const Order& order, const NodeView& view) {
     if (view.state() == wire::NodeState::safe)
         return std::string("it takes only start, identify, reset and send_info: ") +
                obstacle(wire::NodeState::safe);
-    if (order.command.code == CommandCode::identify) return "it has no light that could blink";
+    if (order.command.code == CommandCode::identify) return "it has no light to blink";
     if (view.state() == wire::NodeState::bad_config) return obstacle(wire::NodeState::bad_config);
     if (view.sensor_count() == 0) return "it has no sensors";
     if (order.command.code == CommandCode::set_rate)
         return fmt::format(
-            "{} ms is less than the timing budget and 5 ms of a sensor it was meant for; "
-            "sensors that can follow do",
+            "{} ms is less than the timing budget and 5 ms of at least one of its sensors; sensors for which "
+            "it is enough use the new rate",
             order.command.argument);
-    return "it does not say why: look at its state, and whether somebody else commands it";
+    return "the reason is unknown: look at its state, and check that no other host commands it";
 }
 
 }  // namespace octoskin::commanding

@@ -16,7 +16,7 @@ bool is_of_the_rig(const NodeView& view, const Order& order) {
            view.heartbeat->node_hash_low == (order.known->node_hash & 0xFFFFU);
 }
 
-/// By its name only if index and name belong together.
+/// The rig's sensor name, only if index and name are known to belong together; otherwise the index.
 std::string sensor_name(const NodeView& view, const Order& order, std::size_t index) {
     const bool has_name = is_of_the_rig(view, order) && index < order.known->sensors.size();
     return has_name ? order.known->sensors[index] : fmt::format("{}", index);
@@ -51,7 +51,7 @@ std::string fault_text(const wire::InfoFault& fault) {
     if (fault.kind == wire::FaultKind::register_fixed)
         return fmt::format("fault register_fixed: sensor {}: {}", report.subject, text_of(report));
     if (fault.kind == wire::FaultKind::register_alike) return "fault register_alike: " + alike_text(report);
-    return fmt::format("fault {} (where: 0x{:08x}); resets that nobody ordered: {}, the last after {} s",
+    return fmt::format("fault {} (where: 0x{:08x}); resets without a command: {}, the last after {} s",
                        wire::name(fault.kind), fault.where, fault.count, fault.uptime_s);
 }
 
@@ -90,14 +90,12 @@ std::string state_text(const NodeView& view, const Order& order) {
 std::string info_text(const NodeView& view, const Order& order) {
     const InfoPages& info = view.info;
     const char* const rig = !order.known                                         ? ""
-                            : info.identity->node_hash == order.known->node_hash ? ", the rig's"
-                                                                                 : ", not the rig's";
+                            : info.identity->node_hash == order.known->node_hash ? ", as in the rig"
+                                                                                 : ", not as in the rig";
     return fmt::format(
-        "  unique id {}, board type {}, build {:08x}\n"
-        "  node_hash {:08x}{}; up {} s, reset cause {}\n"
-        "  since then: {} I2C errors, {} readings that disagreed, {} sensor restarts;\n"
-        "    {} frames dropped, {} late, {} times bus-off, {} frames refused\n"
-        "  {}\n",
+        "  unique id {}, board type {}, build {:08x}\n  node_hash {:08x}{}; up {} s, reset cause {}\n  since "
+        "then: {} I2C errors, {} inconsistent readings, {} sensor restarts;\n    {} frames dropped, {} late, "
+        "{} times bus-off, {} frames refused\n  {}\n",
         hex(*info.uid_low, *info.uid_high), info.identity->board_type, info.build->build_id,
         info.identity->node_hash, rig, info.build->uptime_s, wire::name(view.heartbeat->reset_cause),
         info.counters->i2c_errors, info.counters->reads_disagreed, info.counters->sensor_restarts,
@@ -108,7 +106,7 @@ std::string info_text(const NodeView& view, const Order& order) {
 std::string difference_text(const NodeView& view, const Order& order) {
     if (!order.known || !view.heartbeat || is_of_the_rig(view, order)) return {};
     return fmt::format(
-        "it has another configuration than the rig file (low half of node_hash {:04x}, the rig has {:04x})",
+        "its configuration is not that of the rig file (low half of node_hash {:04x}, the rig has {:04x})",
         view.heartbeat->node_hash_low, order.known->node_hash & 0xFFFFU);
 }
 

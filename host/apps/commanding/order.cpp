@@ -40,16 +40,17 @@ Result<wire::Command, AppError> command_of(const Wish& wish, std::uint8_t sequen
         };
         if (wish.period_ms && code != CommandCode::set_rate) return refuse("takes no --period-ms");
         if (wish.seconds && code != CommandCode::identify) return refuse("takes no --seconds");
-        if (!wish.sensor.empty() && !takes_sensor(code)) return refuse("concerns the node: no --sensor");
+        if (!wish.sensor.empty() && !takes_sensor(code))
+            return refuse("concerns the whole node: it takes no --sensor");
         if (code == CommandCode::set_rate && !wish.period_ms)
-            return refuse("needs --period-ms; 0 is as configured");
+            return refuse("needs --period-ms; 0 means the configured period");
         std::uint16_t argument = 0;
         if (code == CommandCode::set_rate) argument = *wish.period_ms;
         if (code == CommandCode::identify) argument = wish.seconds.value_or(kIdentifySeconds);
         return wire::Command{.code = code, .argument = argument, .sequence = sequence};
     }
-    return fail(ExitCode::usage,
-                fmt::format("there is no command '{}'; there are {}", wish.code, rig::joined(code_names())));
+    return fail(ExitCode::usage, fmt::format("there is no command '{}'; the commands are {}", wish.code,
+                                             rig::joined(code_names())));
 }
 
 std::string names_of(const rig::Rig& rig) {
@@ -65,7 +66,7 @@ Order::Known known_of(const rig::Node& node) {
     return known;
 }
 
-/// The nodes that are meant, without a command.
+/// One order for each addressed node, still without a command.
 Result<std::vector<Order>, AppError> recipients(const rig::Rig* rig, const std::string& wanted) {
     const auto number = number_of(wanted);
     if (rig != nullptr) {

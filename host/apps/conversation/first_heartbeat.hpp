@@ -1,4 +1,4 @@
-// What a person is told of a node that cannot be talked to: it is silent, or speaks another version.
+// Messages about a node without communication: it is silent, or uses another protocol version.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,13 @@
 
 namespace octoskin {
 
-/// A node that is there has sent twenty by then.
+/// A working node sends 20 heartbeats in this time.
 inline constexpr Nanoseconds kHeartbeatWithin{2'000'000'000};
 inline constexpr const char* kNoHeartbeat =
-    "no heartbeat for 2 s: has it power, is it on this bus, at this bit rate?";
+    "no heartbeat for 2 s: is it powered, on this bus, and at this bit rate?";
 
-/// Of a frame that `wire::decode` refused with `error`: what to say if it is a heartbeat of `node` in another
-/// version of the protocol; empty if it is anything else.
+/// For a frame that `wire::decode` refused with `error`: the message if the frame is a heartbeat of `node` in
+/// another protocol version; empty otherwise.
 [[nodiscard]] std::optional<std::string> other_version(const wire::CanFrame& frame, wire::DecodeError error,
                                                        wire::NodeId node);
 

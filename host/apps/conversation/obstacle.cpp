@@ -5,14 +5,14 @@ namespace octoskin {
 const char* obstacle(wire::NodeState state) {
     switch (state) {
         case wire::NodeState::safe:
-            return "it is in safe mode after repeated resets: its NODE_INFO names the fault; the command "
-                   "'start' or a minute's wait ends it";
+            return "it is in safe mode after repeated resets, and NODE_INFO names the fault: the command "
+                   "'start', or one minute of waiting, ends safe mode";
         case wire::NodeState::bad_config:
             return "it has no valid configuration for its board: flash it";
         case wire::NodeState::id_conflict:
-            return "another board sends under its node id: take one of the two off the bus";
+            return "another board uses the same node id: remove one of the two from the bus";
         case wire::NodeState::bus_fault:
-            return "none of its I2C buses can be used: look for a line that is held or shorted";
+            return "none of its I2C buses works: look for a line that is held low or shorted";
         case wire::NodeState::starting:
         case wire::NodeState::ranging:
         case wire::NodeState::stopped:

@@ -1,17 +1,17 @@
-// What a heartbeat's state says to a person who wants something of the node.
+// What a node's state means for a user who commands it.
 #pragma once
 
 #include "common/wire/messages.hpp"
 
 namespace octoskin {
 
-/// Why a node in this state does not range, and what to do; null if it ranges, or would if it were told to.
+/// Why a node in this state does not range, and the remedy. Null if it ranges, or would range after a command
+/// to start.
 [[nodiscard]] const char* obstacle(wire::NodeState state);
 
-/// What to do about a node that says `commands_refused` in NODE_INFO.
+/// The message for a node that reports `commands_refused` in NODE_INFO.
 inline constexpr const char* kCommandsRefused =
-    "it refuses all commands: its rig has `refuses_commands: true` at this node; take that key out of the "
-    "rig "
-    "and flash the node to command it";
+    "it refuses all commands: its rig has `refuses_commands: true` at this node; to command the node, remove "
+    "that key from the rig and flash it";
 
 }  // namespace octoskin

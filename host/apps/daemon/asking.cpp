@@ -20,14 +20,15 @@ namespace {
 
 constexpr const char* kSignOfLife = R"({"ok":true})";
 
-/// Of JSON, whose reader and writer call themselves for each level. A daemon's answers have fewer than ten.
+/// Whether JSON nests too deep for its reader and writer, which recurse for each level. A daemon's answers
+/// have fewer than ten levels.
 bool is_nested_too_deep(std::string_view json) {
     constexpr int kLevelsMax = 64;
     int level = 0;
     bool is_text = false;
     for (std::size_t i = 0; i < json.size(); ++i) {
         const char c = json[i];
-        if (is_text && c == '\\') ++i;  // what is escaped ends no text
+        if (is_text && c == '\\') ++i;  // an escaped quote ends no text
         if (c == '"') is_text = !is_text;
         if (is_text) continue;
         if (c == '[' || c == '{') ++level;
@@ -48,17 +49,17 @@ bool is_readable(int descriptor, HostTime end) {
     }
 }
 
-/// A line with its end, and one back, or what happened instead.
+/// Sends a line and its line feed, and returns the line of the answer, or an error text.
 Result<std::string, std::string> exchange_lines(int descriptor, const std::string& line, HostTime end) {
     // A new connection has room for a request.
     const ssize_t sent = ::send(descriptor, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0 && errno != EPIPE)
-        return unexpected(std::string("the daemon takes no request: ") + std::strerror(errno));
+        return unexpected(std::string("the daemon does not accept the request: ") + std::strerror(errno));
     constexpr std::size_t kAnswerMax = std::size_t{64} << 20U;
     std::string answer;
-    while (!answer.ends_with('\n')) {  // bounded by the end
+    while (!answer.ends_with('\n')) {  // bounded by `end`
         if (answer.size() > kAnswerMax)
-            return unexpected(std::string("what listens there answers without end: is it a daemon?"));
+            return unexpected(std::string("the answer has no end: is it a daemon that listens there?"));
         if (!is_readable(descriptor, end))
             return unexpected(std::string("the daemon did not answer in time"));
         std::array<char, 4096> bytes{};
@@ -67,7 +68,7 @@ Result<std::string, std::string> exchange_lines(int descriptor, const std::strin
             return unexpected(std::string(answer.empty()
                                               ? "the daemon closed the connection without an answer"
                                               : "the daemon closed the connection in mid-answer") +
-                              " (did it end just now?)");
+                              " (has it just ended?)");
         }
         if (count < 0 && errno != EAGAIN && errno != EINTR)
             return unexpected(std::string("cannot read the daemon's answer: ") + std::strerror(errno));
@@ -95,10 +96,9 @@ Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, co
 }
 
 AppError foreign_answer(const std::filesystem::path& socket) {
-    return {ExitCode::bad_data,
-            socket.string() +
-                ": not the answer of a daemon of this version: restart the daemon if it is "
-                "another version's; --socket names another place"};
+    return {ExitCode::bad_data, socket.string() +
+                                    ": not the answer of a daemon of this version: restart the daemon if its "
+                                    "version differs; --socket names another place"};
 }
 
 }  // namespace octoskin

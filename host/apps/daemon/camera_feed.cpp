@@ -28,17 +28,17 @@ bool is_oni_name(const std::string& uri) {
     return std::filesystem::path(uri).extension() == ".oni";
 }
 
-/// Why nothing can be played from there; empty if something may be.
+/// Why the file cannot be played; empty if it may be playable.
 std::string fault_of_file(const std::string& uri) {
     std::error_code error;
     if (!is_oni_name(uri) || std::filesystem::is_regular_file(uri, error)) return {};
-    return uri + (std::filesystem::exists(uri, error) ? ": is no file" : ": no such file");
+    return uri + (std::filesystem::exists(uri, error) ? ": is not a file" : ": no such file");
 }
 
 std::string not_opened(const std::string& uri) {
-    if (uri.empty()) return "no camera found: is one plugged in, with a driver of OpenNI2?";
+    if (uri.empty()) return "no camera found: is one plugged in, with an OpenNI2 driver?";
     return uri + (is_oni_name(uri) ? ": no .oni file with depth that OpenNI2 can play"
-                                   : ": no camera there that gives depth");
+                                   : ": no camera with depth there");
 }
 
 }  // namespace

@@ -86,8 +86,8 @@ void CanLink::close() {
     socket_.reset();
 }
 
-/// <linux/can/error.h>: the identifier is a set of classes, the second byte says what a controller's problem
-/// is.
+/// By <linux/can/error.h> the identifier is a set of classes, and the second byte holds the controller's
+/// problem.
 void CanLink::on_error_frame(const wire::CanFrame& frame) {
     ++counts_.error_frames;
     const std::uint8_t controller = frame.data[1];
@@ -103,8 +103,9 @@ void CanLink::on_error_frame(const wire::CanFrame& frame) {
     }
 }
 
-/// Who is down or off the bus hears nothing; whose receiver was error-passive is so no longer after one
-/// frame, whose transmitter, after kSentToRecover. Not every adapter says that it is back.
+/// Received traffic clears states: a controller that is down or bus-off receives nothing, a receiver leaves
+/// error-passive after one frame, and a transmitter after kSentToRecover. Some adapters do not report
+/// recovery.
 void CanLink::on_traffic(bool is_own) {
     const bool is_passive = state_ == LinkState::error_passive;
     sent_since_error_ += is_own ? 1 : 0;
@@ -144,7 +145,7 @@ void CanLink::set_error_passive(bool is_transmitter) {
     is_transmitter_passive_ = is_transmitter;
     sent_since_error_ = 0;
     set(LinkState::error_passive,
-        "the adapter is error-passive: nobody acknowledges, other bit rates, or a disturbed line");
+        "the adapter is error-passive: no node acknowledges, the bit rates differ, or the line is disturbed");
 }
 
 void CanLink::set(LinkState state, std::string why) {

@@ -24,7 +24,7 @@
 namespace octoskin {
 namespace {
 
-/// Nobody reads an answer there any more.
+/// The client has closed its side: an answer would not be read.
 bool has_gone(int descriptor) {
     pollfd client{descriptor, 0, 0};
     return ::poll(&client, 1, 0) > 0 && (client.revents & (POLLHUP | POLLERR)) != 0;
@@ -35,7 +35,7 @@ bool has_sent_something(int descriptor) {
     return ::poll(&client, 1, 0) > 0;
 }
 
-/// The process at the other end and its user: 0 and the overflow user, where they cannot be seen.
+/// The process at the other end and its user; 0 and the overflow user if they are not visible.
 ucred peer_of(int descriptor) {
     constexpr uid_t kOverflow = 65534;
     ucred peer{};
@@ -86,8 +86,8 @@ ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLo
 
 ControlSocket::~ControlSocket() {
     close_clients();
-    ::unlink(file_.c_str());               // while it still answers: nobody else has the name yet
-    socketcan::close_socket(descriptor_);  // with what clients sent that were not let in
+    ::unlink(file_.c_str());  // while it still answers, so that no other process has the name yet
+    socketcan::close_socket(descriptor_);  // drops what clients sent that were not accepted
 }
 
 void ControlSocket::close_clients() {
@@ -105,10 +105,10 @@ void ControlSocket::watch() {
 void ControlSocket::accept() {
     const int descriptor = ::accept4(descriptor_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (descriptor < 0) {
-        // Whoever cannot be let in stays at the door, which would keep the loop turning.
+        // A client that cannot be accepted keeps the descriptor readable, which would keep the loop busy.
         is_resting_ = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
         if (!is_resting_) return;
-        spdlog::warn("{}: {}: nobody new is let in for a while", file_.string(), std::strerror(errno));
+        spdlog::warn("{}: {}: no new client is accepted for a while", file_.string(), std::strerror(errno));
         acceptable_ = EventSource();
         return;
     }
@@ -125,8 +125,8 @@ void ControlSocket::accept() {
     make_room();
 }
 
-/// One more than are served: one of them is refused, which may be the new one. Of too many that were refused
-/// the one that came first goes.
+/// If there is one client too many, one of them is refused, possibly the new one. If there are too many
+/// refused clients, the first of them is dropped.
 void ControlSocket::make_room() {
     if (served() > clients_max_) {
         Client* const found = one_to_go();
@@ -144,22 +144,22 @@ std::size_t ControlSocket::served() const {
         clients_, [](const Client& client) { return !client.is_refused && client.ticket == 0; }));
 }
 
-/// Those that were refused apart.
+/// Without the refused clients.
 std::size_t ControlSocket::places_of(int process) const {
     return static_cast<std::size_t>(std::ranges::count_if(clients_, [process](const Client& client) {
         return client.process == process && !client.is_refused;
     }));
 }
 
-/// For the newest client, which is there already, and of which nothing can be said yet. Null: there is none
-/// that may go for it.
+/// Finds a client to drop for the newest one, which is already in the list and about which nothing is known
+/// yet. Null: there is none.
 ControlSocket::Client* ControlSocket::one_to_go() {
     const std::size_t places_of_new = places_of(clients_.back().process);
     Client* found = nullptr;
     std::pair<std::size_t, bool> found_rank{};
-    for (Client& client : clients_) {  // in the order they came
+    for (Client& client : clients_) {  // in the order of arrival
         if (&client == &clients_.back()) break;
-        // Who has sent something that was not read yet is about to ask.
+        // A client whose input is not read yet is about to ask.
         if (client.is_refused || client.ticket != 0 || has_sent_something(client.descriptor)) continue;
         const bool is_half = !client.has_asked || !client.request.empty();
         const std::size_t places = places_of(client.process);
@@ -178,8 +178,8 @@ void ControlSocket::watch(Client& client) {
     });
 }
 
-/// One request: the descriptor stays readable while there are more, and the loop comes back when all others
-/// have had their turn. What a client asks in one go must not keep the bus waiting.
+/// Handles one request. The descriptor stays readable while there are more, and the loop returns to it after
+/// all others: several requests of one client must not delay the bus.
 bool ControlSocket::serve(Client& client) {
     std::array<char, 512> bytes{};
     const ssize_t seen = ::recv(client.descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_PEEK);
@@ -192,7 +192,7 @@ bool ControlSocket::serve(Client& client) {
     (void)socketcan::receive_text(client.descriptor, std::span(bytes).first(taken));
     if (client.request.size() > kRequestMax) {
         refuse(client,
-               fmt::format("a request has at most {} bytes, this one has more: ask about parts of it",
+               fmt::format("a request has at most {} bytes, and this one has more: ask about parts of it",
                            kRequestMax),
                ExitCode::usage);
     }
@@ -203,14 +203,14 @@ bool ControlSocket::serve(Client& client) {
     if (!is_whole) return true;
     client.asked = monotonic_now();
     client.has_asked = true;
-    // Who has given up waiting must not have a recording begun that it knows nothing of.
+    // A client that has stopped waiting must not start a recording without knowing it.
     if (has_gone(client.descriptor)) return false;
     const std::string request = std::exchange(client.request, {});
     return answer(client, request);
 }
 
-/// At once, for it may have no end. A client that is still sending would not come to read the answer if the
-/// connection were closed now: it goes when its line ends, or as one that is idle.
+/// Sends the refusal at once, because the request may have no end. A client that is still sending would not
+/// read the answer if the connection were closed now: it is dropped when its line ends, or when it is idle.
 void ControlSocket::refuse(Client& client, const std::string& error, ExitCode code) {
     ++dropped_;
     client.is_refused = true;
@@ -234,7 +234,7 @@ bool ControlSocket::answer(Client& client, const std::string& request) {
                                          ExitCode::unavailable));
     }
     client.ticket = tickets_;
-    client.readable = EventSource();  // the one at work just now: nothing of it is used any more
+    client.readable = EventSource();  // the one that calls this now: nothing of it is used after this
     return true;
 }
 
@@ -257,7 +257,7 @@ void ControlSocket::drop(int descriptor) {
     const auto client = std::ranges::find(clients_, descriptor, &Client::descriptor);
     if (client == clients_.end()) return;
     if (client->ticket != 0) gone_(client->ticket);
-    clients_.erase(client);  // with its own source, which may be at work just now
+    clients_.erase(client);  // with its event source, which may call this now
     socketcan::close_socket(descriptor);
 }
 
@@ -274,7 +274,7 @@ void ControlSocket::drop_idle() {
     for (const Client& client : clients_) {
         if (client.ticket != 0 || now - client.asked <= idle_max_) continue;
         idle.push_back(client.descriptor);
-        dropped_ += client.is_refused ? 0U : 1U;  // that one is counted already
+        dropped_ += client.is_refused ? 0U : 1U;  // a refused one is counted already
     }
     for (const int descriptor : idle) drop(descriptor);
     drop_gone();

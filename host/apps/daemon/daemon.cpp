@@ -66,12 +66,12 @@ ExitCode Daemon::run() {
     return static_cast<ExitCode>(outcome);
 }
 
-/// What keeps a recording from its end keeps no map from being saved.
+/// A failure to end the recording must not keep the map from being saved.
 void Daemon::Parts::stop_recording() {
     try {
         recordings.stop(monotonic_now(), "the daemon ended");
     } catch (const std::exception& error) {
-        spdlog::error("the recording has no end: {}", error.what());
+        spdlog::error("the recording could not be ended: {}", error.what());
     }
 }
 
@@ -98,7 +98,7 @@ void Daemon::Parts::watch() {
     for (const int signal : {SIGTERM, SIGINT, SIGQUIT})
         sources.push_back(loop.on_signal(signal, [this] { loop.stop(0); }));
     sources.push_back(loop.on_signal(SIGXCPU, [this] {
-        spdlog::error("the processor time that this process may use is over (ulimit -t): raise the limit");
+        spdlog::error("the processor time limit of this process is reached (ulimit -t): raise the limit");
         loop.stop(static_cast<int>(ExitCode::no_resources));
     }));
     sources.push_back(loop.on_readable(faults.descriptor(), [this] { faults.rethrow(); }));
@@ -128,7 +128,7 @@ void Daemon::Parts::attend() {
     last_used.note(pipeline, monotonic_now());
     if (const auto slept = map_time.attend(pipeline, inputs.reckoned_bus_now(monotonic_now()));
         slept > Nanoseconds{0})
-        spdlog::info("the machine slept for {:.0f} s: the map is older by that", seconds_of(slept));
+        spdlog::info("the machine slept for {:.0f} s: the map is older by that time", seconds_of(slept));
     if (reload_pace.is_due(monotonic_now())) begin_reload();
     tell_problems();
     for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);
@@ -168,11 +168,11 @@ std::string Daemon::Parts::answer(const std::string& line) {
     std::optional<AnswerRoom> room;
     try {
         room.emplace(kRoomBytes);
-    } catch (const std::bad_alloc&) {  // so little is left that the answer might not even be taken apart
+    } catch (const std::bad_alloc&) {  // too little is left to process even the answer
         return AnswerRoom::kRefusal;
     }
     if (line == "status") {
-        inputs.catch_up();  // the loop may have been busy with an image: what came meanwhile counts
+        inputs.catch_up();  // the loop may have been busy with an image: use what arrived meanwhile
         return status_json(view()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     }
     if (line == "hello") return R"({"ok":true})";

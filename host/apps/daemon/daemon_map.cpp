@@ -10,7 +10,7 @@
 
 namespace octoskin {
 
-/// After the sockets: nothing in the folder is touched by a daemon that is one too many.
+/// After the sockets: a second daemon must not touch the folder.
 Status<AppError> Daemon::Parts::take_folder() {
     auto taken = MapHome::take(request.map_folder);
     if (!taken) return unexpected(taken.error());
@@ -23,30 +23,29 @@ Status<AppError> Daemon::Parts::take_folder() {
     return Done{};
 }
 
-/// Its ages grow by what passed since it was saved, here and until its first measurement.
+/// Its ages grow by the time since it was saved, here and until its first measurement.
 void Daemon::Parts::go_on_with(KeptMap kept) {
     for (const std::string& warning : kept.warnings) spdlog::warn("{}", warning);
     if (kept.is_whole && !is_placed_as(kept.placement_crc32)) kept.map_time.reset();
     const auto passed_s = map_time.begin_with(kept.map, kept.map_time);
-    spdlog::info("going on with the saved map: {} known voxels, {}", kept.map.known_voxels(),
+    spdlog::info("continuing with the saved map: {} known voxels, {}", kept.map.known_voxels(),
                  passed_s ? fmt::format("{} s older", *passed_s) : "all of them stale");
     pipeline.begin_with(std::move(kept.map));
 }
 
-/// Whether measurements with that placement lie in the map where those of today do. If not, what the map has
-/// may lie elsewhere than the robot finds it: all of it is stale until it is seen again.
+/// Whether measurements with that placement lie in the map where present ones do. If not, the contents may
+/// lie elsewhere for the robot: all of it is stale until it is seen again.
 bool Daemon::Parts::is_placed_as(std::uint32_t placement_crc32) const {
     if (placement_crc32 == settings.recorded.placement_crc32) return true;
     spdlog::warn(
         "the rig or the robot's URDF places base, sensors or camera elsewhere than when the map was made: "
-        "all "
-        "of the map is stale until it is seen again; to begin with an empty map, end octoskin, move {} away "
-        "and start it",
+        "all of the map is stale until it is seen again; to begin with an empty map, end octoskin, move {} "
+        "away and start it",
         kMapFilesText);
     return false;
 }
 
-/// Nothing may have been measured for long.
+/// The last measurement may be long ago.
 SnapshotOrigin Daemon::Parts::make_ready_to_save(FusedMap& copy) {
     const HostTime bus = inputs.reckoned_bus_now(monotonic_now());
     map_time.note(copy, bus);
@@ -55,15 +54,15 @@ SnapshotOrigin Daemon::Parts::make_ready_to_save(FusedMap& copy) {
             .map_time = map_time.go_on(copy, bus)};
 }
 
-/// Where a person looks for them.
+/// At the place where a person looks for the maps.
 void Daemon::Parts::go_where_home_is(std::optional<OpenFolder> next) {
     if (!next) return;
     keeper->move_to(NamedFolder(std::move(*next)));
-    spdlog::warn("{}: the maps' folder was removed and made anew: the map goes on being saved there",
+    spdlog::warn("{}: the maps' folder was removed and made again: the map is still saved there",
                  home->where());
 }
 
-/// Since when the maps' folder does not answer; empty: it does, or may only be slow.
+/// Since when the maps' folder has not answered; empty: it answers, or may only be slow.
 std::optional<HostTime> Daemon::Parts::maps_silent_since(HostTime now) const {
     constexpr Nanoseconds kLookMax{3'000'000'000};
     const auto& looking = home->looking_since();
@@ -81,27 +80,28 @@ std::size_t Daemon::Parts::bytes_to_save(const MapConfig& map) noexcept {
 }
 
 void Daemon::Parts::save_map() {
-    // Counted if one is at work still; the next is not far.
+    // A save that is still running is counted as skipped; the next one is soon.
     (void)keeper->save(pipeline.map(), [this](FusedMap& copy) { return make_ready_to_save(copy); });
 }
 
 /// Why it could not be saved by `end`; empty: it is saved.
 std::string Daemon::Parts::save_last_map(HostTime end) {
     constexpr Nanoseconds kLookMax{500'000'000};
-    reserve = {};  // no sooner: the end of a recording would take it
+    reserve = {};  // not earlier: the end of a recording would use it
     go_where_home_is(home->look_again(std::min(kLookMax, end - monotonic_now())));
     const auto too_long = [this](const char* what) {
         const auto silent = home->looking_since();
-        return silent ? fmt::format("the maps' folder does not answer since {:.1f} s",
+        return silent ? fmt::format("the maps' folder has not answered for {:.1f} s",
                                     seconds_of(monotonic_now() - *silent))
                       : std::string(what);
     };
-    if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long for the save before");
+    if (!keeper->finish(end - monotonic_now()))
+        return too_long("the disk took too long for the previous save");
     FusedMap last = pipeline.take_map();
     SnapshotOrigin origin;
     try {
         origin = make_ready_to_save(last);
-    } catch (const std::bad_alloc&) {  // how old it is is not known to the next daemon: all of it is stale
+    } catch (const std::bad_alloc&) {  // the next daemon does not know its age: all of it is stale
         origin = {.mapping_crc32 = settings.recorded.mapping_crc32(),
                   .placement_crc32 = settings.recorded.placement_crc32};
     }

@@ -17,7 +17,7 @@ void Daemon::Parts::ask_reload() {
     const bool is_first = reload_pace.ask();
     if (reload_pace.is_due(now)) return begin_reload();
     if (is_first && !reading.begun())
-        spdlog::info("SIGHUP: the files are read in {:.1f} s, as they were a moment ago",
+        spdlog::info("SIGHUP: the files are read in {:.1f} s, because they were read a moment ago",
                      seconds_of(reload_pace.wait(now)));
 }
 
@@ -27,7 +27,7 @@ void Daemon::Parts::begin_reload() {
     try {
         reading.begin([request = request, held = settings.recorded] { return read_next(request, held); });
     } catch (const std::bad_alloc&) {
-        obey_reload(fail(ExitCode::bad_config, "no memory for what the files say"));
+        obey_reload(fail(ExitCode::bad_config, "no memory to read the rig, robot and mapping files"));
     }
 }
 
@@ -38,7 +38,7 @@ void Daemon::Parts::end_reload() {
 void Daemon::Parts::obey_reload(NextResult next) {
     const bool has_changed = take_next(std::move(next));
     reload_pace.obeyed(monotonic_now(), has_changed);
-    tell_problems();  // why it was refused, if it was
+    tell_problems();  // including the reason if it was refused
     (void)sd_notify(0, "READY=1");
 }
 
@@ -51,21 +51,21 @@ bool Daemon::Parts::take_next(NextResult next) {
     if (next && !next->has_value()) {
         ++reloads.unchanged;
         reload_error.clear();
-        spdlog::info("SIGHUP: rig, robot and mapping say what holds already; nothing changes");
+        spdlog::info("SIGHUP: rig, robot and mapping are unchanged");
         return false;
     }
     if (next && go_on_with(**next)) return true;
-    spdlog::error("not reloaded");  // why, the problems tell
+    spdlog::error("not reloaded");  // the problems contain the reason
     return next.has_value();
 }
 
-/// False, and as before: there is no memory for that. What follows the limits has no way back: where that
-/// needs memory that is not there the daemon ends, with the map still the pipeline's.
+/// False, with nothing changed: there is not enough memory. After the limits are set there is no way back: if
+/// a later step lacks memory, the daemon ends, with the map still in the pipeline.
 bool Daemon::Parts::go_on_with(Next& next) {
     std::optional<FusedMap> recorded =
-        recordings.last_map();  // what the limits change is not the recording's
+        recordings.last_map();  // changes by the new limits are not part of the recording
     if (!take_limits(next.settings.mapping.map)) return false;
-    recordings.stop(monotonic_now(), "the daemon read its files anew (SIGHUP)", std::move(recorded));
+    recordings.stop(monotonic_now(), "the daemon re-read its files (SIGHUP)", std::move(recorded));
     inputs.prepare_for(next.settings.host.rig);
     const std::uint64_t dropped = settle_pipeline();
     if (!is_placed_as(next.settings.recorded.placement_crc32)) map_time.forget(pipeline);
@@ -77,13 +77,13 @@ bool Daemon::Parts::go_on_with(Next& next) {
     queries.change_robot(settings.host);
     reload_error.clear();
     reloaded = monotonic_now();
-    spdlog::info("reloaded: rig '{}'; the map goes on; {} of what waited was not used",
+    spdlog::info("reloaded: rig '{}'; the map is kept; {} waiting inputs were not used",
                  settings.host.rig.name, dropped);
     tell_warnings(settings);
     return true;
 }
 
-/// Why the map cannot go on with these settings; empty if it can. Another resolution is refused as at the
+/// Why the map cannot be kept with these settings; empty if it can. Another resolution is refused as at the
 /// start: the next save would replace the map.
 std::string Daemon::Parts::why_map_ends(const Settings& next) const {
     const double now = settings.mapping.map.resolution_m;
@@ -93,7 +93,7 @@ std::string Daemon::Parts::why_map_ends(const Settings& next) const {
                        describe_other_voxels(request.map_folder / kMapFile, now, wanted), kMapFilesText);
 }
 
-/// While the pipeline goes on: what still waits must not make the map larger than the next start may load.
+/// While the pipeline still runs: waiting inputs must not make the map larger than the next start may load.
 bool Daemon::Parts::take_limits(const MapConfig& next) {
     try {
         AddressReserve next_reserve(bytes_to_save(next));
@@ -101,12 +101,12 @@ bool Daemon::Parts::take_limits(const MapConfig& next) {
         reserve = std::move(next_reserve);
         return true;
     } catch (const std::bad_alloc&) {
-        reload_error = "there is no memory for the map within its new limits beside the old one";
+        reload_error = "there is not enough memory for the map within its new limits beside the old one";
         return false;
     }
 }
 
-/// What waits in the pipeline that is about to go is used or counted; how much was not used.
+/// Uses or counts all that waits in the old pipeline; returns how much was not used.
 std::uint64_t Daemon::Parts::settle_pipeline() {
     const auto rejected = [this] {
         const PipelineAccounts& accounts = pipeline.accounts();

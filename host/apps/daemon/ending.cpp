@@ -38,11 +38,11 @@ void tell_load(Nanoseconds patience) {
 int tell_why_it_ends(const std::exception& thrown) {
     const auto shortage = shortage_in(thrown);
     if (!shortage) {
-        spdlog::critical("a defect of octoskin, please report it: {}; it saves the map and ends",
+        spdlog::critical("a defect of octoskin, please report it: {}; octoskin saves the map and ends",
                          thrown.what());
         return kInternalDefect;
     }
-    spdlog::critical("{}; it saves the map and ends", shortage->message);
+    spdlog::critical("{}; octoskin saves the map and ends", shortage->message);
     return static_cast<int>(shortage->code);
 }
 

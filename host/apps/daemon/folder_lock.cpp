@@ -16,10 +16,10 @@
 namespace octoskin {
 namespace {
 
-constexpr unsigned kMode = 0600;  // what others can open they can lock
+constexpr unsigned kMode = 0600;  // others could lock a file that they can open
 constexpr int kTries = 10;
 
-/// Who holds it wrote its process id there; empty if it could not.
+/// The process id that the holder wrote; empty if it could not.
 std::string holder_of(int descriptor) {
     std::array<char, 32> text{};
     const ssize_t count = ::pread(descriptor, text.data(), text.size(), 0);
@@ -27,7 +27,7 @@ std::string holder_of(int descriptor) {
                      : std::string();
 }
 
-/// Made by root in another user's folder, a lock that is root's would keep that user's octoskin out for ever.
+/// In a folder of another user, a lock file of root's would keep that user's octoskin out for ever.
 void give_to_owner(const OpenFile& file, const OpenFolder& folder) {
     struct stat status {};
     if (::geteuid() != 0 || ::fstat(folder.descriptor(), &status) != 0) return;
@@ -40,15 +40,15 @@ Result<OpenFile, FolderError> open_or_create(const OpenFolder& folder) {
     auto created = folder.create_new(FolderLock::kFile, kMode);
     if (created) give_to_owner(*created, folder);
     if (created || created.error().fault != FolderFault::is_there) return created;
-    return folder.open_file(FolderLock::kFile);  // another process was quicker
+    return folder.open_file(FolderLock::kFile);  // another process was faster
 }
 
-/// Of a file that has no other name: what is written there is written nowhere else.
+/// For a file with no other name, so that no other file is written.
 void write_process_id(const OpenFile& file) {
     const std::string own = std::to_string(::getpid());
     const Descriptor to_write(::open(file.path_for_libraries().c_str(), O_WRONLY | O_CLOEXEC));
     if (!to_write) return;
-    // On a full disk it goes without: who holds the lock counts, not what is in it.
+    // On a full disk the id is missing: only the lock matters.
     (void)!::ftruncate(to_write.get(), 0);
     (void)!::pwrite(to_write.get(), own.data(), own.size(), 0);
 }
@@ -78,23 +78,25 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
         if (!file) return unexpected(cannot_save(named / kFile, file.error()));
         if (::flock(file->descriptor(), LOCK_EX | LOCK_NB) != 0) {
             return cannot_create(named, "another octoskin" + holder_of(file->descriptor()) +
-                                            " keeps its map there; stop it, or name another folder");
+                                            " saves its map there; stop it, or name another folder");
         }
         struct stat status {};
         if (::fstat(file->descriptor(), &status) != 0)
             return unexpected(cannot_save(named, folder_error_of(errno, named)));
         if (status.st_nlink == 1) {
-            (void)::fchmod(file->descriptor(), kMode);  // of an earlier version's, or a copied one
+            (void)::fchmod(file->descriptor(), kMode);  // a file of an earlier version, or a copied one
             write_process_id(*file);
             return FolderLock(folder, std::move(*file));
         }
-        // Several names, or none any more: that file is left as it is, and a new one takes its place.
+        // A file with several names, or none any more, is left as it is; a new one replaces it.
         if (status.st_nlink > 1) {
             if (const auto removed = folder.remove(FolderLock::kFile); !removed)
                 return unexpected(cannot_save(named, removed.error()));
         }
     }
-    return cannot_create(named, "its lock file is replaced again and again; what else works in this folder?");
+    return cannot_create(
+        named,
+        "its lock file is replaced again and again; look for another program that works in this folder");
 }
 
 }  // namespace octoskin

@@ -13,9 +13,9 @@ namespace octoskin {
 namespace {
 
 constexpr std::chrono::milliseconds kCameraSilenceMax{2'000};
-/// Frames, and what is none, taken in one go before others have a turn.
+/// Datagrams of the CAN interface taken in one go before other inputs have their turn.
 constexpr int kFramesPerTurn = 256;
-// As many as wait for a loop that was held up. A flood does not keep the bus waiting for more.
+// As many as wait for a loop that was held up. A flood must not delay the bus for longer.
 constexpr int kDatagramsPerTurn = DatagramFeed::kWaitingMax;
 
 CanLink::Opener opener(const DaemonRequest& request, const HostRig& rig) {
@@ -81,17 +81,17 @@ std::optional<openni2::CameraMode> Inputs::mode_for(const HostRig& rig) const {
 }
 
 void Inputs::prepare_for(const HostRig& rig) {
-    catch_up();  // joint states that wait are in the order of the former rig
+    catch_up();  // waiting joint states are in the order of the former rig
     feed_joints(WallTime{std::numeric_limits<std::int64_t>::max()});
     if (!camera_ || mode_for(rig) == camera_mode_) return;
     camera_ready_ = EventSource();
     camera_->end();
-    while (auto frame = camera_->take()) take_depth(std::move(*frame));  // no more than wait there
+    while (auto frame = camera_->take()) take_depth(std::move(*frame));  // at most those that wait
     camera_leaving_ = std::move(camera_);
     depth_untimed_ = 0;
     camera_missing_ = {};
     camera_missing_.begun = monotonic_now();
-    camera_missing_.why = "it is being let go of, to be opened in another mode";
+    camera_missing_.why = "it is being released, to be opened in another mode";
     camera_tried_.reset();
 }
 
@@ -108,7 +108,7 @@ void Inputs::attend_camera() {
         camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
     } catch (const std::system_error& error) {
         camera_.reset();
-        camera_missing_.why = std::string("no thread to be had for it: ") + error.what();
+        camera_missing_.why = std::string("no thread left for it: ") + error.what();
     }
 }
 
@@ -134,19 +134,19 @@ void Inputs::attend() {
         });
     }
     if (!request_.is_listen_only) {
-        const bool is_time_unknown = !bus_time_.at(now);  // nodes speak: what they say waits for nothing else
+        const bool is_time_unknown = !bus_time_.at(now);  // active nodes wait for the time only
         if (is_time_unknown || pipeline_.intake().wants_exchange()) sync_.hasten();
         if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
     }
     attend_camera();
-    catch_up();  // what this host sent comes back without waking anybody, where there is no kernel
+    catch_up();  // without a kernel, the echoes of this host's frames wake no one
     exchange_alone();
     const auto bus_now = bus_time_.at(now);
     if (bus_now && now - told_ > BusTime::kSilent) pipeline_.on_silence(*bus_now);
 }
 
-/// Joint states of this machine are dated by its own clock: they need no bus that works. To the pipeline, and
-/// in a recording, it is as if SYNC and FOLLOW_UP had been on one.
+/// Joint states of this machine have times of its own clock, so they need no working bus. For the pipeline
+/// and a recording it looks as if SYNC and FOLLOW_UP had been on one.
 void Inputs::exchange_alone() {
     if (request_.is_listen_only || !joints_ || joints_->samples() == 0) return;
     const WallTime stamp = wall_now();
@@ -176,18 +176,18 @@ bool Inputs::is_flooded(HostTime now) const {
 }
 
 void Inputs::catch_up() {
-    constexpr int kTurnsMax = 64;  // as much as the receive buffer holds
+    constexpr int kTurnsMax = 64;  // as many as the receive buffer holds
     const WallTime begun = wall_now();
     int datagrams_left = kDatagramsPerTurn;
     for (int i = 0; i < kTurnsMax && !drain_can(datagrams_left); ++i) {
-        if (can_.newest() > begun) return;  // the rest came meanwhile: of a flood there is always more
+        if (can_.newest() > begun) return;  // the rest arrived meanwhile: in a flood there is always more
     }
 }
 
-/// The bus's time is told by the order of stamps: what comes through the socket takes its place in it.
+/// The order of time stamps defines the bus time, so the samples of the socket are sorted in.
 bool Inputs::drain_can(int& datagrams_left) {
     for (int frames_left = kFramesPerTurn; frames_left > 0;) {
-        collect_joints(datagrams_left);  // first: what it does not find comes later than the frame
+        collect_joints(datagrams_left);  // first: samples not found now arrive after the frame
         const auto received = can_.receive(frames_left);
         if (!received && frames_left <= 0) return false;
         feed_joints(received ? std::optional(received->entry.stamp) : std::nullopt);
@@ -197,8 +197,8 @@ bool Inputs::drain_can(int& datagrams_left) {
     return false;
 }
 
-/// With a socket for joint states the rig's joint node has its place: frames of two arms, or of two clocks,
-/// under one name would make poses that never were.
+/// With a socket for joint states, its samples replace those of the rig's joint node: frames of two arms, or
+/// of two clocks, under one node id would give poses that never were.
 void Inputs::take_frame(const socketcan::Received& received) {
     bus_busy_ += time_on_bus(received.entry.frame, bit_rates_);
     if (joints_ && wire::node_of(received.entry.frame.can_id) == joint_node_) {
@@ -219,7 +219,7 @@ void Inputs::take_frame(const socketcan::Received& received) {
     }
 }
 
-/// This host knows when its own SYNC was on the bus: another's word for it can only be wrong.
+/// This host knows when its own SYNC was on the bus: another host's time for it can only be wrong.
 bool Inputs::is_foreign_follow_up(const socketcan::Received& received) const {
     const bool is_follow_up =
         received.entry.frame.can_id == wire::can_id(wire::FrameType::follow_up, wire::kHostId);
@@ -233,7 +233,8 @@ bool Inputs::is_of_node(const wire::CanFrame& frame) const {
            pipeline_.intake().nodes().knows(wire::node_of(frame.can_id));
 }
 
-/// Who only listens has the clock of the host that sends SYNC: what this machine measures is put on it.
+/// A host that only listens uses the clock of the host that sends SYNC, and converts its own measurements to
+/// it.
 void Inputs::hear_host(const socketcan::Received& received, HostTime at) {
     if (!request_.is_listen_only || wire::node_of(received.entry.frame.can_id) != wire::kHostId) return;
     const auto decoded = wire::decode(received.entry.frame);
@@ -244,7 +245,7 @@ void Inputs::hear_host(const socketcan::Received& received, HostTime at) {
         foreign_clock_.on_follow_up(*follow_up);
 }
 
-/// What a SYNC asks of this host: the answer of its local joints, and the FOLLOW_UP if it was its own.
+/// The answer to a SYNC: of its local joints, and the FOLLOW_UP if the SYNC was its own.
 void Inputs::answer_sync(const socketcan::Received& received, HostTime at) {
     if (received.entry.frame.can_id != wire::can_id(wire::FrameType::sync, wire::kHostId)) return;
     const auto decoded = wire::decode(received.entry.frame);
@@ -260,7 +261,7 @@ void Inputs::answer_sync(const socketcan::Received& received, HostTime at) {
         (void)can_.send(wire::encode(*follow_up, wire::kHostId));
 }
 
-/// Into the pipeline, how long that took since the frame was here, and how old the readings are by then.
+/// Passes the frame to the pipeline, and notes the time since its arrival and the age of the readings.
 void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
     if (is_of_node(frame)) told_ = monotonic_now();
     recordings_.on_can(frame, stamp);
@@ -275,7 +276,7 @@ void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
     }
 }
 
-/// The pipeline's "now" is at this frame only if it took it: one that it refused must not hold the time up.
+/// The pipeline's "now" is at this frame only if it accepted it: a refused one must not stop the time.
 void Inputs::note_host_frame(const wire::CanFrame& frame, WallTime stamp) {
     const bool is_taken = pipeline_.intake().host_clock().newest_stamp() == stamp;
     if (is_taken && wire::node_of(frame.can_id) == wire::kHostId)
@@ -292,7 +293,7 @@ void Inputs::collect_joints(int& datagrams_left) {
             return;
         }
         if (!sample) continue;        // counted by the socket
-        if (sample->is_of_several) {  // which of them is the arm's nobody can tell
+        if (sample->is_of_several) {  // which of them is the arm's cannot be decided
             ++joints_of_several_;
         } else if (has_lost_its_place(*sample)) {
             ++joints_late_;
@@ -303,19 +304,19 @@ void Inputs::collect_joints(int& datagrams_left) {
     if (datagrams_left == 0) has_joints_left_ = true;
 }
 
-/// Of a flood: frames that came later are in the pipeline already, to which it would be a clock set back. Or
-/// it came before a reload: the joints of another rig, or of another order, would make a pose that never was.
+/// In a flood: later frames are in the pipeline already, for which it would be a clock set back. Or it
+/// arrived before a reload: joints of another rig, or in another order, would give a pose that never was.
 bool Inputs::has_lost_its_place(const JointSample& sample) const {
-    constexpr std::int64_t kClockSetNs = 1'000'000'000;  // that is no turn too late
+    constexpr std::int64_t kClockSetNs = 1'000'000'000;  // more than a delayed turn
     const auto is_before = [&sample](const std::optional<WallTime>& other) {
         return other && sample.came < *other && other->ns - sample.came.ns < kClockSetNs;
     };
     return is_before(rig_changed_) || (has_joints_left_ && is_before(newest_stamp_));
 }
 
-/// Frames of the bus have overtaken a sample that waited for the end of a burst: the order of stamps tells
-/// the bus's time. By more than a sample can have waited, and this loop with it, only a clock that was set
-/// back differs.
+/// Frames of the bus may overtake a sample that waited for the end of a burst, but the order of time stamps
+/// defines the bus time. Only a clock that was set back differs by more than a sample, and this loop with it,
+/// can have waited.
 WallTime Inputs::place_of(const JointSample& sample) const {
     constexpr Nanoseconds kOvertakenMax = 2 * JointBurst::kWaitMax;
     const bool is_overtaken = newest_stamp_ && *newest_stamp_ > sample.came &&
@@ -323,7 +324,7 @@ WallTime Inputs::place_of(const JointSample& sample) const {
     return is_overtaken ? *newest_stamp_ : sample.came;
 }
 
-/// Those that came by then; empty: all, but what may be of a burst that is not over.
+/// Those that arrived by `until`; empty: all, except possible parts of a burst that is not over.
 void Inputs::feed_joints(std::optional<WallTime> until) {
     while (!joints_waiting_.empty() && (!until || joints_waiting_.front().came <= *until)) {
         const JointBurst::Turn turn =
@@ -334,7 +335,7 @@ void Inputs::feed_joints(std::optional<WallTime> until) {
         const auto frames = turn == JointBurst::Turn::use
                                 ? local_joints_.frames(sample.sampled, sample.position)
                                 : unexpected(LocalJointFault::too_soon);
-        if (!frames) {  // what else may be wrong the socket refuses and counts already
+        if (!frames) {  // the socket refuses and counts all other faults
             ++joints_thinned_;
             continue;
         }
@@ -348,7 +349,7 @@ void Inputs::drain_camera() {
 }
 
 void Inputs::take_depth(DepthFrame frame) {
-    // Now, not before: by the time of what was read so far it would be a frame of the future.
+    // Not earlier: relative to the input read so far it would be a frame of the future.
     catch_up();
     if (request_.is_listen_only) {
         const auto ahead = foreign_clock_.ahead(monotonic_now());

@@ -10,7 +10,7 @@
 namespace octoskin {
 namespace {
 
-/// What a process calls itself, any bytes but a newline: only what a terminal shows as it is.
+/// The name of a process may be any bytes: only printable ones are kept.
 std::string program_of(pid_t pid) {
     if (pid <= 0) return {};
     std::ifstream file(fmt::format("/proc/{}/comm", pid));
@@ -26,7 +26,7 @@ std::string program_of(pid_t pid) {
 std::string describe(const JointSender& sender, const std::string& program) {
     std::string text = sender.pid > 0 ? fmt::format("process {} ({}{}user {})", sender.pid, program,
                                                     program.empty() ? "" : ", ", sender.uid)
-                                      : "a process that cannot be seen from here";
+                                      : "a process that is not visible from here";
     if (!sender.address.empty()) text += " at " + sender.address;
     return text;
 }

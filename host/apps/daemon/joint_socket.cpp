@@ -32,7 +32,7 @@ bool is_too_large(double position) {
     return std::abs(position) > LocalJoints::kLargest;
 }
 
-/// What a time that is not CLOCK_MONOTONIC in seconds mostly is.
+/// The usual error of a time that is not CLOCK_MONOTONIC in seconds.
 std::string guess_at(double time, double now_s) {
     constexpr double kYear2001S = 1e9;
     constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
@@ -42,7 +42,7 @@ std::string guess_at(double time, double now_s) {
     return time >= kYear2001S ? ": it looks like wall time" : "";
 }
 
-/// Of numbers as many as joints, and maybe a time before them.
+/// `numbers`: as many as joints, and maybe a time before them.
 std::string describe_too_large(std::span<const double> numbers, std::size_t joint_count) {
     const auto positions = numbers.last(std::min(joint_count, numbers.size()));
     const auto found = std::ranges::find_if(positions, is_too_large);
@@ -82,7 +82,7 @@ std::string describe(JointTextFault fault, std::string_view text, std::size_t jo
     if (fault == JointTextFault::wrong_count)
         return fmt::format("{}: {} numbers, the rig has {} joints", name, numbers.size(), joint_count);
     if (fault == JointTextFault::too_large) return name + describe_too_large(numbers, joint_count);
-    if (numbers.size() != joint_count + 1) return name;  // not told
+    if (numbers.size() != joint_count + 1) return name;  // it has no time
     return fmt::format("{}: {}, and CLOCK_MONOTONIC here is {:.3f}{}", name, numbers.front(), seconds_at(now),
                        guess_at(numbers.front(), seconds_at(now)));
 }
@@ -92,7 +92,7 @@ Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& fil
     if (!descriptor) return unexpected(descriptor.error());
     try {
         if (!socketcan::want_stamps(*descriptor) || !socketcan::want_senders(*descriptor))
-            throw std::system_error(errno, std::generic_category(), "cannot ask for stamps and senders");
+            throw std::system_error(errno, std::generic_category(), "cannot enable time stamps and senders");
         return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1), joint_count);
     } catch (const std::system_error& error) {
         socketcan::close_socket(*descriptor);
@@ -118,7 +118,7 @@ JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {
 
 JointSocket::~JointSocket() {
     if (!feed_) return;
-    ::unlink(file_.c_str());  // while it still answers: nobody else has the name yet
+    ::unlink(file_.c_str());  // while it still answers, so that no other process has the name yet
 }
 
 bool JointSocket::receive(std::optional<JointSample>& sample) {

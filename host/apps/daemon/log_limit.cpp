@@ -16,7 +16,7 @@ void LogLimit::log(const spdlog::details::log_msg& message) {
     }
     if (const std::uint64_t left_out = std::exchange(level.left_out, 0); left_out > 0) {
         const std::string text = fmt::format(
-            "{} lines are left out here, as there were too many; `octoskin status` says what is wrong",
+            "{} lines are left out here, because there were too many; `octoskin status` lists the problems",
             left_out);
         pass({message.logger_name, message.level, text});
     }

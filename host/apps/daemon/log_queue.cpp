@@ -27,13 +27,13 @@
 namespace octoskin {
 namespace {
 
-/// Of the queue that is this process's log; null: there is none.
+/// Counter of the queue that is this process's log; null: there is none.
 std::atomic<const std::atomic<std::size_t>*> waiting_at_crash = nullptr;
 static_assert(std::atomic<std::size_t>::is_always_lock_free, "it is read in a signal handler");
 
 }  // namespace
 
-/// What the thread needs, for as long as it needs it: it may outlive the queue.
+/// State shared with the thread, which may outlive the queue.
 class LogQueue::Work {
   public:
     Work(std::vector<spdlog::sink_ptr> sinks, std::size_t bytes_max)
@@ -51,7 +51,7 @@ class LogQueue::Work {
         spdlog::details::log_msg_buffer message;
         std::uint64_t dropped_before = 0;
     };
-    /// What a line takes beside its text.
+    /// Bytes of a line beside its text.
     static constexpr std::size_t kLineBytes = sizeof(Line);
     [[nodiscard]] static std::size_t bytes_of(const spdlog::details::log_msg& message) {
         return message.payload.size() + kLineBytes;
@@ -69,7 +69,7 @@ class LogQueue::Work {
     std::uint64_t dropped_untold_ = 0;  ///< since the newest line that waits
     std::optional<HostTime> writing_since_;
     bool is_ending_ = false;
-    std::atomic<std::size_t> waiting_ = 0;  ///< the one that is being written included
+    std::atomic<std::size_t> waiting_ = 0;  ///< includes the one being written
 };
 
 void LogQueue::Work::add(const spdlog::details::log_msg& message) {
@@ -79,7 +79,7 @@ void LogQueue::Work::add(const spdlog::details::log_msg& message) {
         try {
             if (bytes_ + bytes > bytes_max_) throw std::bad_alloc();
             lines_.push_back({spdlog::details::log_msg_buffer(message), dropped_untold_});
-        } catch (const std::bad_alloc&) {  // no room, of whatever kind
+        } catch (const std::bad_alloc&) {  // no memory of any kind
             ++dropped_;
             ++dropped_untold_;
             return;
@@ -99,14 +99,14 @@ void LogQueue::Work::run() {
         const Line line = std::move(lines_.front());
         lines_.pop_front();
         bytes_ -= bytes_of(line.message);
-        // With nothing behind it that could tell of them.
+        // If no line behind it can report them.
         const std::uint64_t dropped_after = lines_.empty() ? std::exchange(dropped_untold_, 0) : 0;
         writing_since_ = monotonic_now();
         lock.unlock();
         try {
             write(line);
             tell_dropped(dropped_after);
-        } catch (const std::exception&) {  // there is nowhere to say it
+        } catch (const std::exception&) {  // it cannot be logged
         }
         lock.lock();
         writing_since_.reset();
@@ -122,8 +122,8 @@ void LogQueue::Work::write(const Line& line) {
 
 void LogQueue::Work::tell_dropped(std::uint64_t count) {
     if (count == 0) return;
-    const std::string text =
-        fmt::format("{} lines are left out here, as what reads the log took none for too long", count);
+    const std::string text = fmt::format(
+        "{} lines are left out here, because the reader of the log took none for too long", count);
     for (const auto& each : sinks_)
         if (each->should_log(spdlog::level::warn))
             each->log(spdlog::details::log_msg("octoskin", spdlog::level::warn, text));
@@ -181,7 +181,7 @@ const std::atomic<std::size_t>& LogQueue::waiting() const {
 
 namespace {
 
-/// Only what a signal handler may do. The signal's own action follows: it is the default again by then.
+/// Does only what a signal handler may do. The signal's default action, restored by then, follows.
 void wait_for_log(int signal) {
     constexpr long kStepNs = 10'000'000;
     const auto* const waiting = waiting_at_crash.load();
@@ -193,7 +193,7 @@ void wait_for_log(int signal) {
     (void)::raise(signal);
 }
 
-/// In place of the library's own words, which wait for what reads standard error.
+/// Replaces the library's message, which waits for the reader of standard error.
 [[noreturn]] void log_and_abort() {
     try {
         if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
@@ -201,13 +201,13 @@ void wait_for_log(int signal) {
     } catch (const std::exception& thrown) {
         spdlog::critical("a defect of octoskin, please report it: {}", thrown.what());
     } catch (...) {
-        spdlog::critical("a defect of octoskin, please report it: something unknown was thrown");
+        spdlog::critical("a defect of octoskin, please report it: an exception of an unknown type");
     }
     std::abort();
 }
 
-/// To standard error, but not through `stderr`: a write that hangs there would hold its lock, which the end
-/// of a process takes.
+/// Writes to standard error, but not through `stderr`: a write that hangs there would hold its lock, which
+/// the end of a process takes.
 spdlog::sink_ptr make_sink() {
     const int descriptor = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     std::FILE* const file = descriptor < 0 ? nullptr : ::fdopen(descriptor, "w");  // never closed
@@ -217,7 +217,7 @@ spdlog::sink_ptr make_sink() {
         file, spdlog::color_mode::automatic);
 }
 
-/// A signal that another part has taken already, as a sanitizer, is left alone.
+/// Leaves a signal alone that another part handles already, as a sanitizer does.
 void write_log_before_crash(const LogQueue& queue) {
     waiting_at_crash = &queue.waiting();
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {

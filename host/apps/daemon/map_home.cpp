@@ -14,20 +14,20 @@ bool has_map(const OpenFolder& folder) {
     return false;
 }
 
-/// A folder that was moved still has a name, somewhere.
+/// A folder that was moved still has a link count.
 bool has_name(const OpenFolder& folder) {
     struct stat status {};
     return ::fstat(folder.descriptor(), &status) == 0 && status.st_nlink > 0;
 }
 
-/// By the kernel's word: a name may lead elsewhere by now.
+/// From the kernel: by now its name may lead elsewhere.
 std::filesystem::path path_of(const OpenFolder& folder) {
     std::error_code error;
     auto path = std::filesystem::read_symlink(folder.path_for_libraries(), error);
     return error ? std::filesystem::absolute(folder.shown()).lexically_normal() : path;
 }
 
-/// What is at an absolute path, if no link lies on the way.
+/// Opens an absolute path, if there is no link on the way.
 Result<OpenFolder, FolderError> open_without_links(const std::filesystem::path& path) {
     const auto root = OpenFolder::open("/", FolderAccess::write);
     if (!root) return root;
@@ -49,8 +49,9 @@ bool MapHome::look() {
     problem_.clear();
     if (is_in_its_place()) {
         if (!folder().is_still_there() && std::filesystem::absolute(named_).lexically_normal() != place_)
-            problem_ = fmt::format("{}: leads elsewhere since octoskin began, and is not followed there; {}",
-                                   named_.string(), where_it_goes());
+            problem_ =
+                fmt::format("{}: leads elsewhere since octoskin started, and is not followed there; {}",
+                            named_.string(), where_it_goes());
         return false;
     }
     const auto there = open_without_links(place_);
@@ -63,11 +64,11 @@ bool MapHome::look() {
                                FolderLock::cannot_save(place_, there.error()).message, where_it_goes());
         return false;
     }
-    if (has_map(*there)) {  // not to be locked either: another daemon may be about to begin with it
+    if (has_map(*there)) {  // not even locked: another daemon may be about to start with it
         problem_ = fmt::format(
-            "{}: this folder took the place of the maps' folder while octoskin ran, and has a map of its "
-            "own, which is not overwritten: move {} out of it, and this map is saved "
-            "there; or end octoskin and start it again to go on with that one; {}",
+            "{}: this folder replaced the maps' folder while octoskin ran, and contains another map, which "
+            "is not overwritten: move {} out of it to have this map saved there; or end octoskin and start "
+            "it again to continue with the other map; {}",
             place_.string(), kMapFilesText, where_it_goes());
         return false;
     }
@@ -95,19 +96,19 @@ std::string MapHome::where() const {
 
 std::string MapHome::where_it_goes() const {
     const std::string now = where();
-    return now.empty() ? "the map is not saved" : "the map goes on being saved in " + now;
+    return now.empty() ? "the map is not saved" : "the map is still saved in " + now;
 }
 
 std::string MapHome::why_not_there() const {
     if (has_name(folder())) {
         return fmt::format(
-            "{}: the maps' folder was moved away while octoskin ran; {}: move it back, or make an empty "
-            "folder in its place, and it is saved there",
+            "{}: the maps' folder was moved away while octoskin ran; {}: move it back, or create an empty "
+            "folder in its place to have the map saved there",
             place_.string(), where_it_goes());
     }
     return fmt::format(
-        "{}: the maps' folder was removed while octoskin ran, and the map is not saved: make an empty folder "
-        "in its place, and it is saved there",
+        "{}: the maps' folder was removed while octoskin ran, and the map is not saved: create an empty "
+        "folder in its place to have the map saved there",
         place_.string());
 }
 

@@ -30,26 +30,26 @@ Result<LoadedMap, AppError> load_to_go_on(const MapConfig& config, const FilePla
     auto loaded = load_map_of(config, file);
     if (!loaded) {
         const char* const remedy =
-            loaded.error().is_of_other_voxels ? ": say map.resolution_m as it was" : "";
+            loaded.error().is_of_other_voxels ? ": set map.resolution_m to its former value" : "";
         return refuse(loaded.error().message + remedy);
     }
     if (loaded->has_lost_colours) {
         return refuse(file.shown().string() +
-                      ": its voxels have colours, which the next save would lose: to go on with the map "
-                      "without them, `convert_octree fused.ot fused.bt` and move fused.ot away");
+                      ": its voxels have colours, which the next save would lose: to continue with the map "
+                      "without them, run `convert_octree fused.ot fused.bt` and move fused.ot away");
     }
     return std::move(loaded).value();
 }
 
-/// Whether the next save of `map` may replace the .bt file beside its .ot file. An octoskin that left no
-/// comment in its files wrote it, too, if it holds the same voxels.
+/// Whether the next save of `map` may replace the .bt file beside its .ot file. Files of an earlier octoskin
+/// have no comment: such a file may be replaced if it holds the same voxels.
 bool is_of_map(const FilePlace& small_file, const FusedMap& map) {
     if (is_saved_by_octoskin(small_file)) return true;
     const auto small = load_map_of(map.config(), small_file);
     return small && encode_bt(small->map) == encode_bt(map);
 }
 
-/// Of the fused.ot beside it, which has this checksum. The error: why it is not to be used.
+/// Loads the snapshot of the fused.ot beside it, which has this checksum. The error: why it cannot be used.
 Result<Snapshot, std::string> snapshot_of_map(const FilePlace& file, const MappingConfig& mapping,
                                               std::uint32_t mapping_crc32,
                                               const std::optional<std::uint32_t>& map_crc32) {
@@ -60,22 +60,22 @@ Result<Snapshot, std::string> snapshot_of_map(const FilePlace& file, const Mappi
     return std::move(*snapshot);
 }
 
-/// `why`: no snapshot is used; empty: there is none.
+/// `why`: why no snapshot is used; empty: there is none.
 Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& file, const std::string& why) {
     auto loaded = load_to_go_on(config, file);
     if (!loaded) return unexpected(loaded.error());
     KeptMap kept{std::move(loaded->map), std::move(loaded->warnings)};
     if (!why.empty())
-        kept.warnings.push_back(why + "; the map goes on from its log-odds, and all of it is stale");
+        kept.warnings.push_back(why + "; the map continues from its log-odds, and all of it is stale");
     return kept;
 }
 
-/// Where there may be no memory to say it, either.
+/// There may be no memory for the message, either.
 std::string why_not(const std::optional<NamedFolder>& folder, const std::exception& thrown) {
     try {
         return folder ? fmt::format("{}: {}", folder->shown().string(), thrown.what()) : thrown.what();
     } catch (const std::exception&) {
-        return "no memory";  // so short that it takes none
+        return "no memory";  // not even enough for a longer message
     }
 }
 
@@ -98,8 +98,8 @@ std::string why_no_room(const FusedMap& map, const MapConfig& next) {
     const std::uint64_t needed_mib = (bytes_needed(map.layers()) + (std::size_t{1} << kMib) - 1) >> kMib;
     if (needed_mib <= next.memory_max_mib) return {};
     return fmt::format(
-        "the map takes {} MiB, and map.memory_max_mib is {}: make that {} or more, or end the "
-        "daemon and move the saved map away",
+        "the map takes {} MiB, and map.memory_max_mib is {}: make that {} or more, or end the daemon and "
+        "move the saved map away",
         needed_mib, next.memory_max_mib, needed_mib);
 }
 
@@ -134,7 +134,7 @@ Result<std::optional<KeptMap>, AppError> MapKeeper::find(const MappingConfig& ma
                                                          std::uint32_t mapping_crc32) const {
     const FilePlace file(work_->folder, kMapFile);
     const FilePlace small_file(work_->folder, kSmallMapFile);
-    // What cannot be seen may be there: beginning anew would overwrite it.
+    // A file that cannot be read may exist: starting with an empty map would overwrite it.
     const bool has_file = file.is_there();
     const bool has_small_file = small_file.is_there();
     if (!has_file && !has_small_file) return std::optional<KeptMap>{};
@@ -144,8 +144,8 @@ Result<std::optional<KeptMap>, AppError> MapKeeper::find(const MappingConfig& ma
         return fail(ExitCode::bad_data,
                     small_file.shown().string() +
                         ": is another map than fused.ot beside it, octoskin did not save it, and the next "
-                        "save would replace it. Move it away to go on with fused.ot, or move fused.ot away "
-                        "to go on with it");
+                        "save would replace it. Move it away to continue with fused.ot, or move fused.ot "
+                        "away to continue with it");
     }
     return std::optional(std::move(*kept));
 }
@@ -185,7 +185,7 @@ bool MapKeeper::save(const FusedMap& map, const MakeReady& make_ready) {
         work_->record.saving_since = monotonic_now();
     }
     try {
-        FusedMap copy = copier_(map);  // takes long, so nobody is kept waiting for the lock
+        FusedMap copy = copier_(map);  // takes long, so the lock is not held
         const SnapshotOrigin origin = make_ready(copy);
         const std::lock_guard lock(work_->mutex);
         work_->waiting.emplace(Save{std::move(copy), origin});
@@ -223,7 +223,7 @@ SaveRecord MapKeeper::record() const {
 
 void MapKeeper::work(Work& shared) {
     std::unique_lock lock(shared.mutex);
-    while (true) {  // until the destructor says so
+    while (true) {  // until the destructor ends it
         shared.changed.wait(lock, [&shared] { return shared.waiting || shared.is_ending; });
         if (shared.is_ending) return;
         std::optional<Save> save = std::exchange(shared.waiting, std::nullopt);
@@ -233,7 +233,7 @@ void MapKeeper::work(Work& shared) {
             folder = shared.folder;
             lock.unlock();
             error = shared.writer(save->map, save->origin, *folder);
-        } catch (const std::exception& thrown) {  // no memory for the file's text
+        } catch (const std::exception& thrown) {  // no memory for the text of the file
             error = why_not(folder, thrown);
         }
         if (lock.owns_lock()) lock.unlock();
@@ -265,7 +265,8 @@ std::string MapKeeper::write_map(const FusedMap& map, const SnapshotOrigin& orig
     of_map.map_crc32 = exact->crc();
     auto snapshot = draft_snapshot({map.copy(), {}}, of_map, {folder, kSnapshotFile});
     if (!snapshot) return snapshot.error().message();
-    // Killed behind the first rename, it leaves the snapshot's whole draft, by which the next start goes on.
+    // If the process is killed after the first rename, the complete draft of the snapshot remains, and the
+    // next start uses it.
     FileDraft drafts[] = {std::move(*exact), std::move(*snapshot), std::move(*small)};
     const auto put = put_in_place(drafts);
     return put ? std::string() : put.error().message();

@@ -22,22 +22,22 @@ namespace {
 constexpr std::string_view kStart = "record start ";
 constexpr std::string_view kStop = "record stop ";
 constexpr double kSecondsMax = 1e6;
-/// For a disk to take a folder, or to refuse it: a reading may wait so long.
+/// How long a reading may wait for the disk to accept or refuse a folder.
 constexpr Nanoseconds kFolderPatience{100'000'000};
 
-/// In its own folders the daemon, which makes recordings as its own user, writes or binds such names.
+/// In its own folders the daemon, which makes recordings as its own user, creates files of these names.
 bool is_daemons_own(const std::string& name) {
     constexpr std::array<std::string_view, 3> kNames{FolderLock::kFile, "control", "joints"};
     return name.starts_with('.') || name.starts_with("fused.") || name.ends_with(".lock") ||
            std::ranges::find(kNames, name) != kNames.end();
 }
 
-/// Why no other recording can begin.
+/// Why no other recording can start.
 std::string describe_busy(const Recorder& recorder) {
     const std::string folder = recorder.folder().string();
     if (recorder.is_stopped())
         return "still writing the end of the recording " + folder +
-               "; `octoskin status` says when it has ended";
+               "; `octoskin status` shows when it has ended";
     return "already recording to " + folder + "; `octoskin record --stop` ends that";
 }
 
@@ -48,13 +48,13 @@ std::string fault_of_folder(const std::filesystem::path& folder) {
     const std::string shown = printable(name);
     constexpr std::size_t kLongest = 4095;
     if (name.size() > kLongest)
-        return fmt::format("a path has at most {} bytes, and this one {}: give a shorter one", kLongest,
+        return fmt::format("a path has at most {} bytes, and this one has {}: give a shorter one", kLongest,
                            name.size());
     if (!folder.is_absolute()) return fmt::format("'{}' is no absolute path", shown);
     if (is_daemons_own(plain(folder).filename().string()))
         return fmt::format("'{}': octoskin may use this name itself; give another one", shown);
     if (shown == name) return {};
-    // It goes to logs, to the status, and to whoever replays it.
+    // The name goes into logs, into the status, and to users who replay the recording.
     return fmt::format(
         "'{}': a recording's folder may have no control characters in its name, and must be UTF-8; give "
         "another one",
@@ -111,15 +111,15 @@ Status<AppError> RecordRequests::start(const std::string& arguments, const Recor
     if (recorder_ && !recorder_->has_ended()) {
         return fail(ExitCode::cannot_create, describe_busy(*recorder_));
     }
-    if (recorder_) recorder_->stop(now);  // the one before lets go of the pipeline first
+    if (recorder_) recorder_->stop(now);  // releases the pipeline first
     try {
         return begin(
             std::make_unique<Recorder>(asked->folder, asked->limit, settings, pipeline, now, copier_), now);
     } catch (const std::bad_alloc&) {
-        refusal_ = fmt::format("no memory for a copy of the map ({} MiB), with which a recording begins",
+        refusal_ = fmt::format("no memory for a copy of the map ({} MiB), which a recording starts with",
                                pipeline.map().memory_bytes() >> 20U);
     } catch (const std::system_error& error_thrown) {
-        refusal_ = fmt::format("no thread to be had for a recording ({})", error_thrown.code().message());
+        refusal_ = fmt::format("no thread left for a recording ({})", error_thrown.code().message());
     }
     return fail(ExitCode::unavailable, refusal_);
 }
@@ -161,7 +161,7 @@ nlohmann::ordered_json RecordRequests::to_json(HostTime now) const {
 
 void RecordRequests::finish(Nanoseconds patience) {
     if (!recorder_ || recorder_->has_ended()) return;
-    if (!recorder_->wait(patience)) spdlog::error("the recording is not whole: the disk took too long");
+    if (!recorder_->wait(patience)) spdlog::error("the recording is incomplete: the disk took too long");
     recorder_->attend(monotonic_now());
 }
 

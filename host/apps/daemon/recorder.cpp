@@ -30,8 +30,8 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
             .first = {copier(pipeline.map()), pipeline.builder().histories()}};
 }
 
-/// What `add` says; false if there was no memory for it. What it was told of is on the map by then: it is
-/// lost to the recording alone.
+/// Result of `add`; false if there was no memory for it. Its input is already on the map: only the recording
+/// lacks it.
 template <class Add>
 bool has_memory_for(const Add& add) {
     try {
@@ -41,7 +41,7 @@ bool has_memory_for(const Add& add) {
     }
 }
 
-/// OpenNI2's recorder keeps depth up to 32.767 m. A larger one is no value to most rigs anyhow.
+/// OpenNI2's recorder stores depth up to 32.767 m. For most rigs a larger depth is no value anyway.
 bool is_storable(const DepthFrame& frame, double depth_max_m) {
     constexpr double kMmPerM = 1000.0;
     return depth_max_m * kMmPerM <= openni2::kDepthMaxMm ||
@@ -63,10 +63,10 @@ Recorder::Recorder(const std::filesystem::path& folder, std::optional<Nanosecond
       accounts_at_begin_(pipeline.account_tables()),
       writer_(begin_of(folder, settings, pipeline, copier_)) {
     entry_.interface = settings.interface;
-    // Poses go on being interpolated from samples that came before.
+    // Poses are still interpolated from earlier samples.
     pipeline.builder().for_each_joint_sample([this](const JointMeasurement& joints) { put(joints); });
     commits_before_ = counts_.commits;
-    pipeline.tell(this);  // the last: nothing may throw after it
+    pipeline.tell(this);  // the last step: nothing may throw after it
 }
 
 Recorder::~Recorder() {
@@ -104,8 +104,8 @@ void Recorder::on_depth(const DepthFrame& frame, const Evidence&) {
 
 void Recorder::on_time_leap() {
     stop(monotonic_now(),
-         "the bus's time leapt, and a replay could not go on from there: the host that sends SYNC began "
-         "anew or was set, another one sends it too, or this machine slept");
+         "the bus time jumped, and a replay could not continue from there: the host that sends SYNC "
+         "restarted or was set, another host sends it too, or this machine slept");
 }
 
 void Recorder::attend(HostTime now) {
@@ -175,7 +175,7 @@ std::string Recorder::remarks() const try {
         }
     }
     return text;
-} catch (const std::bad_alloc&) {  // they are for a reader alone; the recording is whole without
+} catch (const std::bad_alloc&) {  // they are only for a reader; the recording is complete without them
     return {};
 }
 

@@ -30,13 +30,13 @@ Status<std::string> write_file(const FilePlace& file, const std::string& text) {
     return stream.finish();
 }
 
-/// Not its parents: where a disk is not mounted, hours of a recording would go to another one.
+/// Does not create parents: if a disk is not mounted, hours of a recording would go to another one.
 Result<OpenFolder, std::string> make_folder(const RecordingPaths& paths) {
     const fs::path& folder = paths.directory;
     std::error_code error;
     if (!fs::exists(folder.parent_path(), error) && !error)
         return unexpected(folder.string() + ": there is no " + folder.parent_path().string() +
-                          "; make it, or mount what should be there");
+                          "; create it, or mount the disk that should be there");
     fs::create_directory(folder, error);
     if (error) return unexpected(folder.string() + ": " + error.message());
     const auto opened = paths.folder.open();
@@ -51,7 +51,7 @@ Result<OpenFolder, std::string> make_folder(const RecordingPaths& paths) {
 
 }  // namespace
 
-/// What the thread needs, for as long as it needs it: it may outlive the writer.
+/// State shared with the thread, which may outlive the writer.
 class RecordingWriter::Work {
   public:
     Work(RecordingBegin begin, MapWriter map_writer)
@@ -77,11 +77,11 @@ class RecordingWriter::Work {
     [[nodiscard]] Step record();
     [[nodiscard]] Step begin();
     [[nodiscard]] Step write_waiting();
-    /// True once `finish` or `drop` asks for the end.
+    /// True when `finish` or `drop` requests the end.
     [[nodiscard]] bool rest();
     [[nodiscard]] Step end(RecordingEnd end);
     [[nodiscard]] Step keep_first();
-    /// Saves the map and gives its checksum; an empty one has neither file nor checksum.
+    /// Saves the map and returns its checksum; an empty one has neither file nor checksum.
     [[nodiscard]] Result<std::optional<std::uint32_t>, std::string> keep_map(const FusedMap& map,
                                                                              const FilePlace& file) const;
 
@@ -96,7 +96,7 @@ class RecordingWriter::Work {
     std::condition_variable changed_;
     std::optional<RecordingEnd> end_;
     bool is_dropped_ = false;
-    bool has_folder_ = false;  ///< which was empty, and nobody else's
+    bool has_folder_ = false;  ///< it was empty, and belongs to this user
     bool has_ended_ = false;
     std::string error_;
     std::optional<HostTime> writing_since_ = monotonic_now();
@@ -109,7 +109,7 @@ RecordingWriter::RecordingWriter(RecordingBegin begin, MapWriter map_writer)
 RecordingWriter::~RecordingWriter() {
     work_->drop();
     if (!thread_.end(kDropPatience))
-        spdlog::error("{}: the disk does not let go of the recording; it is left behind",
+        spdlog::error("{}: the disk does not complete the recording; it is left behind",
                       work_->folder().string());
 }
 
@@ -152,7 +152,7 @@ void RecordingWriter::Work::drop() {
 void RecordingWriter::Work::finish(RecordingEnd end) {
     {
         const std::lock_guard lock(mutex_);
-        if (!has_ended_) end_ = std::move(end);  // its map would stay in the memory
+        if (!has_ended_) end_ = std::move(end);  // its map would stay in memory
     }
     changed_.notify_all();
 }
@@ -202,7 +202,7 @@ void RecordingWriter::Work::run() {
 Status<std::string> RecordingWriter::Work::record() {
     const auto made = make_folder(begin_.paths);
     if (!made) return unexpected(made.error());
-    // Whoever else writes recordings or maps there takes the same lock.
+    // Other writers of recordings or maps there take the same lock.
     const auto lock = FileLock::take(*made, FileLock::Kind::exclusive);
     if (!lock) return unexpected(begin_.paths.directory.string() + ": another octoskin is writing here");
     {
@@ -217,7 +217,9 @@ Status<std::string> RecordingWriter::Work::record() {
         if (std::string error = depth_.error(); !error.empty()) return unexpected(std::move(error));
     }
     std::unique_lock guard(mutex_);
-    if (!end_) return unexpected(begin_.paths.directory.string() + ": the daemon ended in the middle of it");
+    if (!end_)
+        return unexpected(begin_.paths.directory.string() +
+                          ": the daemon ended before the recording was complete");
     RecordingEnd last = std::move(*std::exchange(end_, std::nullopt));
     guard.unlock();
     return end(std::move(last));
@@ -241,7 +243,7 @@ Status<std::string> RecordingWriter::Work::keep_first() {
     const auto saved = save_snapshot(begin_.first, origin, begin_.paths.first_state());
     if (!saved) return unexpected(saved.error().message());
     begin_.order.first_state = *saved;
-    begin_.first = {FusedMap(begin_.first.map.config()), {}};  // its memory is not needed any more
+    begin_.first = {FusedMap(begin_.first.map.config()), {}};  // its memory is no longer needed
     return Done{};
 }
 
@@ -276,8 +278,7 @@ Status<std::string> RecordingWriter::Work::end(RecordingEnd last) {
     if (const Step finished = can_file_.finish(); !finished) return finished;
     if (std::string error = depth_.finish(); !error.empty()) return unexpected(std::move(error));
     if (!last.last_map)
-        return unexpected(folder().string() +
-                          ": there was no memory for a copy of the map as it was at the end");
+        return unexpected(folder().string() + ": there was no memory for a copy of the map at the end");
     const auto map = keep_map(*last.last_map, begin_.paths.last_map());
     if (!map) return unexpected(map.error());
     last.order.last_map = *map;

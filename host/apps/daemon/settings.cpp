@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kReadingsMax = 5;
 
-/// A file as it is at an instant: which one it is, and when it was written last.
+/// Identity of a file, and the time of its last change.
 struct FileStamp {
     dev_t device = 0;
     ino_t number = 0;
@@ -39,7 +39,7 @@ std::optional<FileStamp> stamp_of(const FilePlace& file) {
                      status.st_ctim.tv_sec * kSecond_ns + status.st_ctim.tv_nsec};
 }
 
-/// The same as text, for recordings.
+/// The settings as text, for recordings.
 Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
                                                      const std::string& interface) {
     auto robot = robot_text(rig);
@@ -60,10 +60,10 @@ Result<Settings, AppError> settings_of(const rig::Rig& rig, const DaemonRequest&
     auto host = make_host_setup(rig);
     if (!host) return unexpected(reading_error(ExitCode::bad_config, host.error()));
     if (!request.camera_uri.empty() && !rig.camera) {
-        return fail(ExitCode::usage,
-                    "--camera " + request.camera_uri + ": " + request.rig.string() +
-                        " has no camera, which says where it is and what it sees: give it one, "
-                        "or leave --camera out");
+        return fail(
+            ExitCode::usage,
+            "--camera " + request.camera_uri + ": " + request.rig.string() +
+                " has no camera: add one with its pose and its mode to the rig, or leave --camera out");
     }
     auto recorded = recorded_settings(rig, configuration->mapping, request.interface);
     if (!recorded) return unexpected(recorded.error());
@@ -72,8 +72,8 @@ Result<Settings, AppError> settings_of(const rig::Rig& rig, const DaemonRequest&
 
 }  // namespace
 
-/// The robot's file is read for its links, its body, its joints and as text. It may be saved anew meanwhile:
-/// what is read counts only if it was the same file before all of it and behind.
+/// The robot's file is read several times: for its links, its body, its joints and as text. It may be saved
+/// meanwhile: the result is valid only if it was the same file before and after all of it.
 Result<Settings, AppError> read_settings(const DaemonRequest& request) {
     std::optional<std::string> text_before;
     std::optional<FileStamp> stamp_before;
@@ -88,7 +88,7 @@ Result<Settings, AppError> read_settings(const DaemonRequest& request) {
         stamp_before = stamp;
     }
     return fail(ExitCode::bad_config,
-                request.rig.string() + ": its robot's URDF was saved anew each time that it was read");
+                request.rig.string() + ": its robot's URDF was saved again during each attempt to read it");
 }
 
 Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Settings& settings) {

@@ -44,13 +44,13 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-/// What a person can do about a place where nothing can be made.
+/// Adds the remedy for a place where no socket can be created.
 Unexpected<AppError> cannot_listen(const std::filesystem::path& file, const std::string& option, int error) {
     const std::string folder = folder_of(file).string();
     const std::string elsewhere = "name a place elsewhere with " + option;
     if (error == ENOENT) {
         return fail(ExitCode::unavailable, file.string() + ": cannot listen there: the folder " + folder +
-                                               " does not exist; make it, or " + elsewhere);
+                                               " does not exist; create it, or " + elsewhere);
     }
     if (error == ENOTDIR) {
         return fail(ExitCode::unavailable,
@@ -61,8 +61,8 @@ Unexpected<AppError> cannot_listen(const std::filesystem::path& file, const std:
     return failed;
 }
 
-/// Which process listens where `probe` is connected, as " (process 123)"; empty if the kernel does not tell:
-/// it keeps none for datagrams, and has no number for one of another container.
+/// The process that listens where `probe` is connected, as " (process 123)"; empty if the kernel does not
+/// know it: it has none for datagrams, and no number for one of another container.
 std::string listener_of(int probe) {
     ucred listener{};
     socklen_t size = sizeof(listener);
@@ -70,30 +70,30 @@ std::string listener_of(int probe) {
     return is_told && listener.pid > 0 ? " (process " + std::to_string(listener.pid) + ")" : std::string();
 }
 
-/// Nothing if nobody is there, else what can be told of who is. Whoever lets nobody in is not waited for.
+/// Empty if there is no listener, else a description of it. Does not wait for one that accepts no connection.
 std::optional<std::string> find_listener(const sockaddr_un& address, int type) {
     const int probe = ::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (probe < 0) return std::nullopt;
     const bool is_connected =
         ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-    // Refused, or no such name: nobody. Whatever else goes wrong, somebody may be there.
+    // Refused, or no such name: no listener. On any other error there may be one.
     const bool is_nobody =
         !is_connected && (errno == ECONNREFUSED || errno == ENOENT || errno == ENOTDIR || errno == ENOTSOCK);
     const bool is_full = !is_connected && errno == EAGAIN;
     const std::string listener = is_connected ? listener_of(probe)
-                                 : is_full    ? " (it lets nobody in: is it stopped?)"
+                                 : is_full    ? " (it accepts no connection: is it stopped?)"
                                               : std::string();
     ::close(probe);
     return is_nobody ? std::nullopt : std::optional(listener);
 }
 
-/// Between the question whether another daemon is there and the answer "this one": two that begin at once
-/// would each find none, and the later one would take the earlier one's name away. A file that no other user
-/// can open is locked, for what others can open they can lock.
+/// Held from the check for another daemon until the socket is bound: two daemons that start at once would
+/// each find none, and the later one would take the earlier one's name. Locks a file that no other user can
+/// open, because others can lock a file that they can open.
 class StartLock {
   public:
-    /// Not taken: another process holds it for two seconds. Where no such file can be made, it locks nothing:
-    /// what is done there next says what is wrong.
+    /// Not taken if another process holds it for two seconds. If the file cannot be created, it locks
+    /// nothing: the next step there reports the error.
     explicit StartLock(const std::filesystem::path& socket) : name_(socket.filename().string() + ".lock") {
         constexpr int kTries = 400;
         constexpr std::chrono::milliseconds kPause{5};
@@ -143,7 +143,7 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
     const StartLock lock(file);
     if (!lock.is_taken()) {
         return cannot_create(file, "another octoskin keeps " + file.filename().string() +
-                                       ".lock beside it locked; is it stopped in mid-start?");
+                                       ".lock beside it locked; is it stopped while starting?");
     }
     if (const auto listener = find_listener(*address, type)) {
         return cannot_create(
@@ -156,7 +156,7 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
     }
     const int descriptor = ::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (descriptor < 0) return failure(file, "no socket", errno);
-    socketcan::refuse_descriptors(descriptor);  // before it can be sent any
+    socketcan::refuse_descriptors(descriptor);  // before any can be sent to it
     const auto* generic = reinterpret_cast<const sockaddr*>(&*address);
     const mode_t others = ::umask(0007);
     const bool is_bound = ::bind(descriptor, generic, sizeof(*address)) == 0;
@@ -176,7 +176,7 @@ Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int
     if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
     const int descriptor = ::socket(AF_UNIX, type | SOCK_CLOEXEC, 0);
     if (descriptor < 0) return failure(file, "no socket", errno);
-    // connect(2) waits for room among those that are not let in yet, for as long as a send may.
+    // connect(2) waits for room among the connections not accepted yet, as long as a send may.
     const timeval limit{.tv_sec = patience.count() / 1000, .tv_usec = patience.count() % 1000 * 1000};
     ::setsockopt(descriptor, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
     if (::connect(descriptor, reinterpret_cast<const sockaddr*>(&*address), sizeof(*address)) == 0)
@@ -190,7 +190,8 @@ Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int
                         "another place)");
     }
     if (error == EAGAIN) {
-        return fail(ExitCode::io_failed, file.string() + ": the daemon lets nobody in (is it stopped?)");
+        return fail(ExitCode::io_failed,
+                    file.string() + ": the daemon accepts no connection (is it stopped?)");
     }
     return failure(file, "cannot connect", error);
 }

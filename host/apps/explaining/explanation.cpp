@@ -26,7 +26,8 @@ std::map<BeamSource, std::string> names_of_sources(const rig::Rig& rig) {
     return names;
 }
 
-/// No room for the voxel: once a map is full it stays so, and all terms for the voxel were refused.
+/// The full map had no room for the voxel. A map that is full stays full, so it refused all terms for the
+/// voxel.
 bool is_without_room(const FusedMap& map, const VoxelWitness& witness) {
     return map.counters().no_room > 0 && witness.count() > 0 && witness.forgotten().times == 0 &&
            !map.log_odds(witness.key());
@@ -55,11 +56,11 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
         no_room = witness.count();
         witness = VoxelWitness(*key, request.mapping.map, contributions_max);
     }
-    // Sums of so many changes are a little off.
+    // Tolerance: the sum of many single-precision changes has rounding errors.
     constexpr double kOff = 1e-3;
     const double off = witness.sum() - static_cast<double>(witness.log_odds().value_or(0.0F));
     if (map.log_odds(*key) != witness.log_odds() || std::fabs(off) > kOff)
-        return fail(ExitCode::failed, "the terms do not add up to the voxel's log-odds in the map");
+        return fail(ExitCode::failed, "the terms do not add up to the log-odds of the voxel in the map");
     return Explanation{.p_map = p_map,
                        .centre = map.centre_of(*key),
                        .resolution_m = map.resolution_m(),

@@ -30,7 +30,7 @@ std::string name_of(const Explanation& explanation, const BeamSource& source) {
     return fmt::format("node {} sensor {} zone {}", source.node_id, source.sensor, source.zone);
 }
 
-/// Those that moved it most come first.
+/// The sources with the largest change come first.
 std::vector<Share> by_weight(const Explanation& explanation) {
     const auto& all = explanation.witness.shares();
     std::vector<Share> shares(all.begin(), all.end());
@@ -50,13 +50,13 @@ std::string about_camera(const Explanation& explanation) {
     const SourceShare& share = found->second;
     const std::string occupied = plural(share.hits, "frame", "frames");
     const std::string free = plural(share.misses, "frame", "frames");
-    // At a clamp a frame changes nothing, and yet it is evidence: it is told, how many there were.
+    // Frames are counted even if the voxel is at a clamp, where a frame changes nothing.
     if (share.misses == 0) return fmt::format("the camera saw it occupied in {}, and never free", occupied);
     if (share.hits == 0) return fmt::format("the camera saw it free in {}, and never occupied", free);
     return fmt::format("the camera saw it occupied in {} and free in {}", occupied, free);
 }
 
-/// The one that did most in the direction in which the voxel went.
+/// The source with the largest change towards the final state.
 std::optional<Share> main_cause(const Explanation& explanation) {
     const bool is_up = explanation.occupancy == Occupancy::occupied;
     std::optional<Share> cause;
@@ -68,7 +68,7 @@ std::optional<Share> main_cause(const Explanation& explanation) {
     return cause;
 }
 
-/// What was there before the recording did more, in the direction in which the voxel stands, than any source.
+/// The state before the recording contributed more towards the final state than any source.
 bool is_mainly_of_before(const Explanation& explanation, const std::optional<Share>& cause) {
     if (explanation.witness.forgotten().times > 0) return false;
     const double before = static_cast<double>(explanation.witness.begin().value_or(0.0F));
@@ -92,7 +92,7 @@ std::string table_of_shares(const Explanation& explanation) {
     std::string text = fmt::format("  {:<24} {:>6} {:>7} {:>9}  {:>9} {:>9}\n", "source", "hits", "misses",
                                    "log-odds", "first s", "last s");
     if (const auto before = explanation.witness.begin()) {
-        fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}\n", "what was there before",
+        fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}\n", "before the recording",
                        "-", "-", static_cast<double>(*before));
     }
     for (const auto& [source, share] : by_weight(explanation)) {
@@ -104,7 +104,7 @@ std::string table_of_shares(const Explanation& explanation) {
         const std::string last =
             forgotten.last ? fmt::format("{:.3f}", seconds_of(explanation, *forgotten.last)) : "-";
         fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}  {:>9} {:>9}\n",
-                       "forgotten for its age", "-", "-", forgotten.change, "", last);
+                       "expired by age", "-", "-", forgotten.change, "", last);
     }
     return text;
 }
@@ -166,26 +166,26 @@ Json json_of(const Explanation& explanation, const Contribution& contribution) {
 std::string conclusion_of(const Explanation& explanation) {
     if (explanation.no_room > 0) {
         return fmt::format(
-            "unknown: the map was full, and had no room for {} to it; raise map.memory_max_mib in the "
-            "mapping file",
+            "unknown: the map was full and had no room for {} to it; raise map.memory_max_mib in the mapping "
+            "file",
             plural(explanation.no_room, "contribution", "contributions"));
     }
     if (explanation.witness.count() == 0 && !explanation.witness.begin())
-        return "unknown: no reading and no depth frame ever touched it";
+        return "unknown: no reading and no depth frame ever reached it";
     if (const Forgotten& forgotten = explanation.witness.forgotten(); forgotten.is_last) {
-        return fmt::format("{}, forgotten {}: no sensor had confirmed it for age.unknown_after_s; {}",
+        return fmt::format("{}, expired {}: no sensor had confirmed it for age.unknown_after_s; {}",
                            name(explanation.occupancy), when(explanation, forgotten),
                            about_camera(explanation));
     }
     const auto cause = main_cause(explanation);
     if (is_mainly_of_before(explanation, cause) && explanation.witness.count() > 0) {
-        return fmt::format("{}, mainly by what was there before the recording; {}",
-                           name(explanation.occupancy), about_camera(explanation));
+        return fmt::format("{}, mainly from the map before the recording; {}", name(explanation.occupancy),
+                           about_camera(explanation));
     }
     if (!cause) {
         const bool is_of_begin = explanation.witness.begin() && explanation.witness.forgotten().times == 0;
-        const char* why = is_of_begin ? "as the map had it at the begin of the recording"
-                                      : "by contributions that cancel out";
+        const char* why = is_of_begin ? "unchanged since the beginning of the recording"
+                                      : "by contributions that cancel each other";
         return fmt::format("{}, {}; {}", name(explanation.occupancy), why, about_camera(explanation));
     }
     const auto& [source, share] = *cause;

@@ -19,10 +19,9 @@ constexpr std::chrono::seconds kRehearsalPatience{20};
 Result<image::ElfImage, AppError> load_image(const Order& order) {
     std::error_code ignored;
     if (!std::filesystem::exists(order.elf, ignored)) {
-        return fail(ExitCode::no_input,
-                    fmt::format("{}: no such file: `firmware/flash` of octoskin's sources builds it; "
-                                "--elf names one that is built",
-                                order.elf.string()));
+        return fail(ExitCode::no_input, fmt::format("{}: no such file: build it with `firmware/flash` of "
+                                                    "octoskin's sources, or give a built image with --elf",
+                                                    order.elf.string()));
     }
     auto image = image::ElfImage::load(order.elf.string());
     if (!image) return unexpected(reading_error(order.elf, {ExitCode::bad_data, image.error().what}));
@@ -32,15 +31,16 @@ Result<image::ElfImage, AppError> load_image(const Order& order) {
                                                 order.board.name, fmt::join(faults, "; ")));
 }
 
-/// The block as the board will read it, out of the bytes that are going to be written.
+/// Reads the block back from the bytes that will be written, as the board will read it.
 Result<std::size_t, AppError> check_block(const Order& order, const image::FlashContents& contents) {
     const image::FlashPart& page = contents.back();
     const auto decoded = decode_node_config(page.bytes);
     const bool is_nodes = decoded && *decoded == order.node.config;
     if (!is_nodes || page.address != order.board.configuration_page.address) {
-        return fail(ExitCode::bad_config,
-                    fmt::format("node {}: its configuration block does not read back as what the rig says",
-                                order.node.name));
+        return fail(
+            ExitCode::bad_config,
+            fmt::format("node {}: its configuration block does not read back as the rig's configuration",
+                        order.node.name));
     }
     return page.bytes.size();
 }
@@ -50,10 +50,10 @@ Result<Done, AppError> write_files(const Order& order, const image::FlashContent
     std::filesystem::create_directories(order.folder, error);
     if (error) {
         return fail(ExitCode::cannot_create,
-                    fmt::format("{}: cannot be made ({}): choose another folder with --out",
+                    fmt::format("{}: cannot be created ({}): choose another folder with --out",
                                 order.folder.string(), error.message()));
     }
-    // All of them before the first: a board must not be programmed and then have no record.
+    // Checks all files before any programming: a board must not be programmed without a record.
     for (const char* const name : {kHexFile, kScriptFile, kLogFile, kRecordFile}) {
         if (auto checked = check_text_place({NamedFolder(order.folder), name}); !checked) return checked;
     }
@@ -90,7 +90,7 @@ Result<rig::Node, AppError> choose_node(const rig::Rig& rig, const std::string& 
         names += (names.empty() ? "" : ", ") + node.name;
     }
     if (wanted.empty())
-        return fail(ExitCode::usage, fmt::format("which node? --node takes one of: {}", names));
+        return fail(ExitCode::usage, fmt::format("--node is missing; it takes one of: {}", names));
     return fail(ExitCode::usage, fmt::format("no node '{}' in rig {}: it has {}", wanted, rig.name, names));
 }
 

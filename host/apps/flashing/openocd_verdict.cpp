@@ -13,8 +13,8 @@
 namespace octoskin::flashing {
 namespace {
 
-/// OpenOCD 0.12's own words, what they mean, what to do. The first that is found counts: causes come before
-/// what follows from them.
+/// A text of OpenOCD 0.12, its meaning and the remedy. The first match counts: causes come before their
+/// consequences.
 struct Symptom {
     std::string_view words;
     ExitCode code;
@@ -28,15 +28,15 @@ constexpr auto kSymptoms = std::to_array<Symptom>({
     {"LIBUSB_ERROR_BUSY", ExitCode::unavailable,
      "the ST-LINK is in use by another program: end the other OpenOCD, debugger or virtual machine"},
     {"LIBUSB_ERROR_NO_DEVICE", ExitCode::io_failed,
-     "the ST-LINK went away: check the USB cable, and try again"},
+     "the ST-LINK disconnected: check the USB cable, and try again"},
     {"LIBUSB_ERROR_IO", ExitCode::io_failed,
-     "USB errors on the way to the ST-LINK: try another cable or port"},
+     "USB errors between host and ST-LINK: try another cable or port"},
     {"target voltage may be too low", ExitCode::unavailable,
-     "the ST-LINK measures no supply at the chip: power the board (its 5V jumper at 5V_STLK for supply by "
-     "USB)"},
+     "the ST-LINK measures no supply voltage at the chip: power the board (its 5V jumper at 5V_STLK for "
+     "supply by USB)"},
     {"unable to connect to the target", ExitCode::unavailable,
-     "the ST-LINK is there and the chip does not answer: is it powered? If its "
-     "program is in the way, hold the reset button, start again, and let go at `clock speed`"},
+     "the ST-LINK is connected, but the chip does not answer: is it powered? If its program prevents it, "
+     "hold the reset button, start again, and release it at `clock speed`"},
     {"Can't find board/", ExitCode::unavailable,
      "this OpenOCD has no script for the board: install Debian's openocd 0.12 or newer"},
     {"auto_probe failed", ExitCode::io_failed,
@@ -49,7 +49,7 @@ bool says(const OpenocdRun& run, std::string_view words) {
     return run.output.find(words) != std::string::npos;
 }
 
-/// The last value that the script told after these words.
+/// The last value that the script printed after this prefix.
 std::optional<std::uint32_t> last_value(const OpenocdRun& run, std::string_view words) {
     const std::size_t at = run.output.rfind(words);
     if (at == std::string::npos) return std::nullopt;
@@ -61,7 +61,7 @@ std::optional<std::uint32_t> last_value(const OpenocdRun& run, std::string_view 
     return value;
 }
 
-/// The last line that says something, whatever it is.
+/// The last line of the output that is not blank.
 std::string last_line(const OpenocdRun& run) {
     std::string_view rest = run.output;
     while (!rest.empty()) {
@@ -73,7 +73,7 @@ std::string last_line(const OpenocdRun& run) {
     return "nothing";
 }
 
-/// The first line that OpenOCD itself calls an error and says something, for what is in no table.
+/// The first non-empty line that OpenOCD marks as an error, for failures without an entry in the table.
 std::string first_error(const OpenocdRun& run) {
     constexpr std::string_view kMark = "Error: ";
     for (std::size_t at = 0; (at = run.output.find(kMark, at)) != std::string::npos;) {
@@ -81,12 +81,12 @@ std::string first_error(const OpenocdRun& run) {
         const std::size_t end = std::min(run.output.find('\n', at), run.output.size());
         if (end > at) return run.output.substr(at, end - at);
     }
-    return fmt::format("exit code {}, and last it said: {}", run.exit_code, last_line(run));
+    return fmt::format("exit code {}, last line of its output: {}", run.exit_code, last_line(run));
 }
 
 AppError no_adapter(const std::string& serial) {
     constexpr const char* kRemedy =
-        "plug in the NUCLEO's own USB connector with a cable that carries data; `lsusb -d 0483:` shows it";
+        "connect the NUCLEO's own USB connector with a cable that carries data; `lsusb -d 0483:` lists it";
     if (serial.empty()) return {ExitCode::unavailable, fmt::format("no ST-LINK found: {}", kRemedy)};
     return {ExitCode::unavailable,
             fmt::format("no ST-LINK with the serial number {} found: {}, and `lsusb -v` its "
@@ -94,7 +94,7 @@ AppError no_adapter(const std::string& serial) {
                         serial, kRemedy)};
 }
 
-/// What kept OpenOCD from running at all.
+/// The error if OpenOCD did not run to its end.
 std::optional<AppError> run_fault(const OpenocdRun& run) {
     switch (run.end) {
         case OpenocdRun::End::not_found:
@@ -105,7 +105,7 @@ std::optional<AppError> run_fault(const OpenocdRun& run) {
                 fmt::format("openocd cannot be started ({}): does `openocd --version` run?", run.output)};
         case OpenocdRun::End::timed_out:
             return AppError{ExitCode::io_failed,
-                            "OpenOCD did not come to an end: plug the board out and in, and try again"};
+                            "OpenOCD did not end in time: plug the board out and in, and try again"};
         case OpenocdRun::End::exited:
             break;
     }
@@ -117,7 +117,7 @@ AppError failed_run(const OpenocdRun& run, const Expected& expected) {
     if (device && *device != expected.device_id) {
         return {ExitCode::unavailable,
                 fmt::format("the chip is another one (device id 0x{:03X}, expected 0x{:03X}); nothing was "
-                            "written: is it this board's ST-LINK? --adapter-serial chooses one",
+                            "written: is it this board's ST-LINK? Select one with --adapter-serial",
                             *device, expected.device_id)};
     }
     const auto options = last_value(run, kSaysOptions);
@@ -139,13 +139,12 @@ AppError failed_run(const OpenocdRun& run, const Expected& expected) {
                             "button",
                             error)};
     if (says(run, kSaysProgrammed))
-        return {
-            ExitCode::io_failed,
-            fmt::format("what is in flash is not what was written ({}): try again; if it stays, the chip's "
-                        "flash is worn or its supply is poor",
-                        error)};
+        return {ExitCode::io_failed,
+                fmt::format("the flash content differs from what was written ({}): try again; if it "
+                            "persists, the chip's flash is worn or its supply is poor",
+                            error)};
     constexpr const char* kRemedy =
-        "try again, with another USB cable or port if it stays; openocd.log among the files has all it said";
+        "try again; if it persists, use another USB cable or port; its full output is in openocd.log";
     if (options) return {ExitCode::io_failed, fmt::format("programming failed ({}): {}", error, kRemedy)};
     return {ExitCode::io_failed,
             fmt::format("OpenOCD failed before anything was written ({}): {}", error, kRemedy)};
@@ -156,7 +155,7 @@ AppError failed_run(const OpenocdRun& run, const Expected& expected) {
 Result<Programmed, AppError> judge(const OpenocdRun& run, const Expected& expected) {
     if (const auto fault = run_fault(run)) return unexpected(*fault);
     const auto options = last_value(run, kSaysOptions);
-    // Its own exit code alone is not believed: each step must have been told.
+    // The exit code alone is not sufficient: the output must confirm each step.
     const bool is_done = run.exit_code == 0 && options && says(run, kSaysProgrammed) &&
                          says(run, kSaysVerified) && says(run, kSaysStarted);
     if (!is_done) return unexpected(failed_run(run, expected));
@@ -171,7 +170,7 @@ std::optional<AppError> judge_dry_run(const OpenocdRun& run) {
     }
     return AppError{ExitCode::unavailable,
                     fmt::format("OpenOCD cannot read the script ({}): install Debian's openocd 0.12 or "
-                                "newer; openocd.log among the files has all it said",
+                                "newer; its full output is in openocd.log",
                                 first_error(run))};
 }
 

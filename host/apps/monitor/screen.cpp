@@ -22,7 +22,7 @@ const Json& at(const Json& object, const std::string& key) {
     const auto found = object.is_object() ? object.find(key) : object.end();
     return object.is_object() && found != object.end() ? *found : kNothing;
 }
-/// Null if there is no such one.
+/// The element at `index`; null if there is none.
 const Json& item(const Json& array, std::size_t index) {
     static const Json kNothing;
     return array.is_array() && index < array.size() ? array[index] : kNothing;
@@ -40,7 +40,7 @@ std::string count(const Json& value) {
     return fmt::format("{:.0f}", number(value));
 }
 std::string rate(const Json& before, const Json& now, Seconds passed) {
-    const double grown = std::max(0.0, number(now) - number(before));  // it began anew: a reload
+    const double grown = std::max(0.0, number(now) - number(before));  // it started again: a reload
     return passed.count() > 0.0 ? fmt::format("{:.1f}/s", grown / passed.count()) : std::string("-");
 }
 std::string age(const Json& seconds) {
@@ -79,8 +79,8 @@ class Screen {
         if (problems.empty()) add("no problems", Emphasis::good);
         for (const Json& problem : problems) add("! " + text(problem), Emphasis::bad);
         if (number(at(at(now_, "map"), "known_voxels")) > 0.0) return;
-        add(problems.empty() ? "nothing is in the map yet: no measurement was used so far"
-                             : "nothing is in the map: the first problem above is why",
+        add(problems.empty() ? "the map is empty: no measurement has been used so far"
+                             : "the map is empty: the first problem above is the reason",
             Emphasis::bad);
     }
     void add_bus() {
@@ -132,7 +132,7 @@ class Screen {
     void add_sensor(const Json& node, const Json& node_before, std::size_t index) {
         const Json& sensor = item(at(node, "sensors"), index);
         const Json& before = item(at(node_before, "sensors"), index);
-        // What a sensor that saw nothing calls its range is noise.
+        // The range of a sensor without a target is noise.
         const bool saw_nothing = text(at(sensor, "rejected")) == "no_return";
         const std::string range = saw_nothing ? "no target"
                                   : at(sensor, "range_m").is_number()
@@ -162,8 +162,8 @@ class Screen {
     void add_reflex(const Json& sensor, const Json& before) {
         if (number(at(sensor, "reflexes")) == 0.0) return;
         const bool is_new = number(at(sensor, "reflexes")) > number(at(before, "reflexes"));
-        add(fmt::format("     REFLEX {} times: something came closer than its reflex_below_m, {} m; "
-                        "the newest at {:.3f} m",
+        add(fmt::format("     REFLEX {} times: something came closer than its reflex_below_m, {} m; the "
+                        "newest at {:.3f} m",
                         count(at(sensor, "reflexes")), text(at(sensor, "reflex_below_m")),
                         number(at(sensor, "reflex_m"))),
             is_new && !before.is_null() ? Emphasis::bad : Emphasis::none);
@@ -179,7 +179,7 @@ class Screen {
         const Json& socket = at(now_, "joints_socket");
         if (at(socket, "above_rate") == true)
             add(fmt::format(
-                "     {:.0f} Hz through the socket: the rig has less, and the surplus is left out",
+                "     {:.0f} Hz through the socket, more than the rig's rate: the surplus is left out",
                 number(at(socket, "rate_hz"))));
     }
     void add_camera() {
@@ -213,7 +213,7 @@ class Screen {
         add_nonzero("map", {"no_room", "no_memory", "undated", "saves_failed", "saves_skipped"});
         add_nonzero("reloads", {"dropped"});
     }
-    /// Each unit, and why what was not used was not.
+    /// The counters of each kind of input, with the reasons of those that were not used.
     void add_counters() {
         for (const auto& [unit, account] : at(now_, "account").items()) {
             add(fmt::format("{}: {} in, {} used", unit, count(at(account, "in")), count(at(account, "used"))),
@@ -227,7 +227,7 @@ class Screen {
             }
         }
     }
-    /// Of the object under `group`, those that are not 0.
+    /// Those counters of the object under `group` that are not 0.
     void add_nonzero(const char* group, std::initializer_list<const char*> names) {
         const Json& object = at(now_, group);
         for (const char* name : names) {
@@ -247,7 +247,7 @@ class Screen {
     std::vector<ScreenLine> lines_;
 };
 
-/// Of UTF-8: how many bytes its first `characters` are.
+/// The number of bytes of the first `characters` of a UTF-8 text.
 std::size_t bytes_of(std::string_view text, std::size_t characters) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -257,12 +257,12 @@ std::size_t bytes_of(std::string_view text, std::size_t characters) {
     return text.size();
 }
 
-/// So many characters of UTF-8.
+/// The first `columns` characters of a UTF-8 text.
 std::string cut(const std::string& line, std::size_t columns) {
     return line.substr(0, bytes_of(line, columns));
 }
 
-/// What the next lines of a broken one begin with.
+/// Indent of the continuation lines of a wrapped line.
 constexpr std::string_view kIndent = "      ";
 
 void wrap(const ScreenLine& line, std::size_t columns, std::vector<ScreenLine>& all) {

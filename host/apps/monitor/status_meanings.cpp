@@ -5,348 +5,346 @@
 namespace octoskin {
 namespace {
 
-// Word for word as docs/status.md has them; tests hold the two equal, and complete by a status of the daemon.
+// Word for word the texts of docs/status.md; tests check that they are equal, and complete for a status of
+// the daemon.
 constexpr std::array kStatusMeanings = {
     Meaning{"", "octoskin", "program, version and commit"},
-    Meaning{"", "uptime_s", "seconds since the daemon began"},
+    Meaning{"", "uptime_s", "seconds since the daemon started"},
     Meaning{"", "rig", "the name of the rig"},
-    Meaning{
-        "", "links_without_body",
-        "links of the robot that move and have a <visual>, but no body that covers them, nor a link fixed to "
-        "them that has one: nothing of them is taken out of images and ranges"},
+    Meaning{"", "links_without_body",
+            "moving links with a <visual> that no body covers, neither their own nor that of a link fixed to "
+            "them: they are not removed from images and ranges"},
     Meaning{"", "links_unknown",
-            "those of links_without_body that the rig's robot.links_without_body does not list: as long as "
-            "there is one, a query answers unknown instead of free"},
+            "those of links_without_body that the rig's robot.links_without_body does not list: while there "
+            "is one, a query answers unknown instead of free"},
     Meaning{"", "links_with_borrowed_body",
-            "an object, link to link: links that move and have a <visual>, but no body of their own, each "
-            "with the one that is fixed to it and whose body is taken for it"},
+            "an object, link to link: moving links with a <visual> and no body of their own, each with the "
+            "fixed neighbour whose body is used for it"},
     Meaning{"", "problems",
-            "what is wrong, a sentence each, the most fundamental first: an empty map has its reason there"},
-    Meaning{"", "can", "the interface, below"},
-    Meaning{"", "clock", "the bus's time, below"},
+            "what is wrong, a sentence each, the most fundamental first: an empty map has its reason here"},
+    Meaning{"", "can", "the CAN interface, below"},
+    Meaning{"", "clock", "the bus time, below"},
     Meaning{"", "nodes", "a list, one object for each node of the rig, below"},
     Meaning{"", "joint_states",
-            "whether joint states come from one sender, and whether they are true, below"},
+            "whether joint states come from one sender and whether they are right, below"},
     Meaning{"", "joints_socket", "joint states from this machine, below; null without --joints"},
-    Meaning{"", "recording", "the recording that is made, or the last one, below; null without"},
+    Meaning{"", "recording", "the current or the last recording, below; null: there was none"},
     Meaning{"", "camera", "the depth camera, below; null without one"},
     Meaning{"", "latency",
-            "how late readings come onto the map: since the frame that completed them, and since they were "
-            "taken, below"},
+            "how late readings reach the map: after the frame that completed them, and after their capture, "
+            "below"},
     Meaning{"", "map", "the fused map, below"},
-    Meaning{"", "reloads", "rig, robot and mapping read again, below"},
-    Meaning{"", "log", "the daemon's own log on its way to standard error, below"},
+    Meaning{"", "reloads", "re-reads of rig, robot and mapping, below"},
+    Meaning{"", "log", "the daemon's log on its way to standard error, below"},
     Meaning{"", "account",
-            "one object for each of \"CAN frames\", \"readings\", \"joint samples\" and \"depth frames\", "
-            "below; counts since the newest reload"},
-    Meaning{"can", "interface", "the interface's name"},
-    Meaning{"can", "state", "up, error_passive, bus_off, down or absent: the worst that holds"},
-    Meaning{"can", "why", "why it is not up, with what to do; empty if it is"},
+            "the input counters: one object for each of \"CAN frames\", \"readings\", \"joint samples\" and "
+            "\"depth frames\", below; they count since the newest reload"},
+    Meaning{"can", "interface", "the name of the interface"},
+    Meaning{"can", "state", "up, error_passive, bus_off, down or absent: the worst that applies"},
+    Meaning{"can", "why", "why it is not up, with the remedy; empty if it is up"},
     Meaning{"can", "listen_only", "the daemon transmits nothing (--listen-only)"},
-    Meaning{"can", "received", "frames that came; the echoes of those sent, too"},
-    Meaning{
-        "can", "sent",
-        "frames handed to the interface: two a second, SYNC and FOLLOW_UP, and two more where the time came "
-        "into doubt; none with --listen-only"},
+    Meaning{"can", "received", "frames received, the echoes of the daemon's own included"},
+    Meaning{"can", "sent",
+            "frames handed to the interface: two a second, SYNC and FOLLOW_UP, and two more when the time "
+            "comes into doubt; 0 with --listen-only"},
     Meaning{"can", "not_sent",
-            "frames that the interface did not take, as it was not up or its queue was full: they are not "
-            "sent later, and nodes lose their time if it goes on"},
-    Meaning{"can", "foreign_follow_ups",
-            "FOLLOW_UP of other hosts, which would set the time: left out; none with --listen-only"},
+            "frames that the interface did not accept, because it was not up or its queue was full: they are "
+            "not sent later, and if this continues the nodes lose the time"},
+    Meaning{
+        "can", "foreign_follow_ups",
+        "FOLLOW_UP frames of other hosts, ignored because they would set another time; 0 with --listen-only"},
     Meaning{"can", "busy_s",
-            "for how many seconds this rig's frames have kept the bus busy, at worst; what grows in a second "
-            "is the bus's load. Frames of others the kernel keeps back"},
+            "for how many seconds this rig's frames kept the bus busy, in the worst case; its growth in a "
+            "second is the bus load. The kernel filters out frames of others"},
     Meaning{"can", "error_frames",
-            "the adapter's own words about errors: a wrong bit rate or sample point, a missing terminator, a "
-            "disturbed line, nobody who acknowledges. A few when something is plugged in are usual"},
+            "error reports of the adapter: a wrong bit rate or sample point, a missing terminator, a "
+            "disturbed line, or no node that acknowledges. A few when something is plugged in are usual"},
     Meaning{"can", "dropped_by_kernel",
-            "frames that the kernel threw away, as the daemon was held up for too long to read them"},
+            "frames that the kernel dropped, because the daemon was held up for too long to read them"},
     Meaning{
         "can", "malformed",
-        "what the interface gave that is no CAN frame: a driver's defect, or a foreign program behind fd:N"},
+        "input from the interface that is no CAN frame: a driver's defect, or a foreign program behind fd:N"},
     Meaning{"can", "bus_off", "how often the adapter left the bus after too many errors of its own"},
     Meaning{"can", "went_down", "how often the interface went down"},
     Meaning{"can", "reopened",
-            "how often the interface was opened again: it had been removed, as an adapter that is unplugged, "
-            "or its frames could not be chosen anew at a reload"},
-    Meaning{"clock", "known", "the bus's time is known; without it nothing that comes over the bus is used"},
+            "how often the interface was opened again: it had been removed, as when an adapter is unplugged, "
+            "or its filters could not be changed at a reload"},
+    Meaning{"clock", "known", "the bus time is known; without it no input from the bus is used"},
     Meaning{"clock", "steps_back",
-            "how often the receive stamps, which are wall time, jumped back: the clock of this machine was "
-            "set. The next exchange of SYNC and FOLLOW_UP settles it"},
+            "how often the receive time stamps, which are wall time, jumped back: the clock of this machine "
+            "was set. The next exchange of SYNC and FOLLOW_UP resolves it"},
     Meaning{
         "clock", "steps_ahead",
-        "how often they jumped ahead by over 0.14 s: the clock was set, or the bus was silent for so long"},
+        "how often they jumped ahead by over 0.14 s: the clock was set, or the bus was silent for that long"},
     Meaning{"clock", "stamps_ignored",
-            "receive stamps that jumped alone, without others that agreed: of other interfaces in one log, "
-            "or a driver's mistake"},
-    Meaning{"clock", "relocks",
-            "how often two exchanges agreed on another offset between wall time and the bus's time than "
-            "before, as after a step"},
+            "receive time stamps that jumped alone, without others that agreed: from other interfaces in one "
+            "log, or a driver's error"},
+    Meaning{
+        "clock", "relocks",
+        "how often two exchanges agreed on a new offset between wall time and the bus time, as after a step"},
     Meaning{"clock", "times_back",
-            "how often the bus's own time went back by over 0.15 s: the host that sends SYNC began anew"},
+            "how often the bus time itself went back by over 0.15 s: the host that sends SYNC restarted"},
     Meaning{"clock", "times_ahead",
             "how often it went ahead by over a second more than passed: another host sends SYNC, or its "
-            "clock was set. The map stays as old as it was"},
+            "clock was set. The age of the map does not change"},
     Meaning{"clock", "follow_up_outliers",
-            "exchanges that disagreed with the other host's clock as it was known (with --listen-only); the "
-            "first ones after it was set are among them"},
+            "exchanges that disagreed with the known clock of the other host (with --listen-only); the first "
+            "ones after it was set are among them"},
     Meaning{"nodes", "id", "its node id"},
     Meaning{"nodes", "name", "its name in the rig"},
     Meaning{"nodes", "verdict",
-            "usable, or why it is not: other_version, quarantined, babbling, absent, lost, time_suspect, "
+            "usable, or why not: other_version, quarantined, babbling, absent, lost, time_suspect, "
             "info_incomplete, info_mismatch, build_refused"},
     Meaning{"nodes", "reason", "of info_mismatch and the like, what it says and what the rig has; else null"},
     Meaning{"nodes", "state",
-            "its own word in its newest heartbeat; bring-up has each with its remedy; null before the first"},
+            "its own word in its newest heartbeat; the fault table has each with its remedy; null before the "
+            "first"},
     Meaning{"nodes", "age_s", "since it was heard; null: never, or the time is not known"},
     Meaning{"nodes", "degraded_sensors", "how many of its sensors are not well, by its newest heartbeat"},
-    Meaning{"nodes", "clock_known", "its readings can be dated now"},
+    Meaning{"nodes", "clock_known", "its readings can be given a time now"},
     Meaning{"nodes", "clock_ppm",
-            "seconds of the bus's time per second of its own, less 1, in millionths: negative if its clock "
-            "is fast. Over 250 either way its readings are refused as clock_in_doubt; null: not known"},
+            "seconds of bus time per second of its own clock, less 1, in millionths: negative if its clock "
+            "is fast. Beyond 250 either way its readings are refused as clock_in_doubt; null: not known"},
     Meaning{"nodes", "clock_error_ms",
             "bound on the error of its time now; it grows with silence; null: not known"},
     Meaning{"nodes", "refused_share",
-            "of its readings within the last second, those that were refused for their time, their number or "
-            "their sender; null: no more than 0.05"},
-    Meaning{"nodes", "refused_most", "why most of these were, a name of account.md; null: no more than that"},
-    Meaning{
-        "nodes", "clock_contradictions",
-        "answers to SYNC under its id that contradicted one to the same SYNC (sync_contradicted): another "
-        "sender"},
-    Meaning{
-        "nodes", "restarts",
-        "how often it started anew by its own heartbeat; many: its supply, its watchdog or another sender"},
+            "share of its readings within the last second that were refused for their time, number or "
+            "sender; null: 0.05 or less"},
+    Meaning{"nodes", "refused_most",
+            "the most frequent reason for these, a name of account.md; null: 0.05 or less"},
+    Meaning{"nodes", "clock_contradictions",
+            "answers to SYNC under its id that contradicted another answer to the same SYNC "
+            "(sync_contradicted): there is another sender"},
+    Meaning{"nodes", "restarts",
+            "how often it restarted, by its own heartbeat; many: check its supply, its watchdog, and for "
+            "another sender"},
     Meaning{"nodes", "registers",
-            "a list, one object for each register that reads otherwise than it is written, below; empty if "
-            "none does"},
+            "a list, one object for each register that reads back another value than was written, below; "
+            "empty if there is none"},
     Meaning{"nodes", "sensors", "a list, one object for each sensor, below"},
     Meaning{"nodes.registers", "register", "its index, 0 to 255"},
-    Meaning{"nodes.registers", "written", "what was written to it"},
-    Meaning{"nodes.registers", "read", "what it reads"},
+    Meaning{"nodes.registers", "written", "the value written to it"},
+    Meaning{"nodes.registers", "read", "the value read back"},
     Meaning{"nodes.registers", "alike",
-            "three or more sensors of the node read it so: this type of part is so, and nothing is withheld "
-            "for it"},
+            "three or more sensors of the node read back this value: this part type behaves so, and no "
+            "reading is withheld for it"},
     Meaning{"nodes.registers", "sensor",
-            "the one that reads it so, by its number on the node; null if it is alike"},
-    Meaning{"nodes.registers", "sensors", "how many had shown it when it was told"},
+            "the number on the node of the sensor that reads back this value; null if alike"},
+    Meaning{"nodes.registers", "sensors", "how many sensors had shown it when the node reported it"},
     Meaning{"nodes.sensors", "index", "its number on the node"},
     Meaning{"nodes.sensors", "name", "its name in the rig"},
+    Meaning{"nodes.sensors", "state",
+            "its state in the node's newest SENSOR_HEALTH; null: not known, because none came yet, or "
+            "neither that nor a reading for 3 s"},
     Meaning{
         "nodes.sensors", "state",
         "its node's word in the newest SENSOR_HEALTH; null: not known, as none came yet, or for 3 s neither "
         "that nor a reading"},
-    Meaning{"nodes.sensors", "fault",
-            "why it is not well, by the same message; bring-up has each with its remedy; null: not known"},
+    Meaning{
+        "nodes.sensors", "fault",
+        "why it is not well, by the same message; the fault table has each with its remedy; null: not known"},
     Meaning{"nodes.sensors", "received", "readings that came"},
     Meaning{"nodes.sensors", "lost",
-            "readings that its node sent and that never came, exact as of the newest SENSOR_HEALTH"},
+            "readings that its node sent and that never arrived, exact as of the newest SENSOR_HEALTH"},
     Meaning{"nodes.sensors", "age_s",
-            "since its newest reading came; null: none yet, or the time is not known"},
+            "since its newest reading arrived; null: none yet, or the time is not known"},
     Meaning{"nodes.sensors", "range_m",
-            "of its newest reading, as the sensor has it: a distance only where device_status is 9. Beside a "
-            "status such as 4, no target, it is noise; not there before the first"},
+            "range of its newest reading, as the sensor gives it: a distance only if device_status is 9. "
+            "With a status such as 4, no target, it is noise; absent before the first"},
     Meaning{"nodes.sensors", "sigma_m",
-            "the standard deviation that the sensor gives its newest range; not there before the first"},
+            "the standard deviation that the sensor gives for its newest range; absent before the first"},
     Meaning{"nodes.sensors", "device_status",
-            "the sensor's own status of it: 9 is a valid range, protocol.md has the others; not there before "
+            "the sensor's own status of that range: 9 is valid, protocol.md has the others; absent before "
             "the first"},
-    Meaning{"nodes.sensors", "zone", "which of its zones it looked through; not there before the first"},
+    Meaning{"nodes.sensors", "zone", "the zone in which it measured; absent before the first"},
     Meaning{"nodes.sensors", "rejected",
-            "why the newest reading was not used, a name of account.md; null: it was, or waits"},
+            "why the newest reading was not used, a name of account.md; null: it was used, or it waits"},
     Meaning{"nodes.sensors", "contradictions",
-            "readings that cannot be of the sender of those before: their number was here with other "
-            "contents, or goes back while their time does not (contradicts_reading). One may be a damaged "
-            "frame"},
+            "readings that cannot come from the sender of the earlier ones: their number arrived with other "
+            "contents, or goes back while their time does not (contradicts_reading). A single one may be a "
+            "damaged frame"},
     Meaning{"nodes.sensors", "strays",
-            "readings refused for their time or number that came between two of the sensor's own that lack "
-            "none: damaged frames, or another sender's"},
+            "readings refused for their time or number that arrived between two consecutive readings of the "
+            "sensor: damaged frames, or another sender's"},
     Meaning{"nodes.sensors", "second_sender",
-            "another sender speaks under its name: it is disputed, or two strays came within 2.5 s"},
+            "another sender uses its name: it is disputed, or two strays came within 2.5 s"},
     Meaning{"nodes.sensors", "disputed",
             "its readings stay out of the map (sensor_disputed): two contradictions came within a second, or "
-            "over a quarter as many strays as it has readings, and the last is no second ago"},
+            "over a quarter as many strays as it has readings, and the last of them is under a second old"},
     Meaning{"nodes.sensors", "reflexes",
             "how often it sent REFLEX: something came closer than reflex_below_m"},
     Meaning{"nodes.sensors", "reflex_below_m", "its limit in the rig; 0: none"},
-    Meaning{"nodes.sensors", "reflex_m", "how close what made it do so last was; null: never"},
-    Meaning{"nodes.sensors", "camera", "what the camera says of it, below; null without a camera"},
+    Meaning{"nodes.sensors", "reflex_m", "the distance at the newest REFLEX; null: none yet"},
+    Meaning{"nodes.sensors", "camera",
+            "the cross-check of its ranges against the camera, below; null without a camera"},
     Meaning{"nodes.sensors.camera", "verdict",
             "agrees: each fault that would have changed its ranges has enough evidence against it; "
             "contradicts; or cannot_tell: doubt has why"},
     Meaning{"nodes.sensors.camera", "contradicts",
             "it contradicts the camera: swapped with another, stuck, or not where the rig has it"},
     Meaning{"nodes.sensors.camera", "fault",
-            "what it ranges like: ranges_too_long, ranges_too_short, often_short, turned or exchanged; null: "
-            "none of these"},
-    Meaning{
-        "nodes.sensors.camera", "doubt",
-        "why it is cannot_tell: too_few_comparisons, a fault would not have shown yet; ambiguous, there is "
-        "too little evidence for a fault, and too little against it; camera_not_known, the other sensors do "
-        "not show well enough where the camera is; camera_is_off, or likely; joint_is_off, alone or beside "
-        "the camera, or likely; several_contradict, more than two sensors do; null: it is not"},
+            "the fault that its ranges match: ranges_too_long, ranges_too_short, often_short, turned or "
+            "exchanged; null: none of these"},
+    Meaning{"nodes.sensors.camera", "doubt",
+            "why it is cannot_tell. too_few_comparisons: a fault would not have shown yet. ambiguous: too "
+            "little evidence for a fault and too little against it. camera_not_known: the other sensors do "
+            "not show well enough where the camera is. camera_is_off: or likely. joint_is_off: alone or "
+            "beside the camera, or likely. several_contradict: more than two sensors do. null: it is not"},
     Meaning{"nodes.sensors.camera", "not_excluded",
-            "a list, the faults that it may have by what was compared; turned and exchanged are in it until "
-            "each turn and each exchange has been excluded, also those that would not have changed a range"},
+            "a list, the faults that the comparisons do not exclude; turned and exchanged are in it until "
+            "each turn and each exchange is excluded, also those that would not have changed a range"},
     Meaning{"nodes.sensors.camera", "refused",
             "its readings stay out of the map (contradicts_camera): it contradicts the camera, no fewer "
-            "others agree with it, and the mapping refuses such sensors"},
+            "others agree with the camera, and the mapping refuses such sensors"},
     Meaning{"nodes.sensors.camera", "compared", "ranges for which the camera predicted a surface"},
     Meaning{"nodes.sensors.camera", "fitted",
-            "those of them that were about what it predicted; a few centimetres off still are, and up to 12 "
-            "cm before a surface that the camera sees from behind: a sensor that contradicts it may fit all "
-            "the same"},
+            "those of them close to the predicted range: within a few centimetres, or up to 12 cm before a "
+            "surface that the camera sees from behind. A sensor that contradicts the camera can fit"},
     Meaning{"nodes.sensors.camera", "agreed",
-            "comparisons in which it saw a surface where the camera sees one"},
+            "comparisons in which the sensor saw a surface where the camera sees one"},
     Meaning{"nodes.sensors.camera", "in_free_space",
-            "comparisons in which it saw a surface where the camera sees through"},
+            "comparisons in which the sensor saw a surface where the camera sees free space"},
     Meaning{"nodes.sensors.camera", "behind_surface",
-            "comparisons in which it saw free space through a surface that the camera sees"},
+            "comparisons in which the sensor saw free space through a surface that the camera sees"},
     Meaning{"joint_states", "second_sender",
-            "two senders are heard, or were within the last second: neither is used"},
+            "two senders are active, or were within the last second: neither is used"},
     Meaning{"joint_states", "contradictions",
             "how often two senders under the joint node of the bus contradicted each other"},
     Meaning{"joint_states", "jumped",
-            "the joint that was last further from the sample before it than the arm moves in that time; "
-            "null: none was"},
-    Meaning{"joint_states", "jump_age_s", "since such a sample was rejected; null: none was"},
-    Meaning{
-        "joint_states", "off_joint",
-        "the joint that is not where its joint states say, which explains what several sensors contradict, "
-        "and no sensor is named meanwhile; null: none"},
+            "the joint that last moved further between two samples than the arm can in that time; null: none "
+            "yet"},
+    Meaning{"joint_states", "jump_age_s", "since such a sample was rejected; null: none yet"},
+    Meaning{"joint_states", "off_joint",
+            "the joint whose offset explains the contradictions of several sensors; meanwhile no sensor is "
+            "named; null: none"},
     Meaning{"joint_states", "off_by",
-            "by about how much it is further, radians, metres of a prismatic joint; null: none is off"},
+            "its estimated offset, in radians, in metres for a prismatic joint; null: none is off"},
     Meaning{"joint_states", "or_camera",
             "an error of the camera explains about as much: which of the two is off is not known"},
-    Meaning{"joints_socket", "samples", "samples that came, of the right form"},
+    Meaning{"joints_socket", "samples", "samples received, of the right form"},
     Meaning{"joints_socket", "displaced",
-            "datagrams that gave way to newer ones: the daemon was held up while 1024 waited, or they come "
-            "quicker than it takes them beside the bus"},
-    Meaning{
-        "joints_socket", "surplus",
-        "datagrams dropped as they came, beyond 2048 a second of one program, or of a ninth program while "
-        "eight send samples: what the others send is taken all the same"},
+            "datagrams displaced by newer ones: the daemon was held up while 1024 waited, or they come "
+            "faster than it takes them beside the bus"},
+    Meaning{"joints_socket", "surplus",
+            "datagrams dropped on arrival: beyond 2048 a second of one program, or of a ninth program while "
+            "eight send samples. The samples of the others are taken"},
     Meaning{"joints_socket", "thinned",
-            "samples left out, as they came sooner after the one before than the rig's rate has it: usual "
-            "for a quick driver"},
+            "samples left out because they followed the one before sooner than the rig's rate: usual for a "
+            "fast driver"},
     Meaning{"joints_socket", "second_sender",
-            "samples left out, as more than one program sends some, or did within the last second"},
-    Meaning{"joints_socket", "rate_hz", "samples that came within the newest second"},
+            "samples left out because more than one program sends some, or did within the last second"},
+    Meaning{"joints_socket", "rate_hz", "samples received within the newest second"},
     Meaning{"joints_socket", "above_rate",
-            "that is over 1.3 times joints.rate_hz of the rig: what is beyond it is thinned, and of no use"},
+            "rate_hz is over 1.3 times joints.rate_hz of the rig: the surplus is thinned"},
     Meaning{"joints_socket", "joint_node_ignored",
-            "frames of the rig's joint node on the bus, which is not the source with --joints"},
+            "frames of the rig's joint node on the bus, which are not used with --joints"},
     Meaning{"joints_socket", "not_a_number",
             "refused: a word that is no finite number, or a comma without a number on each side"},
     Meaning{"joints_socket", "wrong_count",
             "refused: neither as many numbers as the rig has joints, nor one more, the time"},
     Meaning{"joints_socket", "time_off",
-            "refused: its time is over 1 s from when it was read, or it has none and was not read for so "
-            "long. CLOCK_MONOTONIC of this machine in seconds is wanted; wall time is what mostly came"},
+            "refused: its time differs by over 1 s from when it was read, or it has none and waited longer "
+            "than that. Send CLOCK_MONOTONIC of this machine in seconds; the usual cause is wall time"},
     Meaning{"joints_socket", "too_large",
-            "refused: a position beyond +-8.38 rad (or m); degrees are what mostly came"},
+            "refused: a position beyond +-8.38 rad (or m); the usual cause is degrees"},
     Meaning{"joints_socket", "too_long", "refused: over 1024 bytes"},
     Meaning{"joints_socket", "senders",
-            "a list, one object for each program heard within the last second, below; more than one: none is "
-            "used"},
+            "a list, one object for each program that sent within the last second, below; with more than "
+            "one, none is used"},
     Meaning{"joints_socket.senders", "pid",
-            "its process; 0: one that cannot be seen from here, as in another container, and all of those "
-            "count as one"},
-    Meaning{"joints_socket.senders", "uid", "its user; 0 where the process cannot be seen"},
+            "its process; 0: not visible from here, as in another container; all of those count as one"},
+    Meaning{"joints_socket.senders", "uid", "its user; 0 if the process is not visible"},
     Meaning{"joints_socket.senders", "program", "its name; empty: not known"},
-    Meaning{"joints_socket.senders", "address", "that its socket is bound to; empty: to none"},
-    Meaning{"joints_socket.senders", "samples", "samples that came of it"},
+    Meaning{"joints_socket.senders", "address", "the address that its socket is bound to; empty: none"},
+    Meaning{"joints_socket.senders", "samples", "samples received from it"},
     Meaning{"joints_socket.senders", "age_s", "since the newest of them"},
     Meaning{"recording", "state", "recording, finishing, ended or failed"},
-    Meaning{"recording", "folder", "where it is written"},
+    Meaning{"recording", "folder", "the folder that it is written to"},
     Meaning{"recording", "error", "why it failed; empty if it has not"},
-    Meaning{"recording", "seconds", "how long it is"},
-    Meaning{"recording", "can_frames", "frames of the bus that are in it"},
-    Meaning{"recording", "depth_frames", "depth frames that are in it"},
+    Meaning{"recording", "seconds", "its length"},
+    Meaning{"recording", "can_frames", "bus frames in it"},
+    Meaning{"recording", "depth_frames", "depth frames in it"},
     Meaning{"recording", "commits",
-            "joint samples, readings and depth frames that went into the map meanwhile"},
+            "joint samples, readings and depth frames that went into the map during it"},
     Meaning{"recording", "lost_can",
-            "frames of the bus that the disk could not take in time: they change no voxel of a replay"},
+            "bus frames that the disk could not take in time: they change no voxel of a replay"},
     Meaning{"recording", "lost_commits",
-            "measurements that the disk could not take in time: a replay makes another map"},
+            "measurements that the disk could not take in time: a replay gives another map"},
     Meaning{"recording", "lost_depth",
             "depth frames that the disk could not take in time, or with depth beyond 32.767 m: a replay "
-            "makes another map"},
-    Meaning{"recording", "is_complete", "nothing that the map was made of is missing in it"},
+            "gives another map"},
+    Meaning{"recording", "is_complete", "it lacks nothing that went into the map"},
     Meaning{"recording", "ended_early",
-            "why it ended though nobody asked for that and its time was not over: the bus's time leapt, "
-            "the daemon read its files anew or ended; empty otherwise"},
+            "why it ended before its time and without a request: the bus time jumped, the daemon re-read its "
+            "files or ended; else empty"},
     Meaning{"camera", "open", "it is open"},
     Meaning{"camera", "why", "why it is not; empty if it is"},
-    Meaning{"camera", "frames", "frames that came"},
-    Meaning{"camera", "displaced", "frames that gave way to newer ones, as the daemon was held up"},
+    Meaning{"camera", "frames", "frames received"},
+    Meaning{"camera", "displaced", "frames displaced by newer ones, because the daemon was held up"},
     Meaning{"camera", "untimed",
-            "frames whose time of capture could not be told: over 0.5 s late, or the first ones, until five "
-            "agree on its clock, for 5 s at most"},
+            "frames without a known capture time: over 0.5 s late, or the first ones, until five agree on "
+            "the camera's clock, for 5 s at most"},
     Meaning{"camera", "repeated",
-            "frames that were not used, as each, or at least half of it, equals one to the last bit that "
-            "came over "
-            "0.5 s before it, and more than five have equalled earlier ones since: the camera hangs, or its "
-            "lens is "
-            "covered"},
-    Meaning{
-        "camera", "opened",
-        "how often it was opened; over once: it was gone, fell silent, showed one image again and again, or "
-        "all its frames came late"},
+            "frames not used because all of the image, or at least half of it, equals bit by bit one from "
+            "over 0.5 s before, and more than five have equalled earlier ones since: the camera hangs, or "
+            "its lens is covered"},
+    Meaning{"camera", "opened",
+            "how often it was opened; more than once: it was gone, fell silent, showed one image again and "
+            "again, or all its frames came late"},
     Meaning{"camera", "is_off",
-            "one error of its pose or depth explains what several sensors contradict, clearly more than an "
-            "offset of a joint does, and no sensor is named meanwhile; null: its images are not compared "
+            "one error of its pose or depth explains the contradictions of several sensors, clearly more "
+            "than an offset of a joint does; meanwhile no sensor is named; null: its images are not compared "
             "with ranges"},
-    Meaning{
-        "camera", "turned_deg",
-        "then, and with joint_states.or_camera, about how far it is turned against the rig, about its axes: "
-        "x right, y down, z ahead; null: it is not off"},
-    Meaning{"camera", "shifted_m", "or shifted along them; null: it is not off"},
-    Meaning{"camera", "depth_scale", "or the true depth by that of its image; null: it is not off"},
-    Meaning{"camera", "explains_sensors", "of how many sensors that explains the contradictions"},
-    Meaning{"camera", "age_s", "since its newest frame came; null: none yet"},
-    Meaning{"latency", "readings", "how many the figures are of"},
+    Meaning{"camera", "turned_deg",
+            "if it is off, or with joint_states.or_camera: its estimated rotation against the rig, about its "
+            "axes x right, y down, z ahead; null: it is not off"},
+    Meaning{"camera", "shifted_m", "or its shift along them; null: it is not off"},
+    Meaning{"camera", "depth_scale",
+            "or the true depth divided by the depth of its image; null: it is not off"},
+    Meaning{"camera", "explains_sensors", "the number of sensors whose contradictions this explains"},
+    Meaning{"camera", "age_s", "since its newest frame arrived; null: none yet"},
+    Meaning{"latency", "readings", "how many readings the figures cover"},
     Meaning{"latency", "median_ms",
-            "from the kernel's stamp of the frame that completed a reading (its own, the joint state behind "
-            "it, or one that made that certain) to the map: half of them were as quick"},
-    Meaning{"latency", "p99_ms", "99 of 100 were as quick"},
+            "from the kernel's time stamp of the frame that completed a reading (its own, the joint state "
+            "after it, or one that made that certain) to the map: half of them took no longer"},
+    Meaning{"latency", "p99_ms", "99 of 100 took no longer"},
     Meaning{"latency", "max_ms", "the slowest"},
     Meaning{"latency", "age_median_ms",
-            "from the middle of the time in which a reading was taken to the map, whatever it waited for: "
-            "half of them were as young"},
-    Meaning{"latency", "age_p99_ms", "99 of 100 were as young"},
+            "from the middle of a reading's measurement to the map, all waiting included: half of them were "
+            "no older"},
+    Meaning{"latency", "age_p99_ms", "99 of 100 were no older"},
     Meaning{"latency", "age_max_ms", "the oldest"},
     Meaning{"map", "known_voxels", "voxels that are free or occupied"},
     Meaning{"map", "resolution_m", "the edge of a voxel"},
-    Meaning{"map", "memory_mib", "what they take in memory"},
-    Meaning{"map", "memory_max_mib", "the mapping's limit"},
+    Meaning{"map", "memory_mib", "memory that the map takes"},
+    Meaning{"map", "memory_max_mib", "the limit in the mapping"},
     Meaning{"map", "no_room",
-            "updates refused, as the map had reached memory_max_mib and the space was new to it: raise it, "
-            "or use a larger resolution_m"},
+            "updates refused because the map had reached memory_max_mib and the space was new to it: raise "
+            "it, or use a larger resolution_m"},
     Meaning{"map", "no_memory",
-            "updates refused, as the system had no memory and the space was new to it: lower memory_max_mib, "
-            "or give the service more"},
+            "updates refused because the system had no memory and the space was new to the map: lower "
+            "memory_max_mib, or give the service more"},
     Meaning{"map", "undated",
-            "updates that went in without their time, for which there was no room or memory: how old such a "
-            "voxel is nobody knows, so that it is stale and never forgotten. As with no_room and no_memory"},
+            "updates stored without their time, because there was no room or memory for it: the age of such "
+            "a voxel is not known, so it is stale and never expires. Remedy as for no_room and no_memory"},
     Meaning{"map", "saved", "how often it was saved"},
     Meaning{"map", "saves_failed", "saves that failed; problems has why"},
-    Meaning{"map", "saves_skipped", "saves left out, as the one before was still being written: a slow disk"},
-    Meaning{"map", "saved_age_s", "since the newest good save; null: none yet"},
+    Meaning{"map", "saves_skipped",
+            "saves left out because the one before was still being written: a slow disk"},
+    Meaning{"map", "saved_age_s", "since the newest successful save; null: none yet"},
     Meaning{"map", "folder_silent_s",
-            "for how long the maps' folder has not answered a save or a look at it; null: it answers"},
+            "for how long the maps' folder has not answered a save or a check; null: it answers"},
     Meaning{"reloads", "count", "how often SIGHUP brought new settings"},
-    Meaning{"reloads", "unchanged", "how often SIGHUP found the files as they were: nothing changed then"},
-    Meaning{
-        "reloads", "dropped",
-        "readings, joint samples and depth frames that waited at a reload and could not be used any more"},
-    Meaning{"reloads", "reading_s", "for how long SIGHUP's files are being read; null: they are not"},
-    Meaning{"log", "dropped", "lines left out, as what reads the log took none for too long"},
-    Meaning{"log", "waiting", "lines that are not written yet"},
+    Meaning{"reloads", "unchanged", "how often SIGHUP found the files unchanged"},
+    Meaning{"reloads", "dropped",
+            "readings, joint samples and depth frames that waited at a reload and could no longer be used"},
+    Meaning{"reloads", "reading_s", "for how long the files are being read after SIGHUP; null: they are not"},
+    Meaning{"log", "dropped", "lines dropped because the reader of the log took none for too long"},
+    Meaning{"log", "waiting", "lines not written yet"},
     Meaning{"log", "stuck_s", "for how long one line is being written; null: none is"},
-    Meaning{"account", "in", "what came"},
-    Meaning{"account", "used", "what went into the map, or was taken in"},
-    Meaning{"account", "pending", "what waits, for a joint state or for others to arrive"},
+    Meaning{"account", "in", "inputs of this kind"},
+    Meaning{"account", "used", "inputs that went into the map, or were accepted"},
+    Meaning{"account", "pending", "inputs that wait, for a joint state or for others to arrive"},
     Meaning{"account", "rejected", "the counters that are not 0, by name: account.md has each"},
     Meaning{"account", "balanced",
             "in = used + pending + the sum of rejected; if not, it is a defect of octoskin"},

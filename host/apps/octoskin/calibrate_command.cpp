@@ -19,7 +19,7 @@ constexpr const char* kCalibrateAbout =
     "Calibrate one sensor's offset, or the crosstalk of its cover glass, with a grey target (17 %) in the "
     "dark.\n"
     "Offset first (target at 140 mm), flash, then crosstalk (target where ranges begin to fall short: "
-    "docs/bring-up.md).";
+    "docs/hardware/calibration.md).";
 
 struct CalibrateOptions {
     std::string quantity;
@@ -50,13 +50,13 @@ void run(CalibrateOptions options) {
     const rig::SensorEdit edit = calibrating::edit_of(question, calibrate(question, options.interface));
     print("{}: {}\n", edit.key, edit.value);
     if (!options.is_written) {
-        fmt::print(stderr, "not written; --write puts it into the sensor's entry of the rig\n");
+        fmt::print(stderr, "not written; --write writes it into the sensor's entry of the rig\n");
         return;
     }
     const auto file = value_or_fail(calibrating::write_into_rig(options.rig, edit));
     fmt::print(stderr,
-               "written to {}; it counts once the node is flashed: octoskin flash --rig {} --node {} --elf "
-               "IMAGE (in octoskin's sources firmware/flash builds the image, too)\n",
+               "written to {}; it takes effect once the node is flashed: octoskin flash --rig {} --node {} "
+               "--elf IMAGE (in octoskin's sources firmware/flash builds the image, too)\n",
                file.string(), options.rig.string(), question.node_name);
 }
 
@@ -80,7 +80,7 @@ void add_calibrate_command(CLI::App& app) {
             "--can", options->interface,
             "CAN interface of Linux, such as can0, or fd:N, an open socket that carries frames as one")
         ->required();
-    command->add_flag("--write", options->is_written, "Write what was found into the rig");
+    command->add_flag("--write", options->is_written, "Write the result into the rig");
     command->callback([options] { run(*options); });
 }
 

@@ -1,4 +1,4 @@
-// octoskin cameras: which depth cameras OpenNI2 sees, and in which modes.
+// octoskin cameras: the depth cameras that OpenNI2 finds, and their modes.
 #include <poll.h>
 #include <unistd.h>
 
@@ -14,13 +14,13 @@
 namespace octoskin::app {
 namespace {
 
-/// What the helper writes until its end; empty if it takes too long.
+/// The helper's output until its end; empty if it takes too long.
 std::optional<std::string> text_of(const openni2::HelperProcess& helper) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::seconds kPatience{20};  // a camera may take seconds to open
     const auto end = Clock::now() + kPatience;
     std::string text;
-    while (true) {  // until the helper's end, or ours
+    while (true) {  // until the helper ends, or the patience is over
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
         pollfd ready{helper.descriptor(), POLLIN, 0};
         if (left.count() <= 0 || ::poll(&ready, 1, static_cast<int>(left.count())) != 1) return std::nullopt;
@@ -45,7 +45,7 @@ void list_cameras() {
         throw CommandFailure({ExitCode::io_failed, std::string(kHelper) + " failed: " + *failed});
     if (text->empty()) {
         throw CommandFailure({ExitCode::unavailable,
-                              "no camera found: is one plugged in, with a driver of OpenNI2, and may you use "
+                              "no camera found: is one plugged in, with an OpenNI2 driver, and may you use "
                               "it (group video)?"});
     }
     print_text(*text);
@@ -57,11 +57,9 @@ void add_cameras_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("cameras", "List the depth cameras of this machine and their modes");
     command->footer(
-        "Of each: its URI (for `octoskin run --camera`), vendor and name, and its depth modes. `octoskin "
-        "run` "
-        "puts it\n"
-        "into the one of width_px and height_px of the rig's camera whose rate is nearest rate_hz.\n"
-        "Exit codes: 0 there is one; 69 there is none; 74 one does not answer.");
+        "For each camera: its URI (for `octoskin run --camera`), vendor and name, and its depth "
+        "modes.\n`octoskin run` sets the mode with width_px and height_px of the rig's camera whose rate is "
+        "nearest\nto rate_hz.\nExit codes: 0 there is one; 69 there is none; 74 one does not answer.");
     command->callback(list_cameras);
 }
 

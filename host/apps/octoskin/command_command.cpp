@@ -17,21 +17,17 @@ namespace octoskin::app {
 namespace {
 
 constexpr const char* kCommandAbout =
-    "Send a command to a sensor board over CAN, and say whether the node follows or refuses.\n"
-    "  start                 range again; also ends safe mode\n"
-    "  stop                  stop ranging\n"
-    "  set_rate              another period, until reset: --period-ms, 0 is as configured\n"
-    "  reinitialise_sensor   bring the sensor up anew\n"
-    "  identify              blink the board's light for --seconds\n"
-    "  reset                 restart the node\n"
-    "  send_info             print what the node says of itself\n"
-    "  send_black_box        have it send its last I2C transfers (candump, then octoskin black-box)";
+    "Send a command to a sensor board over CAN, and report whether the node follows or refuses it.\n  start  "
+    "               start ranging; also ends safe mode\n  stop                  stop ranging\n  set_rate     "
+    "         set another period, until reset: --period-ms, 0 is as configured\n  reinitialise_sensor   "
+    "initialise the sensor again\n  identify              blink the board's light for --seconds\n  reset     "
+    "            restart the node\n  send_info             print the information of the node\n  "
+    "send_black_box        have it send its last I2C transfers (candump, then octoskin black-box)";
 
 constexpr const char* kCommandFooter =
-    "Exit codes, with `all` that of the first node that fails: 0 done; 1 the node refuses, or took it and\n"
-    "nothing changed within 5 s; 64 no such node, sensor or command; 66, 78 the rig, or the node has "
-    "another\n"
-    "configuration; 69 no such interface, no heartbeat, or no answer; 74 silent since the command.";
+    "Exit codes, with `all` that of the first node that fails: 0 done; 1 the node refuses, or accepted it "
+    "and\nnothing changed within 5 s; 64 no such node, sensor or command; 66, 78 the rig, or the node has "
+    "another\nconfiguration; 69 no such interface, no heartbeat, or no answer; 74 silent since the command.";
 
 struct CommandOptions {
     commanding::Wish wish;
@@ -60,7 +56,7 @@ std::string perform(const commanding::Order& order, socketcan::CanSocket& socket
     return value_or_fail(*dialogue.outcome());
 }
 
-/// A node that fails does not keep the others from their command.
+/// If a node fails, the others still get their command.
 void perform_each(const std::vector<commanding::Order>& orders, socketcan::CanSocket& socket) {
     std::optional<CommandFailure> first;
     for (const commanding::Order& order : orders) {
@@ -72,7 +68,7 @@ void perform_each(const std::vector<commanding::Order>& orders, socketcan::CanSo
             if (!first) first = failure;
         }
     }
-    if (first) throw CommandFailure({first->code(), "not every node: see above"});
+    if (first) throw CommandFailure({first->code(), "a node failed: see above"});
 }
 
 void run(const CommandOptions& options) {
@@ -91,9 +87,9 @@ void add_command_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("command", kCommandAbout);
     command
         ->add_option("node", options->wish.node,
-                     "Its number; with --rig also its name, or all: each of the rig's sensor boards")
+                     "Number of the node; with --rig also its name, or all: each of the rig's sensor boards")
         ->required();
-    command->add_option("code", options->wish.code, "One of those above")
+    command->add_option("code", options->wish.code, "One of the commands above")
         ->required()
         ->check(CLI::IsMember(commanding::code_names()));
     command
@@ -104,8 +100,8 @@ void add_command_command(CLI::App& app) {
     command->add_option("--rig", options->rig, "Rig (YAML), for names")->check(existing_file());
     command->add_option("--sensor", options->wish.sensor,
                         "Only this sensor: its number on the node; with --rig also its name");
-    command->add_option("--period-ms", options->wish.period_ms, "Of set_rate: from range to range, ms");
-    command->add_option("--seconds", options->wish.seconds, "Of identify: how long (10)")
+    command->add_option("--period-ms", options->wish.period_ms, "For set_rate: from range to range, ms");
+    command->add_option("--seconds", options->wish.seconds, "For identify: how long (10)")
         ->check(from_to(0, 1'800));
     command->footer(kCommandFooter);
     command->callback([options] { run(*options); });

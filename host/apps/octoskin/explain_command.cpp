@@ -1,4 +1,4 @@
-// octoskin explain: why a voxel is what it is.
+// octoskin explain: which measurements gave a voxel its state.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -26,7 +26,7 @@ struct ExplainOptions {
 void explain_voxel(const ExplainOptions& options) {
     if (options.playback.recording.empty()) {
         throw CommandFailure({ExitCode::usage,
-                              "--recording is required: the directory that `octoskin record` (of a running "
+                              "--recording is required: the directory that `octoskin record` (with a running "
                               "daemon) or `octoskin-lab simulate` made"});
     }
     const auto explanation = explain(playback_request(options.playback),
@@ -48,7 +48,7 @@ void explain_voxel(const ExplainOptions& options) {
 void add_explain_command(CLI::App& app) {
     auto options = std::make_shared<ExplainOptions>();
     CLI::App* command = app.add_subcommand(
-        "explain", "Which readings and depth frames of a recording made a voxel what it is");
+        "explain", "List the readings and depth frames of a recording that gave a voxel its state");
     command->add_option("x", options->p_map[0], "The point, metres in the map frame")->required();
     command->add_option("y", options->p_map[1])->required();
     command->add_option("z", options->p_map[2])->required();
@@ -56,7 +56,7 @@ void add_explain_command(CLI::App& app) {
         "--recording", options->playback.recording,
         "Directory of the recording, as `octoskin record` and `octoskin-lab simulate` make it (required)");
     add_playback_options(*command, options->playback);
-    command->add_option("--lines", options->lines, "List at most so many contributions, the newest ones")
+    command->add_option("--lines", options->lines, "List at most this many contributions, the newest ones")
         ->check(from_to(0, 1'000'000))
         ->capture_default_str();
     command->add_flag("--json", options->is_json, "For a script");

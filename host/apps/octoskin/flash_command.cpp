@@ -23,7 +23,8 @@ namespace {
 constexpr const char* kFlashAbout =
     "Check the image, merge the node's configuration block, program and verify through OpenOCD and the "
     "board's "
-    "ST-LINK. The files, what OpenOCD said and a record go to --out. docs/bring-up.md has the whole way";
+    "ST-LINK. The files, what OpenOCD said and a record go to --out. docs/hardware/flashing.md has the "
+    "details";
 
 struct FlashOptions {
     std::filesystem::path rig;
@@ -88,14 +89,14 @@ void describe(const flashing::Order& order, const flashing::Prepared& prepared) 
     print("files in {}\n", order.folder.string());
 }
 
-/// What a run that is not dry would do with them.
+/// Describes what a run without --dry-run would do with the option bytes.
 void describe_option_bytes(const flashing::Order& order) {
     const image::MaskedWord wanted = image::wanted_option_bytes();
-    print("option bytes (FLASH_OPTR, 0x{:08X}): would be read, and must hold {}\n", image::kOptionRegister,
+    print("option bytes (FLASH_OPTR, 0x{:08X}): would be read, and must contain {}\n", image::kOptionRegister,
           image::wanted_text());
     if (order.writes_option_bytes) {
         print(
-            "  if they differ 0x{:08X} would be written under the mask 0x{:08X} (all of these but {}), and "
+            "  if they differ, 0x{:08X} would be written under the mask 0x{:08X} (all of these but {}), and "
             "the chip restarted\n",
             wanted.value, wanted.mask, image::unwritten_text());
     } else {
@@ -103,18 +104,17 @@ void describe_option_bytes(const flashing::Order& order) {
     }
 }
 
-/// Programmed all the same, but the board is not as it should be: exit code 1.
+/// The image is programmed, but the board is not as required: exit code 1.
 void report_option_bytes(const flashing::Programmed& programmed) {
     const auto faults = image::option_byte_faults(programmed.flash_optr);
     if (faults.empty()) {
-        print("option bytes 0x{:08X}: as they must be\n", programmed.flash_optr);
+        print("option bytes 0x{:08X}: as required\n", programmed.flash_optr);
         return;
     }
     throw CommandFailure(
-        {ExitCode::failed,
-         fmt::format("programmed and running, but the option bytes (0x{:08X}) are not as they must be: {}: "
-                     "run the same command with --write-option-bytes",
-                     programmed.flash_optr, fmt::join(faults, "; "))});
+        {ExitCode::failed, fmt::format("programmed and running, but the option bytes (0x{:08X}) are not as "
+                                       "required: {}: run the same command with --write-option-bytes",
+                                       programmed.flash_optr, fmt::join(faults, "; "))});
 }
 
 void flash(const FlashOptions& options) {
@@ -143,7 +143,7 @@ void add_flash_command(CLI::App& app) {
     command->add_option("--node", options->node, "Name or number of the node; needed if the rig has several");
     command
         ->add_option("--elf", options->elf,
-                     "Image; default: what the preset firmware-release built of octoskin's sources")
+                     "Image; default: the one that the preset firmware-release built from octoskin's sources")
         ->check(existing_file());
     command->add_option("--out", options->folder, "Folder for the files; default: out/flash/RIG_NODE");
     command->add_option("--adapter-serial", options->adapter_serial,

@@ -14,7 +14,7 @@
 namespace octoskin::app {
 namespace {
 
-/// Of a line that may be long, as much as tells what it is.
+/// The beginning of a line that may be long.
 std::string shown(const std::string& line) {
     constexpr std::size_t kShown = 120;
     return cut_text(line, kShown);
@@ -47,11 +47,11 @@ void JointForwarder::begin_block() {
 void JointForwarder::put(const std::string& line) {
     if (!joints_) return send(line, std::nullopt);
     const std::size_t count = joints_->names.size();
-    auto sample = parse_joints(line, count, now_, now_);  // it counts as taken now unless it says otherwise
+    auto sample = parse_joints(line, count, now_, now_);  // it counts as sampled now unless it has a time
     if (!sample) {
         const char* const name = names_of(sample.error()).at(static_cast<std::size_t>(sample.error()));
         return refuse(
-            name, fmt::format("line not sent, {}: {} (wanted: {})",
+            name, fmt::format("line not sent, {}: {} (expected: {})",
                               describe(sample.error(), line, count, now_), shown(line), kJointTextWanted));
     }
     if (const std::string fault = joints_->fault_of(sample->position); !fault.empty())
@@ -83,7 +83,7 @@ void JointForwarder::send_until(WallTime now) {
 void JointForwarder::send(const std::string& line, const std::optional<JointSample>& sample) {
     const std::uint64_t count = 1 + std::exchange(left_out_, 0);
     if (!output_.put(line, sample)) return lose(count);
-    if (!losses_told_.empty()) spdlog::info("samples go through again; so far lost: {}", lines(lost_));
+    if (!losses_told_.empty()) spdlog::info("samples are sent again; so far lost: {}", lines(lost_));
     losses_told_.clear();
     refusals_told_.clear();
     sent_ += count;
@@ -100,7 +100,7 @@ void JointForwarder::lose(std::uint64_t count) {
     lost_ += count;
     why_ = output_.why();
     if (why_.empty() || losses_told_.size() >= kLossesTold || !losses_told_.insert(why_).second) return;
-    spdlog::warn("{}; waiting for it, and lines are lost meanwhile", why_);
+    spdlog::warn("{}; waiting for it; lines are lost meanwhile", why_);
 }
 
 void JointForwarder::refuse(const char* reason, std::string why) {

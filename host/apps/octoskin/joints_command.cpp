@@ -1,5 +1,5 @@
 // octoskin joints: joint states from standard input to the daemon, or onto a CAN interface as the rig's joint
-// node. Whoever takes them may come and go: what cannot be sent is counted, and the next line tries again.
+// node. The target may come and go: a line that cannot be sent is counted, and the next line is tried again.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -44,7 +44,7 @@ struct JointsOptions {
     std::filesystem::path rig;
 };
 
-/// The text as it is: the daemon checks and counts it, and answers nothing.
+/// Sends the text unchanged: the daemon checks and counts it, and does not answer.
 class SocketOutput final : public JointOutput {
   public:
     explicit SocketOutput(std::filesystem::path file) : file_(std::move(file)) {}
@@ -54,15 +54,15 @@ class SocketOutput final : public JointOutput {
     bool put(const std::string& line, const std::optional<JointSample>& /*sample*/) override {
         attend();
         if (descriptor_ < 0) return false;
-        // The kernel keeps ten: if more come at once there is room again soon, unless the daemon is stuck.
-        // For that one no line waits: it would hold up whoever writes them.
+        // The kernel keeps ten datagrams. If more come at once, there is room again soon, unless the daemon
+        // is stuck. Lines do not wait for a stuck daemon, because that would block their writer.
         pollfd room{descriptor_, POLLOUT, 0};
         const bool is_through = is_sent(line) || (errno == EAGAIN && !is_stuck_ &&
                                                   ::poll(&room, 1, kPatienceMs) == 1 && is_sent(line));
         is_stuck_ = !is_through && errno == EAGAIN;
         if (is_through) return true;
         if (is_stuck_) {
-            why_ = file_.string() + ": the daemon takes nothing";
+            why_ = file_.string() + ": the daemon accepts no samples";
         } else {
             close();
             why_ = file_.string() + ": the daemon is gone";
@@ -95,16 +95,16 @@ class SocketOutput final : public JointOutput {
     std::string why_;
 };
 
-/// As a node of the bus: frames, a heartbeat's silence allowed, and an answer to each SYNC.
+/// Acts as a node of the bus: sends frames, keeps to the heartbeat's silence, and answers each SYNC.
 class CanOutput final : public JointOutput {
   public:
     CanOutput(const std::string& interface, const rig::Rig& rig)
         : joints_(rig.joints.node_id, rig.joints.joints.size(), rig.joints.rate_hz),
           link_(opener(interface, descriptor_of(interface))) {}
-    /// There is a rig: `sample` is not empty.
+    /// There is a rig, so `sample` is not empty.
     bool put(const std::string& /*line*/, const std::optional<JointSample>& sample) override {
         const auto frames = joints_.frames(sample->sampled, sample->position);
-        if (!frames) return is_through_;  // too soon after the one before, and as good or bad as that
+        if (!frames) return is_through_;  // too soon after the one before: counts like that one
         is_through_ = true;
         for (const wire::CanFrame& frame : *frames) is_through_ = link_.send(frame) && is_through_;
         return is_through_;
@@ -127,7 +127,7 @@ class CanOutput final : public JointOutput {
   private:
     static constexpr std::array<socketcan::IdFilter, 1> kSyncOnly{
         {{wire::can_id(wire::FrameType::sync, wire::kHostId), wire::kStandardIdMax}}};
-    /// Of a descriptor each time a copy: the link closes what failed.
+    /// Each time a copy of the descriptor, because the link closes one that failed.
     static CanLink::Opener opener(const std::string& interface, std::optional<int> descriptor) {
         return [interface, descriptor]() -> Result<socketcan::CanSocket, socketcan::SocketFault> {
             if (!descriptor) return socketcan::CanSocket::open(interface, {.filters = kSyncOnly});
@@ -154,7 +154,7 @@ std::optional<RigJoints> joints_of(const std::optional<rig::Rig>& rig) {
     return RigJoints{rig->joints.joints, {limits.begin(), limits.end()}};
 }
 
-/// The daemon does it where lines go to its socket.
+/// For lines to the daemon's socket the daemon does this.
 std::optional<JointBurst> burst_of(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
     if (options.interface.empty()) return std::nullopt;
     return JointBurst(rig->joints.rate_hz);
@@ -164,13 +164,14 @@ std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std
     if (options.interface.empty()) return std::make_unique<SocketOutput>(options.socket);
     if (!rig)
         throw CommandFailure(
-            {ExitCode::usage, "--can needs --rig: which node sends joint states, and how many"});
+            {ExitCode::usage,
+             "--can needs --rig, for the node that sends joint states and the number of joints"});
     return std::make_unique<CanOutput>(options.interface, *rig);
 }
 
 void put_lines(std::string& pending, JointForwarder& forwarder) {
     forwarder.begin_block();
-    while (true) {  // each round takes one line off
+    while (true) {  // each round removes one line
         const std::size_t end = pending.find('\n');
         if (end == std::string::npos) break;
         if (end > 0) forwarder.put(pending.substr(0, end));
@@ -184,20 +185,20 @@ void put_lines(std::string& pending, JointForwarder& forwarder) {
 
 void forward(const JointsOptions& options) {
     constexpr int kAttendMs = 200;
-    constexpr int kBurstMs = 2;  // its end is no line
+    constexpr int kBurstMs = 2;  // no line marks the end of a burst
     const auto rig = rig_of(options);
     const auto output = make_output(options, rig);
     JointForwarder forwarder(*output, joints_of(rig), burst_of(options, rig));
     const EndSignals signals;
     std::string pending;
-    while (true) {  // until standard input or a signal ends it
+    while (true) {  // until standard input ends, or a signal
         output->attend();
         forwarder.send_due();
         std::array<pollfd, 3> ready{{{STDIN_FILENO, POLLIN, 0},
                                      {output->descriptor(), POLLIN, 0},
                                      {signals.descriptor(), POLLIN, 0}}};
         ::poll(ready.data(), ready.size(), forwarder.is_waiting() ? kBurstMs : kAttendMs);
-        if (ready[2].revents != 0) return forwarder.finish();  // what is pending is no whole line
+        if (ready[2].revents != 0) return forwarder.finish();  // pending bytes are no whole line
         if (ready[0].revents == 0) continue;
         std::array<char, 4096> bytes{};
         const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
@@ -221,10 +222,10 @@ void add_joints_command(CLI::App& app) {
     auto options = std::make_shared<JointsOptions>();
     CLI::App* command = app.add_subcommand(
         "joints", "Forward joint states from standard input to the daemon, or onto a CAN bus");
-    auto* const socket =
-        command
-            ->add_option("--socket", options->socket, "Where the daemon takes them (`octoskin run --joints`)")
-            ->capture_default_str();
+    auto* const socket = command
+                             ->add_option("--socket", options->socket,
+                                          "Socket of the daemon for joint states (`octoskin run --joints`)")
+                             ->capture_default_str();
     command
         ->add_option("--can", options->interface,
                      "Send them on this CAN interface (fd:N: an open socket that carries frames as one) "
@@ -232,24 +233,17 @@ void add_joints_command(CLI::App& app) {
         ->excludes(socket);
     command
         ->add_option("--rig", options->rig,
-                     "Rig (YAML): needed for --can; for the socket, lines are checked against it")
+                     "Rig (YAML): required for --can; with the socket, lines are checked against it")
         ->check(existing_file());
     command->footer(
-        "One sample a line: [TIME] Q1 ... QN, numbers between blanks or commas, in the rig's order; radians, "
-        "metres\n"
-        "for a prismatic joint, within +-8.388607. TIME is CLOCK_MONOTONIC of this machine in seconds (as "
-        "Python's\n"
-        "time.monotonic()), within 1 s of now; without it a line counts as sampled when it came. With --rig "
-        "a line\n"
-        "of another number of joints, or beyond the robot's joint limits by over 0.005, is refused here; "
-        "without it the "
-        "daemon\n"
-        "checks the lines, and `octoskin status` says what it refused.\n"
-        "At the end of the input, and on SIGINT or SIGTERM, it tells how many lines were sent, lost and "
-        "refused.\n"
-        "Exit codes: 0 lines went through; 64 command line; 65 a line without end; 66 no such rig file;\n"
-        "69 of the lines that came not one went through; 74 standard input cannot be read; 78 the rig is not "
-        "valid.");
+        "One sample a line: [TIME] Q1 ... QN, numbers separated by blanks or commas, in the rig's order; "
+        "radians, metres\nfor a prismatic joint, within +-8.388607. TIME is CLOCK_MONOTONIC of this machine "
+        "in seconds (as Python's\ntime.monotonic()), within 1 s of now; without it the time of arrival "
+        "counts. With --rig a line\nwith another number of joints, or over 0.005 beyond the robot's joint "
+        "limits, is refused here; without it\nthe daemon checks the lines, and `octoskin status` shows which "
+        "it refused.\nAt the end of the input, and on SIGINT or SIGTERM, it prints how many lines were sent, "
+        "lost and refused.\nExit codes: 0 lines were sent; 64 command line; 65 a line without end; 66 no "
+        "such rig file;\n69 no line was sent; 74 standard input cannot be read; 78 the rig is not valid.");
     command->callback([options] { forward(*options); });
 }
 

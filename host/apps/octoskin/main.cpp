@@ -3,22 +3,13 @@
 
 #include <string_view>
 
+#include "host/apps/command_line/exit_codes.hpp"
 #include "host/apps/command_line/program.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/daemon_signals.hpp"
 
 namespace {
-
-constexpr const char* kFooter =
-    "Exit codes: 0 done; 1 done, with a bad result; 2 done, and it is not known (query); 64 command line;\n"
-    "65 unusable data;\n"
-    "66 no such file; 69 a program or device is missing; 70 a defect of octoskin; 71 too little memory,\n"
-    "descriptors or threads (ulimit); 73 cannot write;\n"
-    "74 a device, standard input or output failed; 77 no permission;\n"
-    "78 rig, robot, scenario or mapping file; 129, 130, 143 interrupted by SIGHUP, Ctrl-C, SIGTERM: what "
-    "replay\n"
-    "had not finished is removed. Simulating and judging: octoskin-lab.";
 
 void add_commands(CLI::App& app) {
     using namespace octoskin::app;
@@ -45,7 +36,9 @@ void add_commands(CLI::App& app) {
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "run") octoskin::app::hold_daemon_signals();
     const int exit_code = octoskin::app::run_program(
-        {"octoskin", "One map of what a depth camera and the range sensors on a robot arm see.", kFooter,
+        {"octoskin", "One map of what a depth camera and the range sensors on a robot arm see.",
+         octoskin::app::exit_codes_text(true) + "\nAn interrupted replay removes what it had not finished. "
+                                                "Simulating and judging: octoskin-lab.",
          add_commands, ". To simulate, evaluate and experiment: octoskin-lab"},
         argc, argv);
     if (octoskin::LeavableThread::was_one_left()) ::_exit(exit_code);

@@ -1,4 +1,4 @@
-// octoskin monitor: what the daemon says of itself, on a terminal, until Ctrl-C or q.
+// octoskin monitor: the daemon's status on a terminal, until Ctrl-C or q.
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/ioctl.h>
@@ -35,10 +35,10 @@ struct MonitorOptions {
     bool is_once = false;
 };
 
-volatile std::sig_atomic_t is_ended = 0;  // by a signal: nothing else may be touched there
+volatile std::sig_atomic_t is_ended = 0;  // set by a signal handler, which may touch nothing else
 
-/// The terminal's second screen, without cursor, and keys as they are typed; given back at the end, however
-/// that comes.
+/// The terminal's alternate screen, without cursor, with keys delivered as they are typed; restored in every
+/// case.
 class Terminal {
   public:
     Terminal() {
@@ -61,14 +61,14 @@ class Terminal {
     Terminal(const Terminal&) = delete;
     Terminal& operator=(const Terminal&) = delete;
 
-    /// What is right of and below the new text goes. The size is asked each time.
+    /// Clears the rest of the screen. The size is read each time.
     void show(std::vector<ScreenLine> lines) {
         lines_ = std::move(lines);
         show();
     }
-    /// Until `end`, a signal or the key that ends it; scrolls meanwhile.
+    /// Waits until `end`, a signal or the key that ends it; scrolls meanwhile.
     void wait_until(Clock::time_point end) {
-        while (is_ended == 0) {  // each round waits for the end or for a key
+        while (is_ended == 0) {  // each round waits for `end` or a key
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
             if (left <= 0ms) return;
             pollfd typed{has_keys_ ? STDIN_FILENO : -1, POLLIN, 0};
@@ -85,7 +85,7 @@ class Terminal {
     void take_keys() {
         std::array<char, 64> keys{};
         const ssize_t count = ::read(STDIN_FILENO, keys.data(), keys.size());
-        if (count <= 0) {  // nobody types any more
+        if (count <= 0) {  // standard input has ended
             has_keys_ = count < 0 && errno == EINTR;
             return;
         }
@@ -105,7 +105,7 @@ class Terminal {
         write("\x1b[H" + text + "\x1b[J");
     }
     static void write(const std::string& text) {
-        // A terminal that is gone ends it.
+        // The loss of the terminal ends it.
         if (::write(STDOUT_FILENO, text.data(), text.size()) < 0) is_ended = 1;
     }
 
@@ -124,7 +124,7 @@ Result<Json, AppError> ask(const MonitorOptions& options) {
     return unexpected(foreign_answer(options.socket));
 }
 
-/// Two questions a second apart, so that rates are known.
+/// Two requests a second apart, so that rates are known.
 void show_once(const MonitorOptions& options) {
     const auto before = ask(options);
     if (!before) throw CommandFailure(before.error());
@@ -162,10 +162,9 @@ void watch(const MonitorOptions& options) {
 void add_monitor_command(CLI::App& app) {
     auto options = std::make_shared<MonitorOptions>();
     CLI::App* command = app.add_subcommand(
-        "monitor",
-        "Watch the daemon (`octoskin run`): nodes, sensors, rates, and why what is not used is not");
-    command->add_flag("--once", options->is_once, "One picture as plain text, for a script or a pipe");
-    command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
+        "monitor", "Watch the daemon (`octoskin run`): nodes, sensors, rates, and why inputs are not used");
+    command->add_flag("--once", options->is_once, "Print one screen as plain text, for a script or a pipe");
+    command->add_option("--socket", options->socket, "Control socket of the daemon")->capture_default_str();
     command->footer(
         "Keys: arrows or j and k, Page keys or space and b, Home and End scroll; q or Ctrl-C ends.\n"
         "Exit codes: 0; 64 command line; 69 no daemon (--once).");

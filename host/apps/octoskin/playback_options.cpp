@@ -23,14 +23,14 @@
 namespace octoskin::app {
 namespace {
 
-/// What a mapping may come to take at once, bytes: 8 for each voxel of an image's box, and the map itself.
+/// The maximum memory of a mapping, bytes: 8 for each voxel of an image's box, and the map itself.
 std::uint64_t memory_of(const MappingConfig& mapping) {
     return 8 * std::uint64_t{mapping.depth_box_voxels_max} +
            (std::uint64_t{mapping.map.memory_max_mib} << 20U);
 }
 
-/// A recording's own mapping is part of a file that may come from others. Where it may take more than the
-/// default mapping, it must leave half of this machine's memory.
+/// A recording's own mapping is part of a file that may come from others. If it may take more than the
+/// default mapping, it must leave half of this machine's memory free.
 Status<AppError> check_memory(const MappingConfig& mapping, const FilePlace& file) {
     const std::uint64_t asked = memory_of(mapping);
     const std::uint64_t machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
@@ -38,15 +38,14 @@ Status<AppError> check_memory(const MappingConfig& mapping, const FilePlace& fil
     if (asked <= std::max(machine / 2, memory_of(MappingConfig{}))) return Done{};
     return fail(
         ExitCode::bad_config,
-        fmt::format(
-            "{}: map.memory_max_mib {} and depth_box_voxels_max {} allow {} MiB, and this machine has "
-            "{} MiB: look at the file and, if it is yours, name it by --configuration",
-            file.shown().string(), mapping.map.memory_max_mib, mapping.depth_box_voxels_max, asked >> 20U,
-            machine >> 20U));
+        fmt::format("{}: map.memory_max_mib {} and depth_box_voxels_max {} allow {} MiB, and this machine "
+                    "has {} MiB: check the file and, if it is yours, name it with --configuration",
+                    file.shown().string(), mapping.map.memory_max_mib, mapping.depth_box_voxels_max,
+                    asked >> 20U, machine >> 20U));
 }
 
-/// What --configuration says; else the recording's own mapping.yaml, as the daemon wrote it; else the
-/// default.
+/// The mapping named by --configuration; else the recording's own mapping.yaml, written by the daemon; else
+/// the default.
 Result<NamedMapping, AppError> configuration_of(const std::string& asked_for,
                                                 const RecordingPaths& recording) {
     if (!asked_for.empty()) return named_mapping(asked_for);
@@ -91,9 +90,9 @@ std::optional<Eigen::Isometry3d> pose_of(const std::string& text) {
 }  // namespace
 
 void add_playback_options(CLI::App& command, PlaybackOptions& options) {
-    command.add_option("--configuration", options.configuration,
-                       configuration_help("How measurements become voxels (default: as the daemon "
-                                          "recorded it, else fast)"));
+    command.add_option(
+        "--configuration", options.configuration,
+        configuration_help("How measurements become voxels (default: as recorded by the daemon, else fast)"));
     command.add_option("--rig", options.rig, "Rig (YAML) in place of the recording's")
         ->check(existing_file());
     command.add_option("--robot", options.robot, "Robot (URDF) in place of the recording's")
@@ -101,12 +100,12 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
     command.add_option(
         "--camera", options.camera,
         "Of a data set or a lone .oni file without --rig: " + rig::joined(tum::kDataSetCameras) +
-            " (default: as the data set's layout has it, " + std::string(tum::kDataSetCameras.front()) + ")");
+            " (default: by the data set's layout, " + std::string(tum::kDataSetCameras.front()) + ")");
     command.add_option("--pose", options.pose,
                        "Where the camera of an .oni file without a can.log was, in the map's frame: "
                        "X,Y,Z,ROLL,PITCH,YAW of its optical frame, metres and degrees (default: the rig's)");
     command.add_flag("--by-capture-time", options.is_by_capture_time,
-                     "In the order of capture times, even if the recording has a daemon's own order");
+                     "Play in the order of capture times, even if the recording has the daemon's order");
 }
 
 PlaybackRequest playback_request(const PlaybackOptions& options) {

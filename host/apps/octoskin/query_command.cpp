@@ -1,4 +1,4 @@
-// octoskin query: may the arm stand so, go there; and where has nobody looked?
+// octoskin query: is a posture or a path of the arm free, and where is space unknown?
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -44,10 +44,10 @@ constexpr const char* kFooter =
     "joints beyond their limits; 65 a map or path that cannot be used, not the answer of a daemon of this\n"
     "version; 66 no such file; 69 no daemon, or nobody knows how the arm stands; 74 the daemon does not\n"
     "answer; 78 the rig.\n"
-    "An answer tells links, voxels and distances: docs/planner.md.";
+    "An answer has links, voxels and distances: docs/how-to/query.md.";
 
 struct QueryOptions {
-    std::optional<std::string> map;  ///< empty: a daemon is asked
+    std::optional<std::string> map;  ///< empty: the daemon is asked
     std::optional<std::string> rig;
     std::optional<std::string> robot;
     std::filesystem::path socket = default_control_socket();
@@ -63,17 +63,16 @@ struct QueryOptions {
 
 struct Question {
     QueryRequest request;
-    std::vector<double> stands;  ///< of a map file: the arm; empty: nobody says
-    std::vector<std::size_t>
-        lines;  ///< of the path's file, where each configuration is; empty: there is none
+    std::vector<double> stands;      ///< of a map file: the arm's posture; empty: not known
+    std::vector<std::size_t> lines;  ///< of the path's file, one for each configuration; empty: there is none
 };
 
 AppError missing_name(const char* option) {
     return {ExitCode::usage,
-            fmt::format("{}: the name of a file is missing (is a variable of the shell empty?)", option)};
+            fmt::format("{}: the file name is missing (is a variable of the shell empty?)", option)};
 }
 
-/// An empty name is a variable that nothing set, and not one that was left out.
+/// An empty name is a variable that is not set, not an option that was left out.
 void check_file(const char* option, const std::optional<std::string>& file) {
     if (!file) return;
     if (file->empty()) throw CommandFailure(missing_name(option));
@@ -82,7 +81,7 @@ void check_file(const char* option, const std::optional<std::string>& file) {
         throw CommandFailure({ExitCode::usage, fault});
 }
 
-/// Who gives what is not looked at expects another answer.
+/// An option without effect is refused: its user expects another answer.
 void check_options(const CLI::App& command, const QueryOptions& options) {
     const auto refuse = [&command](std::initializer_list<const char*> names, const std::string& why) {
         for (const char* name : names)
@@ -90,18 +89,18 @@ void check_options(const CLI::App& command, const QueryOptions& options) {
     };
     if (!options.map) {
         refuse({"--rig", "--robot"},
-               " is of a map file; a daemon has its own: leave it out, or name the map");
+               " is for a map file; a daemon has its own: leave it out, or name the map");
         refuse({"--stands"},
-               " is of a map file; a daemon knows how the arm stands: leave it out, or name the map");
+               " is for a map file; a daemon knows the arm's posture: leave it out, or name the map");
     } else {
-        refuse({"--socket"}, " is where a daemon listens, but a map file is asked: leave out one of the two");
+        refuse({"--socket"}, " is where a daemon listens, but a map file is given: leave out one of the two");
     }
     if (options.lists_unknown) {
-        refuse({"--path"}, ": views are looked for from one posture, give it as --joints");
-        refuse({"--reach"}, ": of --unknown no distances are told, leave it out");
+        refuse({"--path"}, ": views are searched from one posture, give it as --joints");
+        refuse({"--reach"}, ": --unknown gives no distances, leave it out");
     } else {
         refuse({"--radius", "--above", "--pockets", "--tries"},
-               " is of --unknown: give that, too, or leave it out");
+               " is for --unknown: give that, too, or leave it out");
     }
     if (options.socket.empty()) throw CommandFailure(missing_name("--socket"));
     check_file("map", options.map);
@@ -121,7 +120,7 @@ JointPath read_path(const std::string& name) {
     std::error_code error;
     if (std::filesystem::is_directory(name, error))
         throw CommandFailure(
-            {ExitCode::usage, name + " is a directory, not a file with a configuration a line"});
+            {ExitCode::usage, name + " is a directory, not a file with one configuration a line"});
     std::ifstream file(name);
     if (!file)
         throw CommandFailure(reading_error(
@@ -129,15 +128,15 @@ JointPath read_path(const std::string& name) {
     return value_or_fail(read_joint_path(file, name));
 }
 
-/// Else the answer would be about what the arm's own body frees there, "free" on a map of nothing. A path of
-/// some length begins where the arm stands, and so do the ways to views.
+/// Without the arm's posture the answer would depend on the space that the asked posture itself frees: "free"
+/// on an empty map. A path of some length begins at the arm's posture, and so do the ways to views.
 void check_own_space(const QueryOptions& options, const Question& question) {
     if (!options.map || !options.own_space_m || options.stands || options.lists_unknown) return;
     if (question.request.path.size() > 1) return;
     throw CommandFailure(
         {ExitCode::usage,
-         "--own-space of a map file needs --stands, how the arm stands there: a posture that is asked about "
-         "would be its own space, and free whatever the map says"});
+         "--own-space of a map file needs --stands, the arm's posture in it: else the posture that is asked "
+         "about would be its own space, and free whatever the map contains"});
 }
 
 Question question_of(const QueryOptions& options) {
@@ -159,30 +158,30 @@ Question question_of(const QueryOptions& options) {
     return question;
 }
 
-/// A map of a replay says by what rig it was made.
+/// The map of a replay names the rig it was made with.
 void doubt_rig(const QueryOptions& options, const rig::Rig& rig) {
     const auto origin = origin_of_map(*options.map);
     if (!origin) {
-        spdlog::warn("{}; so nothing says whether {} is the rig that the map was made with",
+        spdlog::warn("{}; so it is not known whether {} is the rig that the map was made with",
                      origin.error().message, *options.rig);
     } else if (*origin && (*origin)->rig_hash != rig::rig_hash(rig)) {
         spdlog::warn(
-            "{} is another rig than {}, which the map was made with: the answer may be of another arm, or "
-            "of another place",
+            "{} is another rig than {}, which the map was made with: the answer may be of another arm, or of "
+            "another place",
             *options.rig, (*origin)->rig.string());
     }
 }
 
 Json ask_map_file(const QueryOptions& options, const Question& question) {
     if (!options.rig)
-        throw CommandFailure({ExitCode::usage,
-                              "a map file does not say what robot is asked about: give --rig, "
-                              "the one that the map was made with"});
+        throw CommandFailure(
+            {ExitCode::usage,
+             "a map file does not contain the robot: give --rig, the one that the map was made with"});
     const rig::Rig rig = value_or_fail(read_given_rig(*options.rig, options.robot.value_or("")));
     const auto setup = make_host_setup(rig);
     if (!setup) throw CommandFailure(reading_error(ExitCode::bad_config, setup.error()));
     MapReadLimits limits;
-    limits.map.log_odds_min = -20.0F;  // whoever made it may have clamped wider
+    limits.map.log_odds_min = -20.0F;  // its maker may have used wider limits
     limits.map.log_odds_max = 20.0F;
     doubt_rig(options, rig);
     auto map = load_map(*options.map, limits);
@@ -197,10 +196,9 @@ Json ask_running_daemon(const QueryOptions& options, const QueryRequest& request
     const std::string line = to_line(request);
     if (line.size() > ControlSocket::kRequestMax)
         throw CommandFailure(
-            {ExitCode::usage,
-             fmt::format("the path takes {} bytes as a request; a daemon takes {}: ask about "
-                         "parts of it, or write its numbers with fewer digits",
-                         line.size(), ControlSocket::kRequestMax)});
+            {ExitCode::usage, fmt::format("the path takes {} bytes as a request; a daemon accepts {}: ask "
+                                          "about parts of it, or write its numbers with fewer digits",
+                                          line.size(), ControlSocket::kRequestMax)});
     const auto answer = ask_daemon(options.socket, line, std::chrono::seconds(60));
     if (!answer) throw CommandFailure(answer.error());
     Json json = Json::parse(*answer, nullptr, false);
@@ -213,7 +211,7 @@ ExitCode outcome_of(const Json& answer) {
     return answer.at("state") == "occupied" ? ExitCode::failed : ExitCode::uncertain;
 }
 
-/// An answer that is an error, of one of the path's configurations or (0) of all of it.
+/// An answer that is an error, for one of the path's configurations or (0) for all of it.
 class Refusal : public CommandFailure {
   public:
     Refusal(const AppError& error, std::size_t configuration)
@@ -224,7 +222,7 @@ class Refusal : public CommandFailure {
     std::size_t configuration_;
 };
 
-/// What the answer has in place of one, with the line of the path that it is about.
+/// The error in the answer, with the line of the path that it is about.
 Refusal refusal(const QueryOptions& options, const Question& question, const Json& answer) {
     const int code = answer.value("code", static_cast<int>(ExitCode::unavailable));
     std::string text = answer.at("error").get<std::string>();
@@ -235,12 +233,12 @@ Refusal refusal(const QueryOptions& options, const Question& question, const Jso
     return {{static_cast<ExitCode>(code), text}, configuration};
 }
 
-/// Why so little is free, as a rule, for who does not know of it.
+/// The usual reason why little is free, for users who do not know it.
 std::string hint(const QueryOptions& options, const Json& answer) {
     const std::string hint = fmt::format(
-        "(No sensor sees where the arm itself stands, and all of that is unknown: with "
-        "--own-space M{}, what is unknown or stale within M metres of the arm counts as free.)\n",
-        options.map ? " and --stands JOINTS, how it stands" : "");
+        "(No sensor sees the space of the arm itself, and all of it is unknown: with --own-space M{}, what "
+        "is unknown or stale within M metres of the arm counts as free.)\n",
+        options.map ? " and --stands JOINTS, its posture" : "");
     if (options.own_space_m || !answer.at("links_unknown").empty()) return {};
     if (!answer.contains("pockets")) {
         const Json& state = answer.at("state");
@@ -271,7 +269,7 @@ ExitCode answered(const QueryOptions& options) {
     }
 }
 
-/// For a script; the sentence follows on the standard error.
+/// For a script; the sentence follows on standard error.
 void print_refusal(const CommandFailure& failure, std::size_t configuration) {
     Json refused = query_refused({failure.code(), failure.what()});
     if (configuration > 0) refused["configuration"] = configuration;
@@ -299,66 +297,69 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
             .add_option("--joints", options.joints,
                         "The joint configuration: plain numbers with commas between them, rad (m for a "
                         "prismatic joint), one for each of the rig's joints in their order, such as "
-                        "0,-0.785,0,-2.356,0,1.571,0.785; without it, as the arm stands")
+                        "0,-0.785,0,-2.356,0,1.571,0.785; without it, the arm's present posture")
             ->type_name("JOINTS");
     command
         .add_option("--path", options.path,
-                    "A file with such a configuration a line, or '-' for standard input: at most 1000, in 1 "
-                    "MiB; what lies between two lines is asked about, too")
+                    "A file with one such configuration a line, or '-' for standard input: at most 1000, in "
+                    "1 MiB; the motion between two lines is checked, too")
         ->type_name("FILE")
         ->excludes(joints);
     command
         .add_option("--step", options.request.step,
-                    "Of a path: no joint moves further between two postures asked about, rad (m); no link "
-                    "moves further than half a voxel whatever the step")
+                    "For a path: no joint moves further between two checked postures, rad (m); whatever the "
+                    "step, no link moves further than half a voxel")
         ->check(from_to(kStepMin, 10.0))
         ->capture_default_str();
     command.add_option("--padding", options.request.padding_m, "Added to the radius of each capsule, m")
         ->check(from_to(0.0, 1.0))
         ->capture_default_str();
-    command.add_option("--reach", options.request.reach_m, "How far distances are told, m; 0: none are")
+    command
+        .add_option("--reach", options.request.reach_m,
+                    "Up to which distance distances are given, m; 0: none are")
         ->check(from_to(0.0, kReachMax_m))
         ->capture_default_str();
     command
         .add_option("--ignore-link", options.request.links_ignored,
-                    "A link of the robot that is not asked about; once for each such link")
+                    "A link of the robot that is left out; once for each such link")
         ->type_name("LINK")
         ->expected(1)
         ->take_all();
     command.add_flag("--all-links", options.request.asks_unmoved_links,
-                     "Ask about bodies that no joint moves, too: the arm's base");
+                     "Include bodies that no joint moves: the arm's base");
     command
         .add_option("--own-space", options.own_space_m,
-                    "As the arm stands, what is occupied where only the arm can be counts as free, and what "
-                    "is unknown or stale within it and so many metres of it. Give it where nothing can hide "
-                    "there")
+                    "At the arm's present posture, what is occupied where only the arm can be counts as "
+                    "free, and so does what is unknown or stale within this many metres of it. Give it where "
+                    "nothing can hide that close to the arm")
         ->check(from_to(0.0, 1.0));
     command
         .add_option("--stands", options.stands,
-                    "Of a map file: how the arm stands, as --joints; without it, where --path begins. A "
-                    "daemon knows")
+                    "For a map file: the arm's posture, as --joints; without it, the begin of --path. A "
+                    "daemon knows it")
         ->type_name("JOINTS");
 }
 
 void add_pocket_options(CLI::App& command, QueryOptions& options) {
     command.add_flag("--unknown", options.lists_unknown,
                      "List the largest pockets of unknown space about the robot's base that border on free "
-                     "space, and how the arm would have to stand so that a sensor looks into them");
+                     "space, and postures of the arm from which a sensor looks into them");
     command
         .add_option("--radius", options.request.radius_m,
-                    "With --unknown: within so many metres of the robot's base")
+                    "With --unknown: within this many metres of the robot's base")
         ->check(from_to(0.05, kRadiusMax_m))
         ->capture_default_str();
     command
-        .add_option("--above", options.z_min_m,
-                    "With --unknown: from this height in the map on, m; without it, from the base's")
+        .add_option(
+            "--above", options.z_min_m,
+            "With --unknown: from this height in the map on, m; without it, from the height of the base")
         ->check(from_to(-1000.0, 1000.0));
-    command.add_option("--pockets", options.request.pockets_max, "With --unknown: list so many at most")
+    command.add_option("--pockets", options.request.pockets_max, "With --unknown: list at most this many")
         ->check(from_to(std::size_t{0}, kConfigurationsMax))
         ->capture_default_str();
     command
         .add_option("--tries", options.request.views_tried,
-                    "With --unknown: try so many postures of the arm; 0: none, no view is looked for")
+                    "With --unknown: try this many postures of the arm; 0: none, no view is searched")
         ->check(from_to(std::size_t{0}, kViewsTriedMax))
         ->capture_default_str();
 }
@@ -367,21 +368,21 @@ void add_pocket_options(CLI::App& command, QueryOptions& options) {
 
 void add_query_command(CLI::App& app) {
     auto options = std::make_shared<QueryOptions>();
-    CLI::App* command = app.add_subcommand("query",
-                                           "Is a posture or a path of the arm free, stale, unknown or "
-                                           "occupied, how far is what is in the way, and "
-                                           "how old is what that rests on");
-    // That they are there is checked with the question, so that --json tells it, too.
+    CLI::App* command =
+        app.add_subcommand("query",
+                           "Check whether a posture or a path of the arm is free, stale, unknown or "
+                           "occupied; with the distance to obstacles and the age of the measurements");
+    // Existence of the files is checked with the question, so that --json reports it, too.
     command
         ->add_option("map", options->map, "A saved map (.ot or .bt); without it the running daemon is asked")
         ->type_name("FILE");
-    command->add_option("--rig", options->rig, "Of a map file: the rig that it was made with")
+    command->add_option("--rig", options->rig, "For a map file: the rig that it was made with")
         ->type_name("FILE");
-    command->add_option("--robot", options->robot, "Of a map file: URDF in place of the rig's")
+    command->add_option("--robot", options->robot, "For a map file: URDF in place of the rig's")
         ->type_name("FILE");
     add_posture_options(*command, *options);
     add_pocket_options(*command, *options);
-    command->add_option("--socket", options->socket, "Where the daemon listens")
+    command->add_option("--socket", options->socket, "Control socket of the daemon")
         ->type_name("FILE")
         ->capture_default_str();
     command->add_flag(

@@ -1,4 +1,4 @@
-// octoskin record: the daemon keeps what it takes in and what it puts into its map.
+// octoskin record: the daemon records its inputs and the updates of its map.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -32,7 +32,7 @@ struct RecordOptions {
     bool stops = false;
 };
 
-/// "recording" of a daemon's answer; what it refuses is a CommandFailure.
+/// The "recording" in a daemon's answer; a refusal is a CommandFailure.
 Json recording_of(const RecordOptions& options, const std::string& answer) {
     const Json json = Json::parse(answer, nullptr, false);
     if (!json.is_object() || !json.contains("ok")) throw CommandFailure(foreign_answer(options.socket));
@@ -43,9 +43,10 @@ Json recording_of(const RecordOptions& options, const std::string& answer) {
     }
     const Json recording = json.value("recording", Json());
     if (recording.is_object()) return recording;
-    throw CommandFailure({ExitCode::unavailable,
-                          options.socket.string() + ": the daemon knows of no recording: it was started anew "
-                                                    "meanwhile, or never began one"});
+    throw CommandFailure(
+        {ExitCode::unavailable,
+         options.socket.string() +
+             ": the daemon knows of no recording: it was restarted meanwhile, or never started one"});
 }
 
 Json ask(const RecordOptions& options, const std::string& line) {
@@ -58,7 +59,7 @@ bool is_going_on(const Json& recording) {
     return recording.at("state") == "recording" || recording.at("state") == "finishing";
 }
 
-/// Within the 5 s in which a daemon ends.
+/// Waits up to the 5 s in which a daemon ends.
 bool comes(const FilePlace& file) {
     constexpr int kTries = 50;
     for (int i = 0; i < kTries && !file.is_file(); ++i)
@@ -66,15 +67,16 @@ bool comes(const FilePlace& file) {
     return file.is_file();
 }
 
-/// Says where a recording is whose daemon is gone, and whether it is whole. meta.yaml comes last.
+/// Reports where the recording of an ended daemon is, and whether it is complete. meta.yaml is written last.
 [[noreturn]] void tell_left(const std::filesystem::path& folder) {
     if (!comes(RecordingPaths(folder).meta())) {
-        throw CommandFailure(
-            {ExitCode::unavailable, "the daemon ended, and did not end the recording: what it wrote is in " +
-                                        folder.string() + ", without meta.yaml"});
+        throw CommandFailure({ExitCode::unavailable,
+                              "the daemon ended, and did not complete the recording: what it wrote is in " +
+                                  folder.string() + ", without meta.yaml"});
     }
-    throw CommandFailure({ExitCode::failed, folder.string() + ": whole, but the daemon ended, and with it "
-                                                              "the recording, before it was to"});
+    throw CommandFailure(
+        {ExitCode::failed,
+         folder.string() + ": complete, but the daemon ended, and with it the recording, before its time"});
 }
 
 bool is_same(const Json& recording, const Json& other) {
@@ -82,7 +84,7 @@ bool is_same(const Json& recording, const Json& other) {
            recording.value("folder", "") == other.value("folder", "");
 }
 
-/// How the recording stands that is followed: another one may have begun since it ended.
+/// The state of the followed recording: another one may have started since it ended.
 Json own_of(const RecordOptions& options, const std::string& answer, const Json& followed) {
     const Json all = Json::parse(answer, nullptr, false);
     const Json before = all.is_object() ? all.value("before", Json()) : Json();
@@ -90,19 +92,19 @@ Json own_of(const RecordOptions& options, const std::string& answer, const Json&
     Json now = recording_of(options, answer);
     if (is_same(now, followed)) return now;
     const auto folder = followed.at("folder").get<std::string>();
-    throw CommandFailure({ExitCode::unavailable,
-                          folder + ": the daemon, started anew or asked for others, knows no more of this "
-                                   "recording; it is whole if it has a meta.yaml"});
+    throw CommandFailure(
+        {ExitCode::unavailable, folder + ": the daemon was restarted or asked for other recordings, and no "
+                                         "longer knows this one; it is complete if it has a meta.yaml"});
 }
 
-/// The answer; empty if the daemon ended. That it is there and does not answer is a CommandFailure.
+/// The answer; empty if the daemon ended. A daemon that exists and does not answer is a CommandFailure.
 std::optional<std::string> ask_patiently(const RecordOptions& options, const Json& followed) {
     constexpr int kTries = 4;
     constexpr std::chrono::milliseconds kPatience{2'500};
     AppError error;
     for (int i = 0; i < kTries; ++i) {
         auto answer = ask_daemon(options.socket, "record status", kPatience);
-        const auto refused =  // there are too many clients just now
+        const auto refused =  // too many clients at the moment
             answer ? refusal_of(Json::parse(*answer, nullptr, false)) : std::optional<AppError>();
         if (answer && !refused) return std::move(answer).value();
         error = refused ? *refused : answer.error();
@@ -110,8 +112,8 @@ std::optional<std::string> ask_patiently(const RecordOptions& options, const Jso
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
     const auto folder = followed.at("folder").get<std::string>();
-    throw CommandFailure({error.code, "the daemon no longer answers, and may record on to " + folder +
-                                          ": `octoskin record --stop " + folder +
+    throw CommandFailure({error.code, "the daemon no longer answers, and may continue to record to " +
+                                          folder + ": `octoskin record --stop " + folder +
                                           "` ends that once it does (" + error.message + ")"});
 }
 
@@ -122,17 +124,17 @@ std::filesystem::path folder_of(const RecordOptions& options) {
     return folder;
 }
 
-/// Ends that in the folder named, and nobody else's.
+/// Ends the recording in the named folder, and no other.
 std::string stop_line(const RecordOptions& options) {
     return options.out.empty() ? "record stop" : "record stop " + folder_of(options).string();
 }
 
-/// Until the files are whole; empty if the daemon ended before it said so.
+/// Waits until the files are complete; empty if the daemon ended before it reported that.
 std::optional<Json> follow(const RecordOptions& options, Json recording) {
     const EndSignals signals;
     while (is_going_on(recording)) {
         if (signals.came(std::chrono::milliseconds(200)))
-            (void)ask_daemon(options.socket, stop_line(options));  // what came of it is asked
+            (void)ask_daemon(options.socket, stop_line(options));  // its result is requested below
         const auto answer = ask_patiently(options, recording);
         if (!answer) return std::nullopt;
         recording = own_of(options, *answer, recording);
@@ -155,7 +157,8 @@ void tell(const Json& recording) {
                                                     recording.at("lost_commits").dump() +
                                                     " commits: a replay does not give the daemon's map"});
     if (const auto early = recording.at("ended_early").get<std::string>(); !early.empty())
-        throw CommandFailure({ExitCode::failed, folder + ": whole, but it ended before it was to: " + early});
+        throw CommandFailure(
+            {ExitCode::failed, folder + ": complete, but it ended before its time: " + early});
 }
 
 Json stop(const RecordOptions& options) {
@@ -171,7 +174,7 @@ Json start(const RecordOptions& options) {
         ask_daemon(options.socket, fmt::format("record start {} {}", options.seconds, folder));
     if (answer) return recording_of(options, *answer);
     AppError error = answer.error();
-    if (error.code == ExitCode::io_failed) {  // it took the request, perhaps, and gave no answer
+    if (error.code == ExitCode::io_failed) {  // it may have accepted the request without answering
         error.message += "; whether it records to " + folder + " is not known: `octoskin record --stop " +
                          folder + "` ends that";
     }
@@ -194,23 +197,20 @@ void record(const RecordOptions& options) {
 void add_record_command(CLI::App& app) {
     auto options = std::make_shared<RecordOptions>();
     CLI::App* command =
-        app.add_subcommand("record", "The running daemon records, until --seconds are over or Ctrl-C");
+        app.add_subcommand("record", "Have the running daemon record, until --seconds are over or Ctrl-C");
     command->add_option("out", options->out,
-                        "Directory to make; it must be empty, and one that the daemon's "
-                        "user may write. With --stop: end the recording there, no other");
-    command->add_option("--seconds", options->seconds, "For so long; 0: until Ctrl-C or --stop")
+                        "Directory to create; it must be empty, and writable for the daemon's user. With "
+                        "--stop: end only the recording there");
+    command->add_option("--seconds", options->seconds, "Duration; 0: until Ctrl-C or --stop")
         ->check(from_to(0.0, 1e6))
         ->capture_default_str();
-    command->add_flag("--stop", options->stops, "End the recording that is going on");
-    command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
+    command->add_flag("--stop", options->stops, "End the running recording");
+    command->add_option("--socket", options->socket, "Control socket of the daemon")->capture_default_str();
     command->footer(
-        "Exit codes: 0 the recording is whole; 1 it lacks something, or the daemon ended it early; 64 "
-        "command "
-        "line; 65 not the answer of a "
-        "daemon of\n"
-        "this version; 69 no daemon, or nothing is being recorded; 73 the directory cannot be recorded to, "
-        "or another\n"
-        "recording is going on; 74 the daemon does not answer.");
+        "Exit codes: 0 the recording is complete; 1 it is incomplete, or the daemon ended it early; 64 "
+        "command line;\n65 not the answer of a daemon of this version; 69 no daemon, or nothing is being "
+        "recorded; 73 the\ndirectory cannot be recorded to, or another recording is running; 74 the daemon "
+        "does not answer.");
     command->callback([options] {
         if (options->out.empty() && !options->stops)
             throw CommandFailure({ExitCode::usage, "record: give a directory, or --stop"});

@@ -1,5 +1,5 @@
-// octoskin repair: ends what an octoskin left half moved that was killed while it put files in their places,
-// and removes what it had not come to move.
+// octoskin repair: completes the file moves of a killed octoskin, and removes the drafts that it had not
+// moved.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -18,7 +18,7 @@
 namespace octoskin::app {
 namespace {
 
-/// In a recording its maps, in an experiment its recording.
+/// In a recording its maps; in an experiment its recording.
 constexpr const char* kFoldersWithin[] = {"maps", "recording", "recording/maps"};
 
 AppError error_of(const FolderError& error) {
@@ -35,9 +35,9 @@ bool is_finished(const OpenFolder& folder) {
     return true;
 }
 
-/// A save of the daemon's is finished, and drafts of killed processes are removed, of which nothing had come
-/// to its place. Of a process that lives they are its own: it holds the lock, a daemon that of the folder of
-/// maps. `stayed`: counts those that cannot be removed, each of which is named.
+/// Completes a save of the daemon, and removes drafts of killed processes. Drafts of a running process are
+/// left alone: it holds the lock, a daemon the one of the folder of maps. `stayed`: counts those that cannot
+/// be removed; each is named.
 bool is_cleared(const OpenFolder& folder, std::size_t& stayed) {
     const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     const auto lock_of_maps = FileLock::take(FilePlace(folder, FolderLock::kFile), FileLock::Kind::exclusive);
@@ -48,7 +48,7 @@ bool is_cleared(const OpenFolder& folder, std::size_t& stayed) {
     };
     const bool is_save_finished = finish_save(folder);
     if (is_save_finished)
-        print("{}: fused.snapshot, which goes with fused.ot, is in its place\n", folder.shown().string());
+        print("{}: fused.snapshot, which belongs to fused.ot, is in its place\n", folder.shown().string());
     std::size_t drafts = remove_leftovers(folder, complain);
     if (folder.kind_of(FileSet::kDraftFolder) == EntryKind::folder) {
         const auto gone = folder.remove_all(FileSet::kDraftFolder);
@@ -90,8 +90,8 @@ void add_repair_command(CLI::App& app) {
     auto folder = std::make_shared<std::filesystem::path>();
     CLI::App* command = app.add_subcommand(
         "repair",
-        "Finish what a killed octoskin left half moved in a recording, a maps folder or an experiment");
-    command->add_option("folder", *folder, "The folder, which is yours or root's")->required();
+        "Complete the file moves of a killed octoskin in a recording, a maps folder or an experiment");
+    command->add_option("folder", *folder, "The folder, owned by you or root")->required();
     command->callback([folder] { repair(*folder); });
 }
 

@@ -1,4 +1,4 @@
-// octoskin replay: a recording through the host's pipeline, into maps.
+// octoskin replay: plays a recording through the host's pipeline, into maps.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -29,25 +29,25 @@ namespace {
 struct ReplayOptions {
     PlaybackOptions playback;
     std::filesystem::path out;
-    std::optional<std::string> speed;  ///< empty: max into the maps, 1 onto a bus
+    std::optional<std::string> speed;  ///< empty: max into maps, 1 onto a bus
     std::string onto;
     bool is_fused_only = false;
     bool is_stepped = false;
 };
 
-/// Shows what comes next, and waits for the enter key. Nobody steps on after the end of the input.
+/// Shows the next input, and waits for the enter key. The end of standard input ends the replay.
 void wait_for_enter(const std::string& what) {
     print_text(what);
-    static_cast<void>(std::fflush(stdout));  // its failure is told at the end
+    static_cast<void>(std::fflush(stdout));  // a failure is reported at the end
     std::string line;
     if (std::getline(std::cin, line)) {
-        if (::isatty(STDIN_FILENO) == 0) print("\n");  // nobody's key has ended the line
+        if (::isatty(STDIN_FILENO) == 0) print("\n");  // no key has ended the line
         return;
     }
     print("\n");
     throw CommandFailure({ExitCode::io_failed,
-                          "standard input has ended, and with it the replay, before its own end: --step "
-                          "reads a line for each step"});
+                          "standard input, and with it the replay, ended before the end of the recording: "
+                          "--step reads a line for each step"});
 }
 
 Pace pace_of(const ReplayOptions& options) {
@@ -65,10 +65,10 @@ Pace pace_of(const ReplayOptions& options) {
     return Pace::times(speed);
 }
 
-/// When a line of progress is due: every two seconds of the recording.
+/// When to log progress: every two seconds of the recording.
 class ProgressSeconds {
   public:
-    /// The second to tell; empty: the last one told is not long enough ago.
+    /// The second to log; empty: the last one was logged a moment ago.
     [[nodiscard]] std::optional<int> due(Nanoseconds into_recording) {
         const auto second = static_cast<int>(into_recording / std::chrono::seconds(1));
         if (second < told_ + 2) return std::nullopt;
@@ -80,7 +80,7 @@ class ProgressSeconds {
     int told_ = 0;
 };
 
-/// `unit`: of what the replay takes one after the other.
+/// `unit`: name of the inputs that the replay counts.
 void report_progress(const ReplayProgress& progress, const char* unit, ProgressSeconds& seconds) {
     if (!progress.begin || !progress.now) return;
     if (const auto second = seconds.due(*progress.now - *progress.begin)) {
@@ -89,7 +89,7 @@ void report_progress(const ReplayProgress& progress, const char* unit, ProgressS
     }
 }
 
-/// A line for each five seconds that it takes.
+/// Logs a line for each five seconds that it takes.
 BytesReport checksum_report() {
     static constexpr auto kQuiet = std::chrono::seconds(5);
     return [last = std::chrono::steady_clock::now()](std::uint64_t bytes) mutable {
@@ -100,15 +100,15 @@ BytesReport checksum_report() {
     };
 }
 
-/// A replay that failed leaves the maps of the one before as they are.
+/// The maps of an earlier replay stay unchanged if this one failed.
 void refuse_failed(const Playback& playback) {
-    if (auto failure = failure_of(playback, "the account above says why")) {
+    if (auto failure = failure_of(playback, "the counters above show why")) {
         failure->message += "; no map is written";
         throw CommandFailure(std::move(*failure));
     }
 }
 
-/// `maps` in a recording; of a film that was named itself, a folder of its name beside it.
+/// `maps` in a recording; for a film named itself, a folder of its name beside it.
 FilePlace maps_place(const ReplayOptions& options, const RecordingPaths& recording) {
     if (!options.out.empty()) return FilePlace(options.out);
     const std::filesystem::path& named = options.playback.recording;
@@ -125,9 +125,9 @@ void save(const Playback& playback, MapFolder& folder, const std::filesystem::pa
         print("{}: {} known voxels\n", (out / (name + ".ot")).string(), map->known_voxels());
     }
     if (!saved->removed.empty())
-        print("removed from {}, being of the replay before: {}\n", out.string(), rig::joined(saved->removed));
+        print("removed from {}, of the replay before: {}\n", out.string(), rig::joined(saved->removed));
     if (!saved->foreign.empty()) {
-        spdlog::warn("{}: {} lie there too, and are not of this replay", out.string(),
+        spdlog::warn("{}: {} are there too, and are not of this replay", out.string(),
                      rig::joined(saved->foreign));
     }
 }
@@ -151,7 +151,7 @@ void replay_onto_bus(const ReplayOptions& options) {
     }
 }
 
-/// For whoever asks the map: what nobody could see is about the arm as it stood at the end.
+/// For queries of the map: unknown space surrounds the arm's last posture.
 void tell_last_posture(const Playback& playback) {
     std::string joints;
     playback.pipeline.builder().for_each_joint_sample([&](const JointMeasurement& sample) {
@@ -169,7 +169,7 @@ void replay_recording(const ReplayOptions& options) {
     request.pace = pace_of(options);
     request.on_checksum = checksum_report();
     if (const auto checked = check_playable(request); !checked) throw CommandFailure(checked.error());
-    // Before the work: of two that write there, the second would else find out after it.
+    // Before the work: the second of two writers would otherwise fail only at the end.
     const FilePlace maps = maps_place(options, request.recording);
     auto folder = MapFolder::open(maps);
     if (!folder) throw CommandFailure(folder.error());
@@ -182,16 +182,16 @@ void replay_recording(const ReplayOptions& options) {
     for (const AccountTable& table : playback->accounts) print_text(to_text(table));
     if (!playback->nodes.empty()) print_text(to_text(std::span<const NodeSummary>(playback->nodes)));
     for (const std::string& note : playback->notes) print("{}\n", note);
-    static_cast<void>(flush_standard_output());  // its failure is told at the end
+    static_cast<void>(flush_standard_output());  // a failure is reported at the end
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
     save(*playback, *folder, maps.shown());
     tell_last_posture(*playback);
     if (auto lost = loss_of(*playback)) throw CommandFailure(std::move(*lost));
     if (playback->is_unlike_daemons) {
-        throw CommandFailure({ExitCode::failed, options.playback.recording.string() +
-                                                    ": replayed, but not into the daemon's own map; the "
-                                                    "warning above says more"});
+        throw CommandFailure(
+            {ExitCode::failed, options.playback.recording.string() +
+                                   ": replayed, but not into the daemon's own map; see the warning above"});
     }
 }
 
@@ -199,34 +199,33 @@ void replay_recording(const ReplayOptions& options) {
 
 void add_replay_command(CLI::App& app) {
     auto options = std::make_shared<ReplayOptions>();
-    CLI::App* command =
-        app.add_subcommand("replay", "Play a recording through the pipeline; write maps and the account");
+    CLI::App* command = app.add_subcommand(
+        "replay", "Play a recording through the pipeline; write maps and the input counters");
     command
         ->add_option("recording", options->playback.recording,
                      "Directory of the recording or data set; or an .oni file")
         ->required();
     auto* const out = command->add_option("--out", options->out,
-                                          "Where the maps go (default: RECORDING/maps; of X.oni, X.maps)");
+                                          "Folder for the maps (default: RECORDING/maps; of X.oni, X.maps)");
     add_playback_options(*command, options->playback);
     auto* const fused_only =
         command->add_flag("--fused-only", options->is_fused_only,
-                          "Leave out the maps of the camera alone and the sensors alone");
+                          "Leave out the maps of the camera alone and of the sensors alone");
     auto* const speed =
         command->add_option("--speed", options->speed,
                             "max; or how many times real time: 1, 10, 0.5 (default: max, with --onto 1)");
     command
         ->add_option("--onto", options->onto,
-                     "Send the frames of can.log onto this CAN interface (fd:N: an open socket) in place "
-                     "of making maps")
+                     "Send the frames of can.log onto this CAN interface (fd:N: an open socket) instead of "
+                     "making maps")
         ->excludes(command->get_option("--camera"))
         ->excludes(command->get_option("--pose"))
         ->excludes(out)
         ->excludes(fused_only);
     command
-        ->add_flag(
-            "--step", options->is_stepped,
-            "Show each frame of the log, each reading and depth frame of a daemon's own order, or each "
-            "image of a data set, and wait for the enter key")
+        ->add_flag("--step", options->is_stepped,
+                   "Show each frame of the log (of a recording in the daemon's order, each reading and depth "
+                   "frame; of a data set, each image) and wait for the enter key")
         ->excludes(speed);
     command->callback([options] {
         const Interruption interruption;

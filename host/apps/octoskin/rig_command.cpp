@@ -1,4 +1,4 @@
-// octoskin rig: whether a rig is sound, and what it asks of its buses.
+// octoskin rig: checks a rig, and prints the loads of its buses.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -35,7 +35,7 @@ struct RigOptions {
     std::filesystem::path block;
 };
 
-/// Each bus's load, and what a person can mend by other values of phase_us.
+/// The load of each bus, and whether other values of phase_us would improve it.
 void describe_i2c(const rig::Node& node) {
     for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
         const double load = rig::i2c_load(node.config, bus);
@@ -49,7 +49,8 @@ void describe_i2c(const rig::Node& node) {
         std::vector<std::string> names;
         for (const std::size_t sensor : group) names.push_back(node.sensors[sensor].name);
         print(
-            "    {}: neighbours among these see the same light and range at once: set their phase_us apart\n",
+            "    {}: neighbours among these see the same light and range at the same time: set their "
+            "phase_us apart\n",
             rig::joined(names));
     }
 }
@@ -63,7 +64,8 @@ void describe(const rig::Rig& rig, const HostSetup& host) {
               link.is_listed ? ", as the rig lists" : ": a query answers unknown instead of free");
     }
     for (const LinkWithBorrowedBody& link : host.rig.links_with_borrowed_body)
-        print("  link {}: no body of its own: that of {}, which is fixed to it\n", link.link, link.body_of);
+        print("  link {}: no body of its own: it uses that of {}, which is fixed to it\n", link.link,
+              link.body_of);
     for (const rig::Node& node : rig.nodes) {
         print("  node {} '{}': {} sensors, node_hash {:08x}\n", node.config.node_id, node.name,
               node.sensors.size(), node_hash(node.config));
@@ -81,7 +83,7 @@ void describe(const rig::Rig& rig, const HostSetup& host) {
           100.0 * rig::can_load(rig), 100.0 * wire::kBusLoadLimit);
 }
 
-/// The same bytes that `octoskin flash` puts into a microcontroller's page.
+/// The same bytes that `octoskin flash` writes to a microcontroller's page.
 void write_block(const rig::Rig& rig, const RigOptions& options) {
     const auto node = flashing::choose_node(rig, options.node);
     if (!node) throw CommandFailure(node.error());
@@ -120,7 +122,7 @@ void add_rig_command(CLI::App& app) {
     auto* const canonical = command->add_flag("--canonical", options->prints_canonical,
                                               "Print the rig in full, in its canonical form");
     auto* const node = command->add_option(
-        "--node", options->node, "For --block: name or number of the node; needed if the rig has several");
+        "--node", options->node, "For --block: name or number of the node; required if the rig has several");
     auto* const block =
         command->add_option("--block", options->block,
                             "Write a node's configuration block to this file, for octoskin-node --config");

@@ -19,16 +19,16 @@
 namespace octoskin::app {
 namespace {
 
-/// With fewer a save, a recording or the camera would lack one some day: what a client holds is not counted.
+/// With fewer descriptors a save, a recording or the camera could fail later; those that clients hold do not
+/// count.
 void refuse_few_descriptors() {
     constexpr rlim_t kLeast = 48;
     rlimit limit{};
     if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kLeast) return;
     throw CommandFailure(
-        {ExitCode::no_resources,
-         fmt::format("this process may have {} descriptors open at once, and a daemon needs {}: raise that "
-                     "limit (ulimit -n)",
-                     limit.rlim_cur, kLeast)});
+        {ExitCode::no_resources, fmt::format("this process may have {} descriptors open at once, and a "
+                                             "daemon needs {}: raise that limit (ulimit -n)",
+                                             limit.rlim_cur, kLeast)});
 }
 
 Result<std::unique_ptr<Daemon>, AppError> begin(const DaemonRequest& request,
@@ -37,8 +37,9 @@ Result<std::unique_ptr<Daemon>, AppError> begin(const DaemonRequest& request,
     return Daemon::build(request, log);
 }
 
-/// Members of the service's group may use its sockets (ControlSocket and JointSocket set their modes), and
-/// read its files. One that may write to a recording's folder could make links there while the daemon writes.
+/// Members of the service's group may use its sockets (ControlSocket and JointSocket set their modes) and
+/// read its files. With write access to a recording's folder they could create links there while the daemon
+/// writes.
 void make_files_for_own_user() {
     constexpr mode_t kWrittenByOthers = 0022;
     ::umask(::umask(0) | kWrittenByOthers);
@@ -64,7 +65,7 @@ void add_run_command(CLI::App& app) {
     request->control_socket = default_control_socket();
     request->map_folder = default_map_folder();
     CLI::App* command = app.add_subcommand(
-        "run", "The daemon: a live CAN interface and camera into a map, for as long as the robot is there");
+        "run", "Run the daemon: a live CAN interface and camera into a map, beside a robot");
     command->add_option("--rig", request->rig, "Rig (YAML)")->required()->check(existing_file());
     command->add_option("--robot", request->robot, "Robot (URDF) in place of the rig's")
         ->check(existing_file());
@@ -73,44 +74,40 @@ void add_run_command(CLI::App& app) {
                      "CAN interface, or fd:N, an open socket that carries frames as one")
         ->capture_default_str();
     command->add_flag("--listen-only", request->is_listen_only,
-                      "Transmit nothing: somebody else must send SYNC");
+                      "Transmit nothing: another host must send SYNC");
     command
         ->add_option("--configuration", request->configuration,
                      configuration_help("How measurements become voxels"))
         ->capture_default_str();
-    auto* const camera = command->add_option(
-        "--camera", request->camera_uri,
-        "OpenNI2 device, or an .oni file to play over and over, not in step with a bus (default: "
-        "the first camera there is)");
+    auto* const camera = command->add_option("--camera", request->camera_uri,
+                                             "OpenNI2 device, or an .oni file to play in a loop, not in step "
+                                             "with a bus (default: the first camera)");
     command
         ->add_flag_callback(
-            "--no-camera", [request] { request->has_camera = false; }, "Do without the rig's camera")
+            "--no-camera", [request] { request->has_camera = false; }, "Do not use the rig's camera")
         ->excludes(camera);
     command
         ->add_option("--depth-threads", request->depth_threads,
-                     "How many threads work on a depth image: the map is the same, and sooner there")
+                     "Threads that work on a depth image: the map is the same, and earlier")
         ->check(from_to(1, 16))
         ->capture_default_str();
     command->add_option("--joints", request->joint_socket,
-                        "Make this socket and take joint states from it (`octoskin joints`)");
+                        "Create this socket and take joint states from it (`octoskin joints`)");
     command
-        ->add_option("--maps", request->map_folder,
-                     "Where the map is kept: fused.ot, fused.bt, fused.snapshot")
+        ->add_option("--maps", request->map_folder, "Folder for the map: fused.ot, fused.bt, fused.snapshot")
         ->capture_default_str();
     command->add_option("--save-every", request->save_period, "Seconds between two saves of the map")
         ->check(from_to(1, 3600))
         ->capture_default_str();
-    command->add_option("--socket", request->control_socket, "Where `octoskin status` asks")
+    command->add_option("--socket", request->control_socket, "Control socket, used by `octoskin status`")
         ->capture_default_str();
     command->footer(
-        "SIGTERM, SIGINT, SIGQUIT: save the map and end. SIGHUP: read rig, robot and mapping again, all or\n"
-        "none; at most once a second, the last one obeyed. SIGUSR1 and the like are ignored.\n"
-        "Exit codes: 0 ended by a signal, the map saved; 64 command line; 65 the saved map is damaged;\n"
-        "66 no such file; 69 a socket's folder is not there; 71 too little memory, descriptors or threads\n"
-        "(ulimit); 73 another daemon has the socket or the maps, "
-        "or\n"
-        "the map cannot be saved; 77 no permission; 78 rig, robot or mapping file; 130, 131, 143 SIGINT,\n"
-        "SIGQUIT, SIGTERM within a start that hangs.");
+        "SIGTERM, SIGINT, SIGQUIT: save the map and end. SIGHUP: read rig, robot and mapping again, all "
+        "or\nnone; at most once a second, the last one is obeyed. SIGUSR1 and the like are ignored.\nExit "
+        "codes: 0 ended by a signal, the map saved; 64 command line; 65 the saved map is damaged;\n66 no "
+        "such file; 69 a socket's folder is missing; 71 too little memory, descriptors or threads\n(ulimit); "
+        "73 another daemon has the socket or the maps, or the map cannot be saved; 77 no permission;\n78 "
+        "rig, robot or mapping file; 130, 131, 143 SIGINT, SIGQUIT, SIGTERM during a start that hangs.");
     command->callback([request] { run_daemon(*request); });
 }
 

@@ -1,4 +1,4 @@
-// octoskin status: what the daemon says of itself.
+// octoskin status: the daemon's status.
 #include <fmt/format.h>
 
 #include <memory>
@@ -55,9 +55,9 @@ void show_status(const StatusOptions& options) {
 
 void add_status_command(CLI::App& app) {
     auto options = std::make_shared<StatusOptions>();
-    CLI::App* command = app.add_subcommand("status", "What the daemon (`octoskin run`) says of itself");
-    command->add_flag("--json", options->is_json, "All of it, for a script");
-    command->add_option("--socket", options->socket, "Where the daemon listens")->capture_default_str();
+    CLI::App* command = app.add_subcommand("status", "Print the status of the daemon (`octoskin run`)");
+    command->add_flag("--json", options->is_json, "Print all of it, for a script");
+    command->add_option("--socket", options->socket, "Control socket of the daemon")->capture_default_str();
     command->callback([options] { show_status(*options); });
 }
 

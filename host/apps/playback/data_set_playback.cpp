@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// That of the rig; else the one that was asked for; else the one that the data set has a file of; else that
-/// of its layout.
+/// In this order: the rig's camera, the requested one, the one described by a file of the data set, the one
+/// of the data set's layout.
 Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request, const std::optional<rig::Rig>& given,
                                         const tum::DataSetReader& reader) {
     if (given) return *given->camera;
@@ -31,7 +31,7 @@ Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request, const st
         {ExitCode::bad_data, found.error().what + " (or give the camera with --camera or --rig)"}));
 }
 
-/// Of all that the data set measured.
+/// Of all measurements of the data set.
 Result<std::uint32_t, AppError> checksum_of(const PlaybackRequest& request,
                                             const tum::DataSetReader& reader) {
     if (const auto crc32 = crc32_of(reader.files())) return *crc32;
@@ -41,7 +41,7 @@ Result<std::uint32_t, AppError> checksum_of(const PlaybackRequest& request,
     return fail(is_refused ? ExitCode::no_permission : ExitCode::no_input,
                 missing
                     ? missing->what
-                    : request.recording.directory.string() + ": a file of it went away while it was read");
+                    : request.recording.directory.string() + ": a file of it disappeared while it was read");
 }
 
 std::string first_of(const tum::ImageCounts& images) {
@@ -79,13 +79,14 @@ void warn_of_lines(const tum::BadLines& bad, const std::optional<DepthSourceErro
     if (disorder) warnings.push_back(fmt::format("{}; put in order ({} in all)", disorder->what, unordered));
 }
 
-/// How far apart the poses about the first image without one are.
+/// The gap between the poses before and after the first image without a pose.
 void warn_of_gap(const tum::DataSetReader& reader, std::vector<std::string>& warnings) {
     const auto& first = reader.images().first_without_pose;
-    if (!first || !first->gap || *first->gap <= reader.pose_gap_max()) return;  // else its pose is not known
+    if (!first || !first->gap || *first->gap <= reader.pose_gap_max())
+        return;  // otherwise its pose is unknown
     constexpr double kNsPerMs = 1e6;
     warnings.push_back(fmt::format(
-        "{}: those about it are {:.0f} ms apart, at most {:.0f} ms are bridged "
+        "{}: the poses before and after it are {:.0f} ms apart, and at most {:.0f} ms are bridged "
         "(camera.data_set.pose_gap_max_ms of a --rig; without_pose: {} images in all)",
         first->image.what, static_cast<double>(first->gap->count()) / kNsPerMs,
         static_cast<double>(reader.pose_gap_max().count()) / kNsPerMs, reader.images().without_pose));
@@ -100,13 +101,13 @@ std::vector<std::string> warnings_of(const PlaybackRequest& request, const rig::
     warn_of_lines(poses.bad, poses.disorder, poses.unordered, warnings);
     const std::string set = request.recording.directory.string();
     if (poses.repeated > 0) {
-        warnings.push_back(fmt::format("{}: {} poses have the time of the one above them, and were left out",
+        warnings.push_back(fmt::format("{}: {} poses have the time of the previous pose and were left out",
                                        set, poses.repeated));
     }
     if (poses.no_pose > 0) {
         warnings.push_back(fmt::format(
-            "{}: the camera's pose is not known at {} times (nan, a quaternion of zeros, or no file of it)",
-            set, poses.no_pose));
+            "{}: the camera's pose is unknown at {} times (nan, a zero quaternion, or no pose file)", set,
+            poses.no_pose));
     }
     warn_of_gap(reader, warnings);
     if (const auto doubt = tum::doubt_units(reader.values(), reader.scale(), camera.depth_min_m))

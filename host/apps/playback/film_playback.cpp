@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kSuffix = ".oni";
 
-/// What the images are seen by, and from where in the map.
+/// The camera of the images, and its pose in the map.
 Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request) {
     const auto given = rig_with_camera(request, "an .oni file");
     if (!given) return unexpected(given.error());
@@ -57,18 +57,18 @@ Status<AppError> check_film(const PlaybackRequest& request) {
     if (!request.rig.empty() && !request.camera.empty())
         return fail(ExitCode::usage, name + ": takes --rig or --camera, not both");
     if (request.rig.empty() && !request.T_map_camera) {
-        return fail(ExitCode::usage,
-                    name +
-                        ": there is no can.log, and it is not known where the camera was: give --pose X,Y,Z,"
-                        "ROLL,PITCH,YAW (metres and degrees, of its optical frame in the map's), or a --rig "
-                        "whose camera has its pose");
+        return fail(ExitCode::usage, name +
+                                         ": there is no can.log, and the camera's pose is unknown: give "
+                                         "--pose X,Y,Z,ROLL,PITCH,YAW (metres and degrees, of its optical "
+                                         "frame in the map's), or a --rig whose camera has its pose");
     }
     return Done{};
 }
 
 Result<Playback, AppError> play_film(const PlaybackRequest& request, const ReplayReport& report) {
     const auto film = lone_film(request.recording);
-    if (!film) return fail(ExitCode::no_input, request.recording.directory.string() + ": the .oni is gone");
+    if (!film)
+        return fail(ExitCode::no_input, request.recording.directory.string() + ": the .oni no longer exists");
     const auto camera = camera_of(request);
     if (!camera) return unexpected(camera.error());
     const auto crc32 = crc32_of(std::span(&*film, 1), request.on_checksum);
@@ -83,8 +83,9 @@ Result<Playback, AppError> play_film(const PlaybackRequest& request, const Repla
     if (!playback) return playback;
     playback->outcome.progress.begin = HostTime{0};
     if (!request.rig.empty()) {
-        playback->warnings.push_back(film->shown().string() +
-                                     ": without joint states; a robot that the camera sees is in the map");
+        playback->warnings.push_back(
+            film->shown().string() +
+            ": without joint states; a robot that the camera sees becomes part of the map");
     }
     if (auto loss = reader->loss()) playback->warnings.push_back(std::move(*loss));
     return playback;

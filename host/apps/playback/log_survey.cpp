@@ -44,16 +44,14 @@ std::optional<std::string> LogSurvey::warning() const {
     if (scan.has_start()) return std::nullopt;
     if (scan.ignored().count > 0) {
         return fmt::format(
-            "can.log: {} START not used (mark_ignored), the last because it names a time {:+.3f} s from when "
-            "it "
-            "came, and {} s are allowed; the map begins at the first usable reading",
+            "can.log: {} START not used (mark_ignored), the last because its time differs by {:+.3f} s from "
+            "its arrival, and {} s are allowed; the map begins at the first usable reading",
             scan.ignored().count, 1e-9 * static_cast<double>(scan.ignored().ahead.count()),
             MarkGate::kApartMax.count() / 1'000'000'000);
     }
     if (scan.waiting() > 0) {
-        return "can.log: a START or STOP not used (mark_ignored): no SYNC with its FOLLOW_UP tells what time "
-               "it "
-               "was; the map begins at the first usable reading";
+        return "can.log: a START or STOP not used (mark_ignored): without a SYNC and its FOLLOW_UP its time "
+               "is unknown; the map begins at the first usable reading";
     }
     return std::nullopt;
 }

@@ -105,12 +105,13 @@ std::optional<AppError> fault_of_map(const FilePlace& map, const MapOrigin& orig
     if (described == origin.maps.end()) return std::nullopt;
     const auto found = crc32_of(map);
     if (found == described->second) return std::nullopt;
-    return AppError{
-        ExitCode::bad_data,
-        map.shown().string() + ": is not the map that " + kMapOriginFile + " beside it describes (CRC-32 " +
-            (found ? crc_text(*found) : "cannot be had") + ", described is " + crc_text(described->second) +
-            "): it was changed, or is of another replay. Replay " + origin.recording.string() +
-            " again, or move " + kMapOriginFile + " away to judge the map without knowing its origin"};
+    return AppError{ExitCode::bad_data, map.shown().string() + ": is not the map that " + kMapOriginFile +
+                                            " beside it describes (CRC-32 " +
+                                            (found ? crc_text(*found) : "cannot be computed") +
+                                            ", described: " + crc_text(described->second) +
+                                            "): it was changed, or belongs to another replay. Replay " +
+                                            origin.recording.string() + " again, or move " + kMapOriginFile +
+                                            " away to evaluate the map without its origin"};
 }
 
 }  // namespace octoskin

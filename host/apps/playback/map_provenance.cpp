@@ -20,7 +20,7 @@ Status<AppError> check_same(const fs::path& map, const MapOrigin& origin, const 
                     " (" + describe(found) + "); replay that one again");
 }
 
-/// The recording that the maps.yaml names, if that is below the map's folder and still what it was.
+/// The recording that maps.yaml names, if it is below the map's folder and unchanged.
 std::optional<FilePlace> named_recording(const fs::path& map, const MapOrigin& origin,
                                          std::vector<std::string>& warnings) {
     if (is_of_data_set(origin)) return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<FilePlace> named_recording(const fs::path& map, const MapOrigin& o
     if (!opened) {
         warnings.push_back(map.string() + ": " + kMapOriginFile + " beside it names the recording " +
                            origin.recording.string() +
-                           ", which is not opened, as it is not below the map's folder; if it is yours, "
+                           ", which is not opened because it is not below the map's folder; if you trust it, "
                            "give --recording " +
                            origin.recording.string());
         return std::nullopt;
@@ -43,11 +43,12 @@ std::optional<FilePlace> named_recording(const fs::path& map, const MapOrigin& o
 
 struct RecordingBeside {
     std::optional<FilePlace> place;
-    std::vector<std::string> warnings;  ///< of what would be one, but for a meta.yaml that cannot be read
+    std::vector<std::string>
+        warnings;  ///< about a folder that is a recording except for an unreadable meta.yaml
 };
 
-/// The recording beside a map, behind no link, where `octoskin replay` and `octoskin-lab experiment` put
-/// their maps.
+/// The recording of a map, reached without links, at the places where `octoskin replay` and `octoskin-lab
+/// experiment` put their maps.
 RecordingBeside recording_beside(const fs::path& map) {
     std::error_code error;
     const auto folder = fs::absolute(map, error).lexically_normal().parent_path();
@@ -62,8 +63,9 @@ RecordingBeside recording_beside(const fs::path& map) {
             found.place = candidate;
             return found;
         }
-        found.warnings.push_back(meta.error().message() +
-                                 "; mend that file, or the map is not judged as this recording's");
+        found.warnings.push_back(
+            meta.error().message() +
+            "; repair that file, otherwise the map is not evaluated with this recording");
     }
     return found;
 }
@@ -71,7 +73,7 @@ RecordingBeside recording_beside(const fs::path& map) {
 }  // namespace
 
 bool is_of_data_set(const MapOrigin& origin) {
-    return origin.robot == "-";  // as data_set_playback.cpp writes it: there is none
+    return origin.robot == "-";  // "-": written by data_set_playback.cpp, there is no robot
 }
 
 Result<std::optional<MapOrigin>, AppError> origin_of_map(const fs::path& map) {
@@ -99,9 +101,8 @@ Result<MapProvenance, AppError> provenance_of_map(const fs::path& map, const fs:
     } else if (found.origin) {
         found.recording = named_recording(map, *found.origin, found.warnings);
     } else if (found.recording) {
-        found.warnings.push_back(map.string() + ": no " + kMapOriginFile +
-                                 " beside it says that it was made from " +
-                                 found.recording->shown().string() + ", which is taken for granted");
+        found.warnings.push_back(map.string() + ": no " + kMapOriginFile + " beside it names as its source " +
+                                 found.recording->shown().string() + ", which is not checked");
     }
     return found;
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::chrono::seconds kRoomPatience{2};
 constexpr std::chrono::microseconds kRoomPeriod{200};
 
-/// Waits for room, within the patience.
+/// Waits until the socket accepts the frame, within the time limit.
 Status<AppError> send(socketcan::CanSocket& socket, const wire::CanFrame& frame, OntoBus& played) {
     const auto end = std::chrono::steady_clock::now() + kRoomPatience;
     for (bool is_first = true; std::chrono::steady_clock::now() < end; is_first = false) {
@@ -27,7 +27,8 @@ Status<AppError> send(socketcan::CanSocket& socket, const wire::CanFrame& frame,
         std::this_thread::sleep_for(kRoomPeriod);
     }
     return fail(ExitCode::io_failed,
-                socket.interface() + ": no room for a frame in 2 s: does anybody acknowledge on this bus?");
+                socket.interface() +
+                    ": no room for a frame in 2 s: does another node on this bus acknowledge frames?");
 }
 
 std::string text_of(const candump::LogEntry& entry) {
@@ -44,7 +45,7 @@ Result<OntoBus, AppError> play_onto(const FilePlace& can_log, socketcan::CanSock
     if (!reader) return unexpected(reading_error(ExitCode::no_input, reader.error()));
     OntoBus played;
     std::optional<WallTime> first;
-    while (true) {  // ends with the log
+    while (true) {  // until the end of the log
         const auto entry = reader->next();
         if (!entry) return unexpected(reading_error(ExitCode::bad_data, entry.error()));
         if (!*entry) break;
@@ -65,7 +66,7 @@ Result<OntoBus, AppError> play_onto(const FilePlace& can_log, socketcan::CanSock
     if (played.interface.empty()) {
         const auto foreign = reader->foreign_file();
         return fail(ExitCode::bad_data,
-                    foreign ? foreign->message() : can_log.shown().string() + ": no line of it is a frame");
+                    foreign ? foreign->message() : can_log.shown().string() + ": it contains no frame");
     }
     return played;
 }

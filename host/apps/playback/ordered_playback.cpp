@@ -17,7 +17,7 @@
 namespace octoskin {
 namespace {
 
-/// Of its .ot file, which is larger than the map: it need not be in the memory beside that.
+/// CRC-32 of the map's .ot file, which is larger than the map: it is never held in memory as a whole.
 std::uint32_t crc32_of_map(const FusedMap& map, decltype(write_ot) write) {
     std::uint32_t crc = 0;
     const auto add = [&crc](std::string_view bytes) {
@@ -31,10 +31,10 @@ std::uint32_t crc32_of_map(const FusedMap& map, decltype(write_ot) write) {
 Status<AppError> check_first(const FilePlace& file, std::uint32_t crc) {
     if (!file.is_there())
         return fail(ExitCode::no_input,
-                    file.shown().string() + ": is not there, and this recording began with it");
+                    file.shown().string() + ": does not exist, and this recording began with it");
     if (crc32_of(file) == crc) return Done{};
     return fail(ExitCode::bad_data,
-                file.shown().string() + ": is not the one that this recording began with");
+                file.shown().string() + ": is not the file that this recording began with");
 }
 
 Result<LoadedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
@@ -62,32 +62,32 @@ std::optional<std::uint32_t> placement_of(const rig::Rig& rig) {
     return robot ? std::optional(rig::placement_crc32(rig, *robot)) : std::nullopt;
 }
 
-/// Whether another rig or robot was given, by which measurements lie elsewhere in the map than by the
-/// recording's own: what the daemon had mapped before would be of another world.
+/// Whether the given rig or robot places measurements elsewhere than the recording's own. Then the daemon's
+/// earlier map does not fit.
 bool is_placed_otherwise(const PlaybackRequest& request, const rig::Rig& rig) {
     if (request.rig.empty() && request.robot.empty()) return false;
     const auto own = read_given_rig(request.recording.rig());
     return !own || placement_of(*own) != placement_of(rig);
 }
 
-/// Puts what the recording began with into `pipeline`. The answer: what a person should know of it.
+/// Loads the initial state of the recording into `pipeline`. Returns texts for the user.
 Result<std::vector<std::string>, AppError> begin_with_first(const PlaybackRequest& request,
                                                             const rig::Rig& rig,
                                                             const orderlog::Header& header,
                                                             bool has_daemons_mapping, Pipeline& pipeline) {
     if ((header.first_state || header.first_map) && is_placed_otherwise(request, rig)) {
         return std::vector<std::string>{
-            "the map that the recording began with is left out: the rig or robot that was given places base, "
-            "sensors or camera elsewhere, and this map begins empty"};
+            "the map that the recording began with is left out: the given rig or robot places base, sensors "
+            "or camera elsewhere; this map begins empty"};
     }
     if (header.first_state && has_daemons_mapping) {
         auto state = read_first_state(request, *header.first_state, header.mapping_crc32);
         if (!state) return unexpected(state.error());
         std::vector<std::string> warnings;
         if (const auto left_out = pipeline.begin_with(std::move(*state)); left_out > 0)
-            warnings.push_back(fmt::format(
-                "{}: what range sensors had read in {} zones is left out: the rig has no such zones",
-                request.recording.first_state().shown().string(), left_out));
+            warnings.push_back(
+                fmt::format("{}: range readings of {} zones are left out: the rig has no such zones",
+                            request.recording.first_state().shown().string(), left_out));
         return warnings;
     }
     if (!header.first_map) return std::vector<std::string>{};
@@ -97,12 +97,13 @@ Result<std::vector<std::string>, AppError> begin_with_first(const PlaybackReques
     return std::move(first->warnings);
 }
 
-/// Why the map need not be the daemon's; empty if it must be.
+/// Why the map may differ from the daemon's; empty if it must be equal.
 std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
                         const orderlog::OrderReader& order, const OrderedPlayback& played) {
     const OrderedOutcome& outcome = played.outcome;
-    if (outcome.order_error || outcome.depth_error) return "the replay did not come to its end";
-    if (!order.trailer()) return "order.log was cut off: the daemon was killed; this is its last whole line";
+    if (outcome.order_error || outcome.depth_error) return "the replay did not reach its end";
+    if (!order.trailer())
+        return "order.log is cut off because the daemon was killed; this is its last complete line";
     if (!order.trailer()->is_complete())
         return fmt::format("{} commits and {} depth frames could not be recorded",
                            order.trailer()->lost_commits, order.trailer()->lost_depth);
@@ -113,33 +114,34 @@ std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
     return request.robot.empty() ? "" : "another robot description was given";
 }
 
-/// Of a map that must be the daemon's and is not, what can be told.
+/// For a map that must equal the daemon's and does not: the known differences.
 std::string guess_at_unlike(const rig::Rig& rig, const orderlog::OrderReader& order,
                             const OrderedPlayback& played) {
     if (order.header().rig_hash != rig::rig_hash(rig)) return "its rig.yaml is not the daemon's";
     if (!played.has_daemons_mapping) return "its mapping.yaml is not the daemon's";
-    if (!played.outcome.took_all()) return "what the daemon took was rejected (see the account)";
-    return "files of the recording were changed, another kind of processor, or a defect of octoskin";
+    if (!played.outcome.took_all()) return "input that the daemon used was rejected (see the input counters)";
+    return "files of the recording were changed, the processor is of another kind, or octoskin has an "
+           "internal error";
 }
 
 bool is_daemons(const orderlog::OrderReader& order, const FusedMap& map) {
     if (!order.trailer()) return false;
     const auto& last = order.trailer()->last_map;
     if (!last) return map.known_voxels() == 0;
-    // Octoskin did not mark its maps always.
+    // Older versions wrote .ot files without octoskin's comment.
     return crc32_of_map(map, write_ot) == *last || crc32_of_map(map, write_unmarked_ot) == *last;
 }
 
 void judge(const PlaybackRequest& request, const rig::Rig& rig, const orderlog::OrderReader& order,
            const FusedMap& map, OrderedPlayback& played) {
     if (is_daemons(order, map)) {
-        played.notes.emplace_back("the fused map is the daemon's own, byte for byte");
+        played.notes.emplace_back("the fused map is identical to the daemon's, byte for byte");
     } else if (const std::string why = why_another(request, rig, order, played); !why.empty()) {
-        played.warnings.push_back("the map is not the daemon's own: " + why);
+        played.warnings.push_back("the map differs from the daemon's: " + why);
     } else {
         played.is_unlike_daemons = true;
         played.warnings.push_back(
-            "the fused map is not the daemon's own, though nothing else was given than the recording: " +
+            "the fused map differs from the daemon's, although only the recording was given: " +
             guess_at_unlike(rig, order, played));
     }
 }

@@ -13,7 +13,7 @@
 namespace octoskin {
 namespace {
 
-/// No gap of a recording is worth waiting for so long.
+/// Longer gaps of a recording are skipped.
 constexpr std::int64_t kLeapMax_ns = 60'000'000'000;
 
 std::int64_t steady_now_ns() {
@@ -40,12 +40,13 @@ struct Describe {
         return fmt::format("reading of node {} sensor {} zone {}: {}", node, sensor, zone, range);
     }
     std::string operator()(const DepthCommit& frame) const {
-        return frame.index ? fmt::format("depth frame {}", *frame.index) : "depth frame that is not recorded";
+        return frame.index ? fmt::format("depth frame {}", *frame.index)
+                           : "depth frame without a recorded image";
     }
     std::string operator()(const WaitCommit&) const { return "time without a measurement"; }
 };
 
-/// Empty: it has none.
+/// Empty if the commit has no time.
 struct TimeOf {
     std::optional<HostTime> operator()(const JointMeasurement& joints) const { return joints.sampled; }
     std::optional<HostTime> operator()(const RangeMeasurement& reading) const { return reading.captured; }
@@ -71,7 +72,8 @@ Pace Pace::by_step(Step step) {
 void Pace::wait(std::int64_t time_ns, const std::string& what) {
     if (step_) return step_(what);
     if (!speed_) return;
-    // Measurements of several sources are a little out of order: only a real step back begins anew.
+    // Measurements of several sources are slightly out of order: only a large step back restarts the time
+    // base.
     constexpr std::int64_t kBackMax_ns = 1'000'000'000;
     const bool leaps = time_ns - newest_ns_ > kLeapMax_ns || newest_ns_ - time_ns > kBackMax_ns;
     if (!has_begun_ || leaps) {
@@ -106,7 +108,7 @@ Result<std::optional<Commit>, CommitSourceError> PacedCommits::next() {
     if (!pace_.waits() || !commit || !commit->has_value()) return commit;
     const auto time = std::visit(TimeOf{}, **commit);
     if (!time) return commit;
-    // A step is a reading or a frame: joint samples only say where the robot was.
+    // A step is a reading or a frame. Joint samples are no steps: they only give the robot's pose.
     const bool is_step = !std::holds_alternative<JointMeasurement>(**commit);
     has_begun_ = has_begun_ || is_step || (begin_ && *time >= *begin_);
     if (is_step || (has_begun_ && !pace_.steps())) pace_.wait(time->ns, std::visit(Describe{}, **commit));

@@ -49,7 +49,7 @@ Result<candump::LogReader, AppError> open_reader(const RecordingPaths& recording
     return std::move(*reader);
 }
 
-/// Reads the log through before it is replayed: to its first START, or to its end.
+/// Reads the log before the replay: up to its first START, or to its end.
 Status<AppError> survey_log(const RecordingPaths& recording, LogSurvey& survey) {
     auto reader = open_reader(recording);
     if (!reader) return unexpected(reader.error());
@@ -72,8 +72,8 @@ Result<candump::LogSource, AppError> open_log(const RecordingPaths& recording, c
     return candump::LogSource(std::move(*reader), interface);
 }
 
-/// The recording's depth frames. Not being able to read them is a camera fault: the ranges are mapped all the
-/// same.
+/// The recording's depth frames. If they cannot be read, that is a camera fault: the ranges are mapped
+/// nevertheless.
 struct DepthInput {
     std::optional<openni2::OniReader> reader;
     std::optional<DepthSourceError> error;
@@ -94,7 +94,7 @@ AccountTable line_table(const candump::LogSource& log) {
     return table;
 }
 
-/// What became of the pixels of the depth frames that were used.
+/// Counts of the pixels of the used depth frames, by their use.
 AccountTable pixel_table(const DepthStage& depth) {
     const DepthPixelCounts& pixels = depth.pixels();
     const std::uint64_t robot = depth.robot_pixels();
@@ -139,9 +139,9 @@ std::vector<std::string> take_notes(const Pipeline& pipeline) {
     std::vector<std::string> notes;
     const HostClockEstimate& clock = pipeline.intake().host_clock();
     if (clock.steps_back() + clock.steps_ahead() + clock.stamps_ignored() > 0) {
-        notes.push_back("stamps of the log: " + std::to_string(clock.steps_back()) + " steps back, " +
+        notes.push_back("time stamps of the log: " + std::to_string(clock.steps_back()) + " steps back, " +
                         std::to_string(clock.steps_ahead()) + " ahead, " +
-                        std::to_string(clock.stamps_ignored()) + " that fitted nothing");
+                        std::to_string(clock.stamps_ignored()) + " that did not fit");
     }
     return notes;
 }
@@ -150,12 +150,12 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
                    Playback& playback) {
     const auto frames = playback.outcome.progress.can_frames;
     if (!playback.nodes.empty() && frames < meta.can_frames) {
-        playback.warnings.push_back("can.log: " + std::to_string(frames) + " frames, but meta.yaml says " +
+        playback.warnings.push_back("can.log: " + std::to_string(frames) + " frames, but meta.yaml states " +
                                     std::to_string(meta.can_frames) + ": part of the log is missing");
     }
     if (rig.camera && !depth.reader && !depth.error) {
         playback.warnings.emplace_back(
-            "the rig has a camera, but the recording has no depth.oni: ranges only");
+            "the rig has a camera, but the recording has no depth.oni: only the ranges are mapped");
     }
     if (!rig.camera && depth.reader) {
         playback.warnings.emplace_back(
@@ -163,7 +163,7 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
     }
 }
 
-/// Sensors that the camera speaks against: swapped at the harness, stuck, or not where the rig has them.
+/// Sensors that contradict the camera: exchanged cables, a stuck value, or a wrong pose in the rig.
 void find_contradictions(const HostRig& rig, Playback& playback) {
     const SensorWitness* const witness = playback.pipeline.builder().witness();
     if (witness == nullptr) return;
@@ -178,7 +178,7 @@ void find_contradictions(const HostRig& rig, Playback& playback) {
     }
 }
 
-/// Frames that are no images of the camera that was given.
+/// Images that do not have the size of the given camera.
 void find_wrong_sizes(Playback& playback) {
     const DepthStage* const stage = playback.pipeline.depth_stage();
     if (stage == nullptr || stage->wrong_size().frames == 0) return;
@@ -188,7 +188,7 @@ void find_wrong_sizes(Playback& playback) {
         std::to_string(frames) + " depth images are " + std::to_string(width) + " x " +
         std::to_string(height) + ", the camera's are " + std::to_string(camera.width) + " x " +
         std::to_string(camera.height) +
-        " (wrong_size): give a --rig whose camera has their width_px and height_px, and is theirs");
+        " (wrong_size): give a --rig whose camera has their width_px and height_px, and fits them");
 }
 
 void find_full_maps(Playback& playback) {
@@ -218,14 +218,15 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& 
     return std::move(*pipeline);
 }
 
-/// The log of the bus, through the whole pipeline.
+/// Plays the log of the bus through the whole pipeline.
 Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup, DepthInput& depth,
                                     MapOrigin origin, const ReplayReport& report) {
     LogSurvey first(setup.host.rig);
     if (const auto read = survey_log(request.recording, first); !read) return unexpected(read.error());
     const Nanoseconds grain = first.stamp_grain();
     const IntakeConfig intake = first.intake_for_stamps();
-    std::optional<LogSurvey> again;  // by the rules that coarse stamps need: whether a START is taken
+    std::optional<LogSurvey> again;  // a second survey with the intake for coarse time stamps, which decides
+                                     // whether a START is used
     if (grain.count() > 0) {
         again.emplace(setup.host.rig, intake);
         if (const auto read = survey_log(request.recording, *again); !read) return unexpected(read.error());
@@ -255,7 +256,7 @@ Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup
     return playback;
 }
 
-/// When can.log begins, as a replay by capture time counts it; empty if nothing in it tells the time.
+/// The time at which can.log begins in a replay by capture time; empty if nothing in the log gives the time.
 std::optional<HostTime> begin_of_log(const RecordingPaths& recording, const HostRig& rig) {
     auto log = open_log(recording, "");
     CanIntake intake(rig);
@@ -267,7 +268,7 @@ std::optional<HostTime> begin_of_log(const RecordingPaths& recording, const Host
     return intake.host_clock().begun();
 }
 
-/// The daemon's own order, without what decided it.
+/// Plays in the daemon's own order, without the steps that determined that order.
 Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& setup, DepthInput& depth,
                                       MapOrigin origin, const ReplayReport& report) {
     auto pipeline = make_pipeline(request, setup, MapBegin::first_usable);
@@ -298,7 +299,7 @@ std::string why_nothing(const Playback& playback, std::string_view where_the_acc
     if (playback.losses.empty()) return "; " + std::string(where_the_account_is);
     const Loss& first = playback.losses.front();
     return ": " + std::to_string(first.rejected) + " of " + std::to_string(first.of) + " " + first.unit +
-           " are not used, most as " + first.reason + "; the warnings above say more";
+           " are not used, most as " + first.reason + "; see the warnings above";
 }
 
 }  // namespace
@@ -309,11 +310,11 @@ std::optional<AppError> failure_of(const Playback& playback, std::string_view wh
     const bool is_balanced =
         playback.pipeline.is_balanced() && std::all_of(playback.accounts.begin(), playback.accounts.end(),
                                                        [](const auto& table) { return table.is_balanced; });
-    if (!is_balanced) return AppError{ExitCode::failed, "the account does not balance"};
+    if (!is_balanced) return AppError{ExitCode::failed, "the input counters do not balance"};
     if (playback.is_map_incomplete) return AppError{ExitCode::failed, "the map is not complete"};
     if (playback.pipeline.map().known_voxels() == 0) {
         return AppError{ExitCode::failed,
-                        "nothing came into the map" + why_nothing(playback, where_the_account_is)};
+                        "no measurement entered the map" + why_nothing(playback, where_the_account_is)};
     }
     return std::nullopt;
 }
@@ -322,14 +323,15 @@ std::optional<AppError> loss_of(const Playback& playback) {
     const auto lost = std::ranges::find_if(playback.losses, &Loss::is_mendable);
     if (lost == playback.losses.end()) return std::nullopt;
     return AppError{ExitCode::failed, "most of the " + lost->unit + " is lost (" + lost->reason +
-                                          "): the warning above says how to mend it"};
+                                          "): see the warning above for the remedy"};
 }
 
 Status<AppError> check_playable(const PlaybackRequest& request) {
     const bool is_lone_film = lone_film(request.recording).has_value();
     if (request.T_map_camera && !is_lone_film) {
         return fail(ExitCode::usage, "--pose: is for an .oni file without a can.log; " +
-                                         request.recording.directory.string() + " has poses of its own");
+                                         request.recording.directory.string() +
+                                         " has camera poses of its own");
     }
     if (is_data_set(request.recording)) return check_data_set(request);
     if (is_lone_film) return check_film(request);
@@ -381,7 +383,7 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     const auto play = is_data_set(request.recording) ? play_data_set
                       : lone_film(request.recording) ? play_film
                                                      : play_robot;
-    std::optional<FileLock> lock;  // of a folder: a film may be a file
+    std::optional<FileLock> lock;  // of a folder: a film can be a file
     if (std::filesystem::is_directory(request.recording.directory)) {
         auto locked = lock_recording(request.recording);
         if (!locked) return unexpected(locked.error());

@@ -1,4 +1,5 @@
-// From a recording on disk to maps: the files opened, the host's pipeline run, the account drawn up.
+// From a recording on disk to maps: opens the files, runs the host's pipeline and collects the input
+// counters.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,7 +24,7 @@
 
 namespace octoskin {
 
-/// Of depth frames that cannot be read: `unavailable` without the program that reads them, else `bad_data`.
+/// The error of unreadable depth frames: `unavailable` if the reader program is missing, else `bad_data`.
 [[nodiscard]] inline AppError unread_depth(const DepthSourceError& error) {
     return {error.is_reader_missing ? ExitCode::unavailable : ExitCode::bad_data, error.what};
 }
@@ -31,66 +32,68 @@ namespace octoskin {
 struct PlaybackRequest {
     RecordingPaths recording;
     MappingConfig mapping;
-    std::string configuration;      ///< what `mapping` is called
-    bool is_mapping_given = false;  ///< in place of the recording's
+    std::string configuration;      ///< name of `mapping`
+    bool is_mapping_given = false;  ///< used in place of the recording's
     std::vector<MapFeed> maps = every_feed();
-    std::filesystem::path rig;    ///< in place of the recording's; empty: the recording's
-    std::filesystem::path robot;  ///< in place of the recording's; empty: the recording's
-    /// Of a data set or a lone .oni for which no rig is given, one of tum::kDataSetCameras; empty: that of
-    /// the data set's layout, or the first.
+    std::filesystem::path rig;    ///< used in place of the recording's; empty: the recording's
+    std::filesystem::path robot;  ///< used in place of the recording's; empty: the recording's
+    /// For a data set or an .oni file without a rig: one of tum::kDataSetCameras. Empty: the camera of the
+    /// data set's layout, or the first one.
     std::string camera = {};
-    /// Of an .oni file that stands alone: where its camera was. Empty: where the rig has it.
+    /// For an .oni file on its own: the camera's pose. Empty: the rig's.
     std::optional<Eigen::Isometry3d> T_map_camera = {};
-    /// In the order of capture times, even if the recording has a daemon's own order.
+    /// Play in the order of capture times, even if the recording contains the daemon's order.
     bool is_by_capture_time = false;
     Pace pace = {};
-    /// Is told of what goes into the maps; null: nobody is.
+    /// Called for everything that enters the maps; null: no listener.
     CommitListener* listener = nullptr;
-    /// Is told, before anything is played, what a person should know about rig and robot; empty: that is
-    /// among the warnings at the end.
+    /// Called before the playback with warnings about rig and robot; empty: they are among the warnings at
+    /// the end.
     std::function<void(const std::string& warning)> warn_first = {};
-    /// Is told, before anything is played, how much of the recording's files was read for their checksum.
+    /// Called before the playback with the number of bytes read for the checksum of the recording.
     BytesReport on_checksum = {};
 };
 
 struct Playback {
     rig::Rig rig;
-    Pipeline pipeline;  ///< finished: its maps and its accounts
+    Pipeline pipeline;  ///< finished, with its maps and input counters
     ReplayOutcome outcome;
     std::vector<AccountTable> accounts;  ///< log lines, then the pipeline's, then the pixels
-    std::vector<NodeSummary> nodes;      ///< how each stood at the end
-    /// Links with another's body; how the host's clock fared, if there is something to tell.
+    std::vector<NodeSummary> nodes;      ///< the state of each node at the end
+    /// Links that use another link's body; notable behaviour of the host's clock.
     std::vector<std::string> notes;
-    std::vector<std::string> warnings;  ///< what a person should know about this recording
-    /// Of what over half is rejected; those that a user can mend are among the warnings, the rest are notes.
+    std::vector<std::string> warnings;  ///< for the user, about this recording
+    /// Inputs of which more than half was rejected. Those that a user can correct are among the warnings, the
+    /// rest among the notes.
     std::vector<Loss> losses = {};
     bool is_map_incomplete = false;  ///< a map had no room for some of its voxels
-    MapOrigin origin;                ///< of its maps, but for the maps' own checksums
-    /// Played in a daemon's order and with its mapping: what had no room in `fused` had none there either.
+    MapOrigin origin;                ///< of its maps, without the maps' own checksums
+    /// Played in a daemon's order and with its mapping: what had no room in `fused` had none in the daemon's
+    /// map either.
     bool is_as_full_as_daemons = false;
-    /// Played in a daemon's order, and `fused` is not its map, though nothing given explains that.
+    /// Played in a daemon's order, and `fused` differs from its map although nothing given explains that.
     bool is_unlike_daemons = false;
 };
 
-/// Why what came of a recording must not be used as a map; empty if nothing speaks against it: a source that
-/// failed on the way, an account that does not balance, a map without room, or nothing in any map.
-/// `where_the_account_is`: half a sentence for whoever wonders why nothing came into a map.
+/// Why the result must not be used as a map; empty if there is no reason against it. Reasons: a source failed
+/// during the playback, the input counters do not balance, a map had no room, or no map contains anything.
+/// `where_the_account_is`: half a sentence on where to find the counters that explain an empty map.
 [[nodiscard]] std::optional<AppError> failure_of(
     const Playback& playback,
-    std::string_view where_the_account_is = "`octoskin replay` shows the account that says why");
+    std::string_view where_the_account_is = "`octoskin replay` shows the counters with the reason");
 
-/// That over half of what could have been used is lost for reasons that a user can mend: the maps are what
-/// came of the rest. Empty if not.
+/// An error if more than half of the usable input is lost for reasons that a user can correct; the maps then
+/// contain only the rest. Empty if not.
 [[nodiscard]] std::optional<AppError> loss_of(const Playback& playback);
 
-/// That the recording has its files, as check_recording() says: cheap, for those who have something to
-/// prepare before they play it.
+/// Checks that the recording has its files, as check_recording() does. Cheap; for callers that prepare
+/// something before the playback.
 [[nodiscard]] Status<AppError> check_playable(const PlaybackRequest& request);
 
-/// Opens a recording and plays it to its end: in a daemon's own order, if it has one. A data set in the TUM
-/// RGB-D layout is played as well (data_set_playback.hpp). A source that fails on the way (a truncated .oni)
-/// is told in `outcome`, and what came before it is on the maps. Several threads may play at once; while one
-/// does, no octoskin replaces the recording.
+/// Opens a recording and plays it to its end: in a daemon's own order, if it contains one. A data set in the
+/// TUM RGB-D layout is played as well (data_set_playback.hpp). If a source fails during the playback (a
+/// truncated .oni), `outcome` contains the error, and the maps contain what was read before it. Several
+/// threads may play at once. During a playback no octoskin replaces the recording.
 [[nodiscard]] Result<Playback, AppError> play_recording(const PlaybackRequest& request,
                                                         const ReplayReport& report = {});
 

@@ -20,7 +20,7 @@ std::string_view without_blanks_before(std::string_view text) {
     return text.substr(std::min(text.find_first_not_of(kBlank), text.size()));
 }
 
-/// Empty if the word is no finite number.
+/// Empty if the word is not a finite number.
 std::optional<double> number_of(std::string_view word) {
     double number = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
@@ -39,8 +39,9 @@ Result<std::string, AppError> read_bounded(std::istream& stream, const std::stri
     if (text.size() <= kPathBytesMax) return text;
     return fail(
         ExitCode::bad_data,
-        fmt::format("{}: has more than {} bytes, which no path has: a configuration a line, at most {}", name,
-                    kPathBytesMax, kConfigurationsMax));
+        fmt::format(
+            "{}: has more than {} bytes, more than any valid path: one configuration a line, at most {}",
+            name, kPathBytesMax, kConfigurationsMax));
 }
 
 }  // namespace
@@ -49,7 +50,7 @@ Result<std::vector<double>, std::string> read_numbers(std::string_view text) {
     std::vector<double> numbers;
     bool is_after_comma = false;
     for (text = without_blanks_before(text);
-         !text.empty() || is_after_comma;) {  // each round takes a word off
+         !text.empty() || is_after_comma;) {  // each iteration removes one word
         const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n,"));
         const auto number = number_of(word);
         if (!number) return unexpected(std::string(word));
@@ -67,7 +68,7 @@ std::string describe_field(std::string_view field) {
     for (char& c : shown)
         if (c < ' ' || c > '~') c = '?';
     return (field.empty() ? std::string("a number is missing beside a comma")
-                          : fmt::format("'{}{}' is no plain, finite number", shown,
+                          : fmt::format("'{}{}' is not a plain, finite number", shown,
                                         field.size() > kShown ? "..." : "")) +
            "; expected a joint configuration: one number for each joint of the rig, with commas between "
            "them, "
@@ -89,7 +90,7 @@ Result<JointPath, AppError> read_joint_path(std::istream& stream, const std::str
                         fmt::format("{}:{}: {}", name, number, describe_field(configuration.error())));
         if (path.lines.size() >= kConfigurationsMax)
             return fail(ExitCode::bad_data,
-                        fmt::format("{}:{}: more than {} configurations: ask about parts of the path", name,
+                        fmt::format("{}:{}: more than {} configurations: query parts of the path", name,
                                     number, kConfigurationsMax));
         path.configurations.push_back(std::move(*configuration));
         path.lines.push_back(number);

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// More would keep who asks, and others, waiting for minutes.
+/// More postures would block the client, and other clients, for minutes.
 constexpr std::size_t kPosturesMax = 50'000;
 
 std::string text_of(const RobotQueryFault& fault) {
@@ -32,8 +32,7 @@ std::string text_of(const RobotQueryFault& fault) {
         case RobotQueryError::bad_padding:
             return "the padding is not within 0 to 1 m";
         case RobotQueryError::no_body:
-            return "nothing is left to ask about: nothing that a joint moves and that is not ignored has a "
-                   "<collision>";
+            return "the query is empty: no moving link that is not ignored has a <collision>";
     }
     return {};
 }
@@ -63,12 +62,12 @@ std::string text_of(const PostureFault& fault, const HostRig& rig, const RobotMo
     return {};
 }
 
-/// To a micrometre: in so many digits as that takes.
+/// Rounded to a micrometre, with as many digits as that needs.
 Json rounded(const std::optional<double>& metres) {
     constexpr double kPerMetre = 1e6;
-    return metres ? Json(std::round(*metres * kPerMetre) / kPerMetre + 0.0) : Json(nullptr);  // no "-0.0"
+    return metres ? Json(std::round(*metres * kPerMetre) / kPerMetre + 0.0) : Json(nullptr);  // avoids "-0.0"
 }
-/// To a millisecond.
+/// Rounded to a millisecond.
 Json seconds_json(const std::optional<WallTime>& time) {
     return time ? Json(std::round(1e-6 * static_cast<double>(time->ns)) / 1e3) : Json(nullptr);
 }
@@ -76,14 +75,14 @@ Json point_json(const Eigen::Vector3d& point) {
     return {rounded(point.x()), rounded(point.y()), rounded(point.z())};
 }
 
-/// Processor time of this thread: of a machine that has other things to do, too, no question is blamed.
+/// Processor time of this thread: the load of other programs does not count against a query.
 Nanoseconds thread_time() {
     timespec used{};
-    (void)::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);  // it is there since Linux 2.6.12
+    (void)::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);  // available since Linux 2.6.12
     return Nanoseconds{std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec};
 }
 
-/// One request on its way to an answer.
+/// Evaluates one request.
 class Asking {
   public:
     Asking(const QueryRequest& request, QueryGround ground, const std::function<bool()>& is_ending)
@@ -100,21 +99,20 @@ class Asking {
         if (request_.own_space_m && ground_.is_live && ground_.present.empty())
             return fail(
                 ExitCode::unavailable,
-                "nobody knows how the arm stands, so nothing is its own space: see that joint states come");
+                "the arm's posture is unknown, so no space counts as its own: see that joint states arrive");
         if (request_.path.empty() && (request_.kind == QueryKind::postures || request_.own_space_m))
-            return fail(
-                ExitCode::unavailable,
-                ground_.is_live
-                    ? "nobody knows how the arm stands: give its joints, or see that joint states come"
-                    : "nobody says how the arm stands: give the posture to ask about as --joints, or "
-                      "how it stands as --stands");
+            return fail(ExitCode::unavailable,
+                        ground_.is_live
+                            ? "the arm's posture is unknown: give its joints, or see that joint states arrive"
+                            : "the arm's posture is unknown: give the posture to ask about as --joints, or "
+                              "its present posture as --stands");
         if (const auto checked = check_present(); !checked) return unexpected(checked.error());
         if (const auto checked = check_path(); !checked) return unexpected(checked.error());
         if (const auto freed = free_own_space(); !freed) return unexpected(freed.error());
         return request_.kind == QueryKind::postures ? ask_postures() : ask_pockets();
     }
 
-    /// That of the request's path which was refused, from 1 on.
+    /// The number of the refused configuration of the request's path, from 1.
     [[nodiscard]] std::optional<std::size_t> refused() const noexcept { return refused_; }
 
   private:
@@ -122,29 +120,30 @@ class Asking {
         return ground_.work_max && thread_time() - begun_ > *ground_.work_max;
     }
 
-    /// `what` was not done: cancelled, or over the time for one question.
+    /// The error if `what` was not completed: cancelled, or over the processor time of one query.
     [[nodiscard]] Unexpected<AppError> ended(std::string_view what) const {
-        if (!is_over_time()) return fail(ExitCode::unavailable, fmt::format("it ended before {}", what));
-        const char* const remedy = request_.kind == QueryKind::postures
-                                       ? "ask about parts of the path, or give a larger step or a smaller "
-                                         "reach_m or own_space_m"
-                                       : "give fewer views_tried or pockets_max, or a smaller radius_m or "
-                                         "own_space_m";
+        if (!is_over_time())
+            return fail(ExitCode::unavailable, fmt::format("the query was cancelled before {}", what));
+        const char* const remedy =
+            request_.kind == QueryKind::postures
+                ? "query parts of the path, or give a larger step or a smaller reach_m or own_space_m"
+                : "give fewer views_tried or pockets_max, or a smaller radius_m or "
+                  "own_space_m";
         return fail(ExitCode::unavailable,
-                    fmt::format("one question may take {:.0f} s, which were over before {}: {}",
+                    fmt::format("one query may take {:.0f} s of processor time, which ended before {}: {}",
                                 std::chrono::duration<double>(*ground_.work_max).count(), what, remedy));
     }
 
-    /// What a daemon knows of it was within the limits.
+    /// The present joints of a running daemon were checked before.
     Status<AppError> check_present() const {
         if (ground_.is_live || ground_.present.empty()) return Done{};
         const auto fault = robot_->fault_of(ground_.present);
         if (!fault) return Done{};
         return fail(ExitCode::usage,
-                    "how the arm stands: " + text_of(*fault, *ground_.rig, *ground_.robot, ground_.present));
+                    "the present posture: " + text_of(*fault, *ground_.rig, *ground_.robot, ground_.present));
     }
 
-    /// And makes its legs.
+    /// Checks the path and makes its legs.
     Status<AppError> check_path() {
         double postures = 0.0;
         for (std::size_t i = 0; i < request_.path.size(); ++i) {
@@ -155,7 +154,7 @@ class Asking {
                             fmt::format("configuration {}: {}", i + 1,
                                         text_of(*fault, *ground_.rig, *ground_.robot, position)));
             }
-            // From the configuration before; to the first from itself.
+            // From the previous configuration; for the first one, from itself.
             const auto& before = request_.path[i > 0 ? i - 1 : 0];
             postures += static_cast<double>(
                 legs_.emplace_back(*robot_, ground_.map, before, position, request_.step).postures());
@@ -168,14 +167,14 @@ class Asking {
 
     [[nodiscard]] std::string too_long(std::size_t configurations, double postures) const {
         return fmt::format(
-            "the path has {:.0f} postures up to configuration {}, so that from one to the next no link moves "
-            "by more than half a voxel of {} m and no joint by more than a step of {}; at most {} can be "
-            "asked about at once: ask about parts of the path (a larger step helps only where the voxels do "
-            "not want as many)",
+            "the path has {:.0f} postures up to configuration {}: between two postures no link moves by more "
+            "than half a voxel of {} m and no joint by more than a step of {}; at most {} are possible in "
+            "one query: query parts of the path (a larger step helps only where the voxels do not require as "
+            "many)",
             postures, configurations, ground_.map.resolution_m(), request_.step, kPosturesMax);
     }
 
-    /// Null: distances are not asked for, or better searched for.
+    /// Null if no distances are requested, or a search is faster.
     [[nodiscard]] const DistanceField* field_for_path() const {
         if (ground_.field == nullptr || !(request_.reach_m > 0.0) || robot_->capsule_count() == 0)
             return nullptr;
@@ -185,14 +184,14 @@ class Asking {
             for (std::size_t posture = 0; posture < leg.postures(); ++posture) {
                 if (is_ending_()) return nullptr;
                 const auto capsules = leg.pose(*robot_, posture);
-                if (!capsules) return nullptr;  // whoever asks finds it out
+                if (!capsules) return nullptr;  // the evaluation reports the error
                 asked.include(*capsules);
             }
         }
         return ground_.field->of(ground_.map, asked);
     }
 
-    /// None where there is no such body or posture: the question itself is refused for that.
+    /// Empty if the body or posture is invalid: the evaluation itself then refuses the query.
     [[nodiscard]] std::vector<PosedCapsule> own_capsules(std::span<const double> stands,
                                                          bool is_certain) const {
         const auto body = RobotQuery::build(*ground_.rig, *ground_.robot,
@@ -201,11 +200,11 @@ class Asking {
         return capsules ? *capsules : std::vector<PosedCapsule>{};
     }
 
-    /// Where the arm stands: as it is known, or where the path begins.
+    /// At the arm's present posture, or at the beginning of the path.
     Status<AppError> free_own_space() {
         if (!request_.own_space_m) return Done{};
         const auto& stands = ground_.present.empty() ? request_.path.front() : ground_.present;
-        // The arm itself, all of it and without the question's padding.
+        // The whole arm, without the padding of the query.
         const auto around = own_capsules(stands, false);
         const auto certain = own_capsules(stands, true);
         if (octoskin::free_own_space(ground_.map, {around, certain}, *request_.own_space_m, is_ending_))
@@ -213,8 +212,8 @@ class Asking {
         if (is_ending_()) return ended("the arm's own space was known");
         return fail(
             ExitCode::usage,
-            fmt::format("own_space_m {}: about this arm that is more than {} million voxels of {} m; "
-                        "give a smaller one, or ask a map of larger voxels",
+            fmt::format("own_space_m {}: around this arm that is more than {} million voxels of {} m; give a "
+                        "smaller value, or query a map with larger voxels",
                         *request_.own_space_m, kOwnSpaceVoxelsMax >> 20U, ground_.map.resolution_m()));
     }
 
@@ -225,7 +224,7 @@ class Asking {
         const LegConfig config{request_.reach_m, field_for_path(), is_ending_};
         for (std::size_t i = 0; i < legs_.size(); ++i) {
             const auto answer = ask(*robot_, ground_.map, legs_[i], config);
-            if (is_ending_()) return ended("the path was asked about");
+            if (is_ending_()) return ended("the path was evaluated");
             if (!answer) {
                 return fail(ExitCode::usage,
                             text_of(answer.error(), *ground_.rig, *ground_.robot, request_.path[i]));
@@ -248,7 +247,7 @@ class Asking {
                     {"legs", std::move(legs)}};
     }
 
-    /// Null: nothing was taken for the arm's own space.
+    /// Null: no space was treated as the arm's own.
     [[nodiscard]] Json own_space_json() const {
         return request_.own_space_m ? Json(*request_.own_space_m) : Json(nullptr);
     }
@@ -258,7 +257,7 @@ class Asking {
         for (const LinkId link : links) names.push_back(ground_.robot->link_names()[link]);
         return names;
     }
-    /// Those that the rig lists, too.
+    /// Includes those that the rig lists.
     [[nodiscard]] Json links_with_borrowed_body() const {
         Json lenders = Json::object();
         for (const LinkWithBorrowedBody& link : ground_.rig->links_with_borrowed_body)
@@ -304,18 +303,17 @@ class Asking {
         const double voxel_m3 = std::pow(ground_.map.resolution_m(), 3);
         const auto voxels_min = static_cast<std::size_t>(std::ceil(request_.pocket_min_m3 / voxel_m3));
         if (region.z_min_m > base.z() + region.radius_m) {
-            return fail(
-                ExitCode::usage,
-                fmt::format("nothing of the {} m about the base, which is at {:.3f} m in the map, lies "
-                            "above {} m: ask from less high on (z_min_m, --above)",
-                            request_.radius_m, base.z(), region.z_min_m));
+            return fail(ExitCode::usage,
+                        fmt::format("nothing of the {} m about the base, which is at {:.3f} m in the map, is "
+                                    "above {} m: query from a lower height (z_min_m, --above)",
+                                    request_.radius_m, base.z(), region.z_min_m));
         }
         const auto found = UnknownPockets::find(ground_.map, region, voxels_min, is_ending_);
         if (is_ending_()) return ended("the pockets were found");
         if (!found) {
             return fail(ExitCode::usage,
-                        fmt::format("a region of {} m about the base has too many voxels of {} m, or reaches "
-                                    "out of the octree; ask for a smaller radius",
+                        fmt::format("a region of {} m about the base has too many voxels of {} m, or extends "
+                                    "beyond the octree; give a smaller radius",
                                     request_.radius_m, ground_.map.resolution_m()));
         }
         const PocketViewConfig config{.postures = request_.views_tried, .pockets = request_.pockets_max};
@@ -324,11 +322,11 @@ class Asking {
         if (why_no_views.is_null())
             views = find_views(*ground_.rig, *robot_, ground_.map, *found, request_.path.front(), config,
                                is_ending_);
-        if (is_ending_()) return ended("the pockets were looked into");
+        if (is_ending_()) return ended("the pockets were examined");
         Json pockets = Json::array();
         for (std::size_t i = 0; i < std::min(request_.pockets_max, found->pockets().size()); ++i)
             pockets.push_back(pocket_json(found->pockets()[i], i < views.size() ? views[i] : std::nullopt));
-        if (is_ending_()) return ended("the ways there were asked about");
+        if (is_ending_()) return ended("the ways to the views were evaluated");
         return Json{{"ok", true},
                     {"resolution_m", ground_.map.resolution_m()},
                     {"own_space_m", own_space_json()},
@@ -343,12 +341,12 @@ class Asking {
                     {"pockets", std::move(pockets)}};
     }
 
-    /// Why no view into a pocket was looked for; null: some were.
+    /// Why no view into a pocket was searched; null if views were searched.
     [[nodiscard]] Json why_not_tried() const {
         if (request_.views_tried == 0) return "no posture was to be tried";
         if (request_.path.empty())
-            return ground_.is_live ? "nobody knows how the arm stands"
-                                   : "nobody says how the arm stands: give it as --stands";
+            return ground_.is_live ? "the arm's posture is unknown"
+                                   : "the arm's posture is unknown: give it as --stands";
         if (std::ranges::all_of(ground_.rig->nodes,
                                 [](const HostNode& node) { return node.sensors.empty(); }))
             return "the rig has no range sensor";
@@ -364,7 +362,7 @@ class Asking {
                      {"view", nullptr}};
         if (!view) return json;
         const Leg way(*robot_, ground_.map, request_.path.front(), view->position, request_.step);
-        Json state = nullptr;  // of a joint without limits a way may have no end
+        Json state = nullptr;  // a joint without limits may give a way without end
         if (way.postures() <= kPosturesMax) {
             const auto answer =
                 ask(*robot_, ground_.map, way, {.reach_m = 0.0, .field = nullptr, .is_ending = is_ending_});

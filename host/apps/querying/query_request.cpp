@@ -34,7 +34,7 @@ constexpr bool is_list = false;
 template <class T>
 constexpr bool is_list<std::vector<T>> = true;
 
-/// What a value must be.
+/// The description of the expected value.
 template <class T>
 constexpr const char* kExpected = nullptr;
 template <>
@@ -42,15 +42,15 @@ constexpr const char* kExpected<bool> = "true or false";
 template <>
 constexpr const char* kExpected<double> = "a number";
 template <>
-constexpr const char* kExpected<std::size_t> = "a whole number from 0 on";
+constexpr const char* kExpected<std::size_t> = "a whole number, 0 or more";
 template <>
 constexpr const char* kExpected<std::vector<std::string>> = "a list of names, such as [\"gripper\"]";
 template <>
 constexpr const char* kExpected<std::vector<std::vector<double>>> =
     "a list of joint configurations, each a list of finite numbers, such as [[0, -0.785, 1.5]]";
 
-/// Of a list or an object only that it is one: there may be as many in it as there are bytes, each in the one
-/// before, and to write them out takes as many calls.
+/// A list or an object is only named: its depth is limited only by the input's size, and printing it would
+/// recurse as deep.
 std::string shown(const Json& json) {
     if (json.is_array()) return "a list";
     if (json.is_object()) return "an object";
@@ -58,20 +58,20 @@ std::string shown(const Json& json) {
     return cut_text(json.dump(-1, ' ', true, Json::error_handler_t::replace), kShown);
 }
 
-/// Takes what is there out of `json`; throws std::invalid_argument, which names the key.
+/// Moves the value of `key` out of `json`; throws std::invalid_argument with the key.
 template <class T>
 void take(Json& json, const char* key, T& value) {
     const auto found = json.find(key);
     if (found == json.end()) return;
     try {
-        if constexpr (std::is_same_v<T, std::size_t>) {  // else it would be cut down to a whole number
+        if constexpr (std::is_same_v<T, std::size_t>) {  // otherwise it would be truncated to a whole number
             value = found->template get_ref<const Json::number_unsigned_t&>();
         } else {
             value = found->template get<T>();
         }
     } catch (const Json::exception&) {
         throw std::invalid_argument(fmt::format("query: {} is {}{}; expected {}", key, shown(*found),
-                                                found->is_array() && is_list<T> ? " of something else" : "",
+                                                found->is_array() && is_list<T> ? " of another kind" : "",
                                                 kExpected<T>));
     }
     json.erase(found);
@@ -84,33 +84,33 @@ void take(Json& json, const char* key, std::optional<T>& value) {
     value = one;
 }
 
-/// Why it is no JSON, and where.
+/// The reason and the place of a JSON syntax error.
 Unexpected<AppError> fail_at(std::string_view text, std::size_t byte) {
     constexpr std::size_t kShown = 20;
     const std::size_t at = std::min(byte > 0 ? byte - 1 : 0, text.size());
     return fail(
         ExitCode::usage,
-        fmt::format("query: no JSON from its byte {} on ({}); {}, with finite numbers: JSON has no NaN "
-                    "and no Infinity",
-                    at, at < text.size() ? shown(text.substr(at, kShown)) : "its end", kExpectedLine));
+        fmt::format(
+            "query: invalid JSON from byte {} ({}); {}, with finite numbers: JSON has no NaN and no Infinity",
+            at, at < text.size() ? shown(text.substr(at, kShown)) : "its end", kExpectedLine));
 }
 
-/// Whoever sends what is not looked at expects another answer.
+/// Refuses keys that the request would not use: their sender expects another answer.
 void refuse_unasked(const Json& json, bool asks_pockets) {
     const auto refuse = [&json](std::initializer_list<const char*> keys, const char* why) {
         for (const char* key : keys)
             if (json.contains(key))
-                throw std::invalid_argument(fmt::format("query: {} says nothing {}", key, why));
+                throw std::invalid_argument(fmt::format("query: {} has no effect {}", key, why));
     };
     if (asks_pockets) {
-        refuse({"reach_m"}, "of pockets, of which no distances are told: leave it out");
+        refuse({"reach_m"}, "in a query about pockets, for which no distances are computed: leave it out");
     } else {
         refuse({"radius_m", "z_min_m", "pocket_min_m3", "pockets_max", "views_tried"},
                "without \"pockets\": true: give that, too, or leave it out");
     }
 }
 
-/// Of two values of one key the last would be taken.
+/// nlohmann::json would silently use the last of several values of one key.
 Json parse_once(std::string_view text) {
     std::set<std::string> keys;
     return Json::parse(text, [&keys](int depth, Json::parse_event_t event, Json& parsed) {
@@ -120,7 +120,7 @@ Json parse_once(std::string_view text) {
     });
 }
 
-/// A serializer writes null for a number that is none: of a long path it is told where.
+/// The serializer writes null for a number that is not finite; in a long path the message gives the place.
 void check_path(const Json& path) {
     const auto expected = kExpected<std::vector<std::vector<double>>>;
     if (!path.is_array()) return;
@@ -148,7 +148,7 @@ QueryRequest from_json(Json& json) {
     if (has_path) check_path(json["path"]);
     take(json, "path", request.path);
     if (has_path && request.path.empty())
-        throw std::invalid_argument("query: path is empty; leave it out to ask about the arm as it stands");
+        throw std::invalid_argument("query: path is empty; leave it out to query the arm's present posture");
     take(json, "padding_m", request.padding_m);
     take(json, "reach_m", request.reach_m);
     take(json, "step", request.step);
@@ -192,22 +192,24 @@ std::string to_line(const QueryRequest& request) {
 Result<QueryRequest, AppError> read_query(std::string_view line) {
     const std::string_view text = line.substr(std::min(kWord.size() + 1, line.size()));
     if (text.find_first_not_of(' ') == std::string_view::npos)
-        return fail(ExitCode::usage, fmt::format("query wants an object: query {{}} asks about the arm as it "
-                                                 "stands; in it there may be {}",
-                                                 kKeys));
+        return fail(
+            ExitCode::usage,
+            fmt::format(
+                "query expects an object: query {{}} is about the arm's present posture; it may contain {}",
+                kKeys));
     try {
         Json json = parse_once(text);
         if (!json.is_object()) return fail(ExitCode::usage, kExpectedLine);
         QueryRequest request = from_json(json);
         if (!json.empty())
-            return fail(ExitCode::usage, fmt::format("query: unknown key {}; there are {}",
+            return fail(ExitCode::usage, fmt::format("query: unknown key {}; the keys are {}",
                                                      shown(Json(json.begin().key())), kKeys));
         if (const std::string fault = fault_of(request); !fault.empty()) return fail(ExitCode::usage, fault);
         return request;
     } catch (const Json::parse_error& error) {
         return fail_at(text, error.byte);
     } catch (const Json::exception&) {
-        return fail(ExitCode::usage, "query: a number is too large for any");
+        return fail(ExitCode::usage, "query: a number is too large");
     } catch (const std::invalid_argument& wrong) {
         return fail(ExitCode::usage, wrong.what());
     }
@@ -215,10 +217,10 @@ Result<QueryRequest, AppError> read_query(std::string_view line) {
 
 std::string fault_of(const QueryRequest& request) {
     if (request.path.size() > kConfigurationsMax)
-        return fmt::format("query: {} configurations; at most {} can be asked about at once",
+        return fmt::format("query: {} configurations; at most {} are possible in one query",
                            request.path.size(), kConfigurationsMax);
     if (request.kind == QueryKind::pockets && request.path.size() > 1)
-        return fmt::format("query: path has {} configurations; views into pockets are looked for from one",
+        return fmt::format("query: path has {} configurations; views into pockets are searched from one",
                            request.path.size());
     const auto not_within = [](const char* key, double value, double min, double max) {
         return fmt::format("query: {} is {}; expected {} to {}", key, value, min, max);

@@ -18,7 +18,7 @@ std::string point(const Json& json) {
                        json.at(2).get<double>());
 }
 
-/// `bound`: what a distance is beside links that are unknown, which may be nearer.
+/// `bound`: a qualifier of the distance if some links are unknown, which may be nearer.
 std::string clearance(const Json& leg, const std::string& kind, const std::string& what,
                       const std::string& bound) {
     const Json& gap = leg.at(kind + "_m");
@@ -37,7 +37,7 @@ bool has(const Json& names, const Json& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What was not asked about, as there is no body to ask about; of a robot that has all of it, nothing.
+/// Links that could not be checked, because they have no body; empty if all have one.
 std::string links_text(const Json& answer) {
     const Json& unknown = answer.at("links_unknown");
     Json on_purpose = Json::array();
@@ -46,24 +46,23 @@ std::string links_text(const Json& answer) {
     std::string text;
     if (!unknown.empty())
         text += fmt::format(
-            "not asked about: {}: without a body, so that nothing is called free (give {} capsules, or list "
-            "{} in robot.links_without_body of the rig)\n",
+            "not checked: {}: without a body, so that nothing is called free (give {} capsules, or list {} "
+            "in robot.links_without_body of the rig)\n",
             listed(unknown), unknown.size() == 1 ? "it" : "them", unknown.size() == 1 ? "it" : "them");
     if (!on_purpose.empty())
-        text += fmt::format("not asked about: {}: without a body, as the rig lists\n", listed(on_purpose));
+        text += fmt::format("not checked: {}: without a body, as listed in the rig\n", listed(on_purpose));
     for (const auto& [link, lender] : answer.at("links_with_borrowed_body").items())
-        text += fmt::format("asked about with the body of {}, which is fixed to it: {}\n",
+        text += fmt::format("checked with the body of {}, to which it is fixed: {}\n",
                             lender.get<std::string>(), link);
     return text;
 }
 
-/// Of a map that tells no ages, nothing.
+/// Empty for a map without ages.
 std::string evidence(const Json& leg) {
     const Json& evidence = leg.at("evidence");
     if (evidence.is_null()) return {};
     if (evidence.at("age_s").is_null())
-        return fmt::format("  weakest evidence: nobody knows how old, at {}\n",
-                           point(evidence.at("voxel_m")));
+        return fmt::format("  weakest evidence: of unknown age, at {}\n", point(evidence.at("voxel_m")));
     const auto kind = evidence.at("kind").get<std::string>();
     return fmt::format(
         "  weakest evidence: {} s old, {}, at {}{}\n", evidence.at("age_s").get<std::uint32_t>(),
@@ -111,7 +110,7 @@ std::string view_text(const Json& view) {
                        view.at("way").is_null() ? "not known" : view.at("way").get<std::string>());
 }
 
-/// In a unit of which there is at least some.
+/// In a unit in which the amount is not zero.
 std::string unknown_share(double unknown_m3, double region_m3) {
     constexpr double kSmall_m3 = 0.1;
     if (region_m3 >= kSmall_m3) return fmt::format("{:.3f} of {:.3f} m3", unknown_m3, region_m3);

@@ -19,10 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kReady = FileSet::kReadyFolder;
-constexpr const char* kBeforeFolder = ".before";  ///< in the ready folder: what the new files replace
-constexpr const char* kJournal = ".journal";      ///< in the ready folder: what is to be done
+constexpr const char* kBeforeFolder =
+    ".before";                                ///< in the ready folder: the files that the new ones replace
+constexpr const char* kJournal = ".journal";  ///< in the ready folder: the list of steps
 constexpr const char* kJournalHead = "octoskin-file-set/1";
-constexpr std::size_t kJournalBytesMax = 16'384;  ///< each name once, dropped and put, takes less
+constexpr std::size_t kJournalBytesMax = 16'384;  ///< each name once, in `drop` and `put`, needs less
 
 constexpr std::array<std::string_view, 9> kRecordingFiles{"can.log",   "depth.oni",   "depth.epoch.yaml",
                                                           "rig.yaml",  "robot.urdf",  "scenario.yaml",
@@ -32,14 +33,13 @@ constexpr std::array<std::string_view, 10> kMapFiles{
     "proximity.ply", "fused.ot", "fused.bt",  "fused.ply",    "maps.yaml"};
 
 Unexpected<AppError> busy(const OpenFolder& folder) {
-    return cannot_create(
-        folder.shown(),
-        "another octoskin is writing here; wait until it has ended, or give another directory");
+    return cannot_create(folder.shown(),
+                         "another octoskin is writing here; wait until it ends, or give another directory");
 }
 
 Unexpected<AppError> of_a_daemon(const OpenFolder& folder) {
     return cannot_create(folder.shown(kDaemonsSnapshot),
-                         "is of a daemon's map, which is kept in this folder; give another directory");
+                         "belongs to a daemon's map, which is kept in this folder; give another directory");
 }
 
 Unexpected<AppError> cannot_write(const FolderError& error) {
@@ -57,8 +57,8 @@ bool is_there(const OpenFolder& folder, const fs::path& name) {
     return folder.kind_of(name) != EntryKind::absent;
 }
 
-/// Takes the lock of daemons if there is one: none begins as long as it is held. Not by a lock that a daemon
-/// would have to take of the folder itself: each user that may read it could keep the daemon from it.
+/// Takes the daemons' lock, if the file exists: no daemon starts while it is held. A daemon does not lock the
+/// folder itself, because every user who can read the folder could then keep it from starting.
 Result<FileLock, AppError> keep_daemons_out(const OpenFolder& folder) {
     auto taken = FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive);
     if (!taken) return busy(folder);
@@ -66,7 +66,7 @@ Result<FileLock, AppError> keep_daemons_out(const OpenFolder& folder) {
     return std::move(*taken);
 }
 
-/// What to do, in the order in which it is done; `put` ends with the file that vouches for all.
+/// The steps in their order; `put` ends with the file that marks the set as complete.
 struct Journal {
     std::vector<fs::path> drop;
     std::vector<fs::path> put;
@@ -84,8 +84,7 @@ Status<AppError> write_journal(const OpenFolder& draft, const Journal& journal) 
     return Done{};
 }
 
-/// The journal's text is of whoever made the folder: it is obeyed for the names that octoskin writes, and for
-/// no other.
+/// The journal's content comes from the owner of the folder: only names that octoskin writes are accepted.
 Result<Journal, AppError> read_journal(const OpenFolder& ready) {
     const auto file = ready.open_file(kJournal);
     const auto text = file ? file->read(kJournalBytesMax) : unexpected(file.error());
@@ -102,7 +101,7 @@ Result<Journal, AppError> read_journal(const OpenFolder& ready) {
         (verb == "put" ? journal.put : journal.drop).push_back(name);
     }
     if (!is_sound || journal.put.empty()) {
-        return cannot_create(ready.shown(kJournal), "is not what octoskin writes; remove " +
+        return cannot_create(ready.shown(kJournal), "is not a file that octoskin writes; remove " +
                                                         ready.shown().string() +
                                                         " and make the files beside it again");
     }
@@ -128,7 +127,7 @@ Status<AppError> move(const OpenFolder& folder, const fs::path& from, const fs::
     return Done{};
 }
 
-/// That a place is free, or taken by a file that can be replaced.
+/// Checks that a place is empty, or holds a file that can be replaced.
 Status<AppError> check_place(const OpenFolder& folder, const fs::path& name) {
     const EntryKind kind = folder.kind_of(name);
     if (kind == EntryKind::absent || kind == EntryKind::file) return Done{};
@@ -137,16 +136,16 @@ Status<AppError> check_place(const OpenFolder& folder, const fs::path& name) {
         if (!opened) return failed(opened.error());
     }
     return cannot_create(folder.shown(name),
-                         "is no file, and one of this name is to be put there or removed; move it away");
+                         "is not a file, and a file of this name is to be written or removed; move it away");
 }
 
-/// The steps between the ready folder and the folder. Each looks at what is there, so that it can be begun
-/// again after any of them.
+/// The steps from the ready folder to the final places. Each step checks the present state, so that the whole
+/// can be repeated after an interruption anywhere.
 class Move {
   public:
     Move(OpenFolder folder, Journal journal) : folder_(std::move(folder)), journal_(std::move(journal)) {}
 
-    /// Before anything moves: a link, a pipe or a folder in any place stops all of it.
+    /// Before anything moves: a link, a pipe or a folder in any place stops the whole operation.
     [[nodiscard]] Status<AppError> check() const {
         for (const auto& names : {journal_.drop, journal_.put}) {
             for (const fs::path& name : names) {
@@ -157,9 +156,9 @@ class Move {
     }
 
     Status<AppError> forward() {
-        // The decision reaches the disk before anything that follows from it.
+        // The decision is on the disk before anything that depends on it.
         if (const auto flushed = flush(folder_); !flushed) return flushed;
-        // The former set loses its voucher first.
+        // The previous set first loses the file that marks it as complete.
         if (const auto kept = keep(journal_.put.back(), Keep::moved); !kept) return kept;
         for (const fs::path& name : journal_.drop) {
             if (const auto kept = keep(name, Keep::moved); !kept) return kept;
@@ -172,8 +171,8 @@ class Move {
         return flush(folder_);
     }
 
-    /// New files back into the ready folder, then the former ones into their places; those that vouch go
-    /// first and come last.
+    /// Moves new files back into the ready folder, then the previous files into their places. The files that
+    /// mark a set as complete are removed first and restored last.
     Status<AppError> back() {
         for (auto name = journal_.put.rbegin(); name != journal_.put.rend(); ++name) {
             if (is_there(folder_, ready(*name)) || !is_there(folder_, *name)) continue;
@@ -188,7 +187,7 @@ class Move {
         return Done{};
     }
 
-    /// Some new file is in its place, or some former one is not.
+    /// True if a new file is in its place, or a previous one is not.
     [[nodiscard]] bool has_moved() const {
         const auto is_away = [this](const fs::path& name) {
             return is_there(folder_, former(name)) || (is_put(name) && !is_there(folder_, ready(name)));
@@ -198,7 +197,7 @@ class Move {
     }
 
     void remove_ready() const {
-        // The name goes first: half of a ready folder must not look like a whole one.
+        // Renamed first: a partly removed ready folder must not look complete.
         static_cast<void>(folder_.remove_all(FileSet::kDraftFolder));
         static_cast<void>(folder_.move(kReady, FileSet::kDraftFolder));
         static_cast<void>(folder_.remove_all(FileSet::kDraftFolder));
@@ -218,10 +217,10 @@ class Move {
         return Done{};
     }
 
-    /// Keeps the file that is in the place of `name`, so that it can be had back. A link leaves it there
-    /// until the new one takes its place; where links are not to be had, it is moved away a moment before.
+    /// Preserves the file at `name` for a rollback. A hard link leaves the file in place until the new one
+    /// replaces it; on a file system without hard links it is moved away shortly before.
     Status<AppError> keep(const fs::path& name, Keep how) {
-        // A new file that is in place already is none to keep.
+        // A new file that is already in place must not be preserved as the old one.
         const bool is_done =
             is_there(folder_, former(name)) || (is_put(name) && !is_there(folder_, ready(name)));
         if (is_done || !is_there(folder_, name)) return Done{};
@@ -248,8 +247,8 @@ class Move {
     Journal journal_;
 };
 
-/// From a ready folder to files in their places; or, with an error, to the folder as it was, with the ready
-/// folder still in it.
+/// Moves the files of a ready folder into their places. On an error it restores the folder; the ready folder
+/// is still in it.
 Status<AppError> carry_out(Move& moving) {
     if (const auto checked = moving.check(); !checked) return checked;
     auto moved = moving.forward();
@@ -258,24 +257,23 @@ Status<AppError> carry_out(Move& moving) {
         return Done{};
     }
     if (const auto undone = moving.back(); !undone && undone.error().message != moved.error().message)
-        return fail(
-            ExitCode::cannot_create,
-            undone.error().message + ": taking back what was moved failed, after " + moved.error().message);
+        return fail(ExitCode::cannot_create,
+                    undone.error().message + ": undoing the moves failed, after " + moved.error().message);
     return moved;
 }
 
-/// True if there was something to finish.
+/// True if there was an interrupted operation.
 Result<bool, AppError> finish_interrupted(const OpenFolder& folder) {
     if (!is_there(folder, kReady)) return false;
-    const auto ready = folder.open_folder(kReady);  // of the caller or of root, as the folder itself
+    const auto ready = folder.open_folder(kReady);  // owned by the caller or root, like the folder itself
     if (!ready) return failed(ready.error());
     const auto journal = read_journal(*ready);
     if (!journal) return unexpected(journal.error());
     Move moving(folder, *journal);
     if (const auto moved = carry_out(moving); !moved) {
-        return fail(ExitCode::cannot_create,
-                    moved.error().message + "; the files of a run that was killed wait in " +
-                        ready->shown().string() + ": try again after that, or remove them");
+        return fail(ExitCode::cannot_create, moved.error().message + "; the files of a killed run wait in " +
+                                                 ready->shown().string() +
+                                                 ": try again later, or remove them");
     }
     return true;
 }
@@ -313,11 +311,11 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
     };
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
-    // None has it now; one may begin while the set is made.
+    // No daemon holds the lock now; one may start while the set is being made.
     if (const auto daemons = keep_daemons_out(folder); !daemons) return unexpected(daemons.error());
     if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
     Unfinished unfinished(folder, kDraftFolder, made->is_new);
-    // What is there is of a process that was killed.
+    // An existing one is left over from a killed process.
     if (const auto removed = folder.remove_all(kDraftFolder); !removed)
         return give_up(cannot_write(removed.error()));
     if (const auto created = folder.make_folder(kDraftFolder); !created)
@@ -340,7 +338,7 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     }
     if (const auto flushed = flush(draft_, kJournal); !flushed) return flushed;
     if (const auto flushed = flush(draft_); !flushed) return flushed;
-    // One may have begun since; from here on none does.
+    // A daemon may have started since; from here on none can.
     const auto daemons = keep_daemons_out(folder_);
     if (!daemons) return unexpected(daemons.error());
     const auto whole = unfinished_.finish();
@@ -389,7 +387,7 @@ Result<bool, AppError> settle_file_set(const OpenFolder& folder) {
     if (!daemons) {
         return fail(daemons.error().code,
                     daemons.error().message +
-                        "; the files of a run that was killed before the daemon began wait in " +
+                        "; the files of a run that was killed before the daemon started wait in " +
                         folder.shown(kReady).string() + ": remove them");
     }
     return finish_interrupted(folder);

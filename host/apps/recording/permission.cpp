@@ -18,9 +18,10 @@ std::optional<AppError> refused_to_read(const FilePlace& file) {
         error = errno;
     }
     if (error != EACCES && error != EPERM) return std::nullopt;
-    return AppError{ExitCode::no_permission,
-                    file.shown().string() + ": cannot be read (" + std::generic_category().message(error) +
-                        "): its owner can let you (chmod, chgrp; its folders, too), or ask as one who may"};
+    return AppError{
+        ExitCode::no_permission,
+        file.shown().string() + ": cannot be read (" + std::generic_category().message(error) +
+            "): its owner can permit it (chmod, chgrp; also its folders), or run as a user who may read it"};
 }
 
 AppError reading_error(const FilePlace& file, AppError otherwise) {

@@ -14,28 +14,27 @@ namespace {
 constexpr const char* kSchema = "octoskin-recording/1";
 constexpr std::int64_t kCrcMax = 0xFFFF'FFFF;
 constexpr const char* kMetaMissing =
-    "no such file; the least that it can be is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
+    "no such file; its minimum content is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
 constexpr const char* kDirectoryMissing =
     "no such directory; `octoskin record` (of a running daemon) and `octoskin-lab simulate` make recordings";
 constexpr const char* kLogMissing =
     "no such file: this is no recording, as `octoskin record` (of a running daemon) and `octoskin-lab "
     "simulate` "
     "make them; by hand, it is what `candump -L` writes. A data set has depth.txt, associations.txt or "
-    "frame-*.depth.png, and the poses of its camera (docs/recording.md)";
+    "frame-*.depth.png, and the poses of its camera (docs/how-to/record-and-replay.md)";
 
 Unexpected<RecordingError> failure(const std::filesystem::path& file, std::string what) {
     return unexpected(RecordingError{file, std::move(what), 0, ""});
 }
 
-/// That it is a folder, and whole.
+/// Checks that it is a folder, and complete.
 Status<RecordingError> check_folder(const RecordingPaths& recording) {
     const auto folder = recording.folder.open();
     if (folder) {
         if (folder->kind_of(FileSet::kReadyFolder) == EntryKind::absent) return Done{};
-        return failure(
-            recording.directory,
-            "an octoskin was killed while it put new files in their places here: `octoskin repair " +
-                recording.directory.string() + "` finishes that");
+        return failure(recording.directory,
+                       "an octoskin was killed while it put new files into place: `octoskin repair " +
+                           recording.directory.string() + "` completes that");
     }
     if (folder.error().fault == FolderFault::not_a_folder) {
         return failure(recording.directory,
@@ -46,7 +45,7 @@ Status<RecordingError> check_folder(const RecordingPaths& recording) {
     return failure(recording.directory, folder.error().reason());
 }
 
-/// That nothing but files lies in the places of files.
+/// Checks that only regular files are at the names of files.
 Status<RecordingError> check_kinds(const RecordingPaths& recording) {
     for (const FilePlace& file : recording.files()) {
         const EntryKind kind = file.kind();
@@ -54,7 +53,7 @@ Status<RecordingError> check_kinds(const RecordingPaths& recording) {
         const auto opened = file.open();
         if (!opened && opened.error().fault == FolderFault::link)
             return failure(opened.error().path, opened.error().reason());
-        return failure(file.shown(), "is no ordinary file; move it away, or put the recorded one there");
+        return failure(file.shown(), "is not a regular file; move it away, or put the recorded file there");
     }
     return Done{};
 }
@@ -146,7 +145,7 @@ Status<RecordingError> write_meta(const RecordingPaths& recording, const Recordi
     file << out.c_str() << '\n';
     file.close();
     if (!file)
-        return failure(recording.meta().shown(), "cannot write; is the disk full, is the folder yours?");
+        return failure(recording.meta().shown(), "cannot write; is the disk full, do you own the folder?");
     return Done{};
 }
 
@@ -164,7 +163,7 @@ Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording)
 Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_rig_given) {
     if (const auto checked = check_folder(recording); !checked) return checked;
     if (const auto checked = check_kinds(recording); !checked) return checked;
-    // What an experiment leaves is a folder with a recording in it.
+    // An experiment leaves a folder that contains a recording.
     if (!recording.can_log().is_there() && FilePlace(recording.folder, "recording/can.log").is_there()) {
         return failure(recording.can_log().shown(),
                        "no such file; did you mean " + (recording.directory / "recording").string() + "?");
@@ -183,8 +182,7 @@ Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_
         const auto lonely = has_depth ? recording.depth() : recording.depth_epoch();
         return failure(missing.shown(),
                        "no such file, but " + lonely.filename() +
-                           " is there: put it there, too, or move the other one away to map the "
-                           "ranges alone");
+                           " exists: put it there, too, or move the other file away to map the ranges alone");
     }
     return Done{};
 }

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// meta.yaml last.
+/// meta.yaml is the last.
 std::vector<FilePlace> files_of(const RecordingPaths& paths) {
     std::vector<FilePlace> files{paths.can_log(), paths.depth(),    paths.depth_epoch(), paths.rig(),
                                  paths.robot(),   paths.scenario(), paths.world(),       paths.motion()};
@@ -30,19 +30,19 @@ Status<AppError> check_replaceable(const RecordingPaths& paths) {
     const auto is_there = [](const FilePlace& file) { return file.is_there(); };
     const auto first = std::find_if(files.begin(), files.end(), is_there);
     if (first == files.end() && is_there(paths.file("depth.txt"))) {
-        return cannot_create(paths.directory,
-                             "is a data set (depth.txt), which a recording in its place would hide; give "
-                             "another directory");
+        return cannot_create(
+            paths.directory,
+            "is a data set (depth.txt), which a recording here would hide; give another directory");
     }
     if (first == files.end()) return Done{};
     const auto meta = read_meta(paths);
     if (meta && meta->is_simulated()) return Done{};
     return cannot_create(paths.directory, "has a " + first->filename() +
-                                              ", and no meta.yaml that says 'source: simulation': it is not "
+                                              ", and no meta.yaml with 'source: simulation': it is not "
                                               "overwritten; give another directory, or remove it yourself");
 }
 
-/// What replay made of a former recording, in the recording's directory.
+/// The maps that replay wrote into the previous recording's directory.
 std::vector<fs::path> maps_of_recording() {
     std::vector<fs::path> maps = {fs::path("maps") / kMapOriginFile};
     for (const char* name : {"depth", "proximity", "fused"}) {
@@ -53,14 +53,14 @@ std::vector<fs::path> maps_of_recording() {
     return maps;
 }
 
-/// All that commit() may put there or remove.
+/// All names that commit() may write or remove.
 std::vector<fs::path> places_of(const RecordingPaths& paths) {
     std::vector<fs::path> places = maps_of_recording();
     for (const FilePlace& file : files_of(paths)) places.push_back(file.name());
     return places;
 }
 
-/// The lock on a former recording that may be replaced; none if there is no recording.
+/// The lock on a previous recording that may be replaced; empty if there is no recording.
 Result<std::optional<FileLock>, AppError> check_former(const OpenFolder& folder, bool may_replace) {
     if (!is_occupied(folder)) return std::optional<FileLock>();
     const RecordingPaths paths(folder);
@@ -69,7 +69,7 @@ Result<std::optional<FileLock>, AppError> check_former(const OpenFolder& folder,
             paths.directory,
             "is not empty; give another directory, or --force to replace a simulated recording");
     }
-    // Before any work: what is in the way at the end was in the way at the beginning.
+    // Checked before any work: an obstacle at the end was there at the beginning.
     if (const auto checked = FileSet::check_places(folder, places_of(paths)); !checked)
         return unexpected(checked.error());
     if (const auto checked = check_replaceable(paths); !checked) return unexpected(checked.error());
@@ -77,7 +77,7 @@ Result<std::optional<FileLock>, AppError> check_former(const OpenFolder& folder,
     if (!lock) {
         return cannot_create(
             paths.directory,
-            "another octoskin reads this recording; wait until it has ended, or give another directory");
+            "another octoskin is reading this recording; wait until it ends, or give another directory");
     }
     return std::optional(std::move(*lock));
 }
@@ -93,7 +93,7 @@ Status<AppError> RecordingDraft::check(const FilePlace& named, bool may_replace)
     auto folder = named.open_folder();
     if (folder) folder = folder->to_write();
     if (!folder) return cannot_create(folder.error().path, folder.error().reason());
-    // What a killed octoskin left half moved is brought to its end first.
+    // First completes what a killed octoskin left partly moved.
     if (folder->kind_of(FileSet::kReadyFolder) != EntryKind::absent) return Done{};
     const auto former = check_former(*folder, may_replace);
     if (!former) return unexpected(former.error());
@@ -113,17 +113,18 @@ Status<AppError> RecordingDraft::commit() {
     std::vector<fs::path> retired;
     for (const FilePlace& file : files_of(draft_))
         (file.is_there() ? files : retired).push_back(file.filename());
-    for (const FilePlace& mesh : final_.meshes()) {  // of another world
+    for (const FilePlace& mesh : final_.meshes()) {  // belongs to another world
         if (std::find(files.begin(), files.end(), mesh.name()) == files.end()) retired.push_back(mesh.name());
     }
-    // create() made sure that a recording here is a simulated one; without one, its maps are somebody's.
+    // create() has checked that an existing recording is a simulated one. Without a recording, the maps here
+    // may be the user's own.
     const bool replaces_recording = final_.meta().is_there();
     if (replaces_recording) {
         const auto maps = maps_of_recording();
         retired.insert(retired.end(), maps.begin(), maps.end());
     }
     if (const auto committed = files_.commit(files, retired); !committed) return committed;
-    // Only an empty one goes.
+    // Removes it only if it is empty.
     if (replaces_recording) static_cast<void>(files_.folder().remove_empty("maps"));
     return Done{};
 }
@@ -131,10 +132,9 @@ Status<AppError> RecordingDraft::commit() {
 Result<FileLock, AppError> lock_recording(const RecordingPaths& recording) {
     auto lock = FileLock::take(recording.meta(), FileLock::Kind::shared);
     if (!lock) {
-        return unexpected(
-            AppError{ExitCode::bad_data,
-                     recording.directory.string() +
-                         ": another octoskin is replacing this recording; wait until it has ended"});
+        return unexpected(AppError{ExitCode::bad_data,
+                                   recording.directory.string() +
+                                       ": another octoskin is replacing this recording; wait until it ends"});
     }
     return std::move(*lock);
 }

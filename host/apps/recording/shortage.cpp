@@ -12,7 +12,7 @@ namespace {
 
 constexpr rlim_t kMib = rlim_t{1} << 20U;
 
-/// Empty if there is none.
+/// Empty if there is no limit.
 std::optional<rlim_t> limit_of(__rlimit_resource resource) {
     rlimit limit{};
     if (::getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
@@ -29,20 +29,21 @@ std::string with_limit(const std::string& what, __rlimit_resource resource, rlim
 
 std::string no_memory() {
     if (!limit_of(RLIMIT_AS) && limit_of(RLIMIT_DATA))
-        return with_limit("no memory", RLIMIT_DATA, kMib, " MiB of data", "raise that limit (ulimit -d)");
-    if (!limit_of(RLIMIT_AS)) return "no memory: end other programs, or give this one more";
-    return with_limit("no memory", RLIMIT_AS, kMib, " MiB of addresses", "raise that limit (ulimit -v)");
+        return with_limit("out of memory", RLIMIT_DATA, kMib, " MiB of data", "raise that limit (ulimit -d)");
+    if (!limit_of(RLIMIT_AS)) return "out of memory: end other programs, or give this one more";
+    return with_limit("out of memory", RLIMIT_AS, kMib, " MiB of addresses", "raise that limit (ulimit -v)");
 }
 
-/// A thread takes its stack out of the process's addresses and data, and counts as a process of its user.
+/// A thread's stack takes from the process's address space and data, and the thread counts as a process of
+/// its user.
 std::string no_thread() {
     if (limit_of(RLIMIT_AS))
-        return with_limit("no thread to be had", RLIMIT_AS, kMib, " MiB of addresses",
+        return with_limit("no thread can be started", RLIMIT_AS, kMib, " MiB of addresses",
                           "raise that limit (ulimit -v), or those of threads (ulimit -u, TasksMax=)");
     if (limit_of(RLIMIT_DATA))
-        return with_limit("no thread to be had", RLIMIT_DATA, kMib, " MiB of data",
+        return with_limit("no thread can be started", RLIMIT_DATA, kMib, " MiB of data",
                           "raise that limit (ulimit -d), or those of threads (ulimit -u, TasksMax=)");
-    return with_limit("no thread to be had", RLIMIT_NPROC, 1, " with all others of its user",
+    return with_limit("no thread can be started", RLIMIT_NPROC, 1, " with all others of its user",
                       "raise that limit (ulimit -u), or the service's TasksMax=");
 }
 

@@ -17,7 +17,7 @@
 namespace octoskin {
 namespace {
 
-/// 0, or why not.
+/// Returns 0, or the error number.
 int write_all(int descriptor, std::string_view text) {
     while (!text.empty()) {
         const ssize_t written = ::write(descriptor, text.data(), text.size());
@@ -28,7 +28,7 @@ int write_all(int descriptor, std::string_view text) {
     return 0;
 }
 
-/// The number of a descriptor of this process that a path names, as /dev/stdout does; -1: none.
+/// The number of a descriptor of this process that the path names, such as /dev/stdout; -1: none.
 int descriptor_of(const std::filesystem::path& typed) {
     std::error_code error;
     const auto own = std::filesystem::canonical("/proc/self/fd", error);
@@ -46,8 +46,7 @@ int descriptor_of(const std::filesystem::path& typed) {
     return parsed.ec == std::errc{} && parsed.ptr == digits.data() + digits.size() ? number : -1;
 }
 
-/// A device, a pipe or a descriptor that was typed takes what is written, and nothing is put in its place; a
-/// link to one is replaced.
+/// A device, a pipe or a descriptor named directly is written to, not replaced; a link to one is replaced.
 bool takes_what_is_written(const FilePlace& file) {
     if (file.folder() != nullptr) return false;
     if (descriptor_of(file.name()) >= 0) return true;
@@ -59,7 +58,7 @@ bool takes_what_is_written(const FilePlace& file) {
 Descriptor open_as_it_is(const std::filesystem::path& typed) {
     const int number = descriptor_of(typed);
     if (number < 0) return Descriptor(::open(typed.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
-    static_cast<void>(std::fflush(stdout));  // what was printed before comes before it
+    static_cast<void>(std::fflush(stdout));  // keeps the order with earlier printed output
     return Descriptor(::fcntl(number, F_DUPFD_CLOEXEC, 0));
 }
 
@@ -70,7 +69,7 @@ Unexpected<AppError> cannot_write(const FilePlace& file, int error) {
 }
 
 Unexpected<AppError> cannot_write(const FilePlace& file, const FolderError& error) {
-    // What no other place on the disk would help against.
+    // Faults that another place on the disk would not avoid.
     const bool is_of_folder = error.fault == FolderFault::link || error.fault == FolderFault::foreign_owner ||
                               error.fault == FolderFault::outside;
     if (is_of_folder) return cannot_create(error.path, error.reason());
@@ -90,18 +89,18 @@ std::string remedy_of(const std::error_code& error) {
             return "make room there, or write elsewhere";
         case EACCES:
         case EPERM:
-            return "it is not yours to write: another folder, or its owner";
+            return "you may not write it: choose another folder, or ask its owner";
         case EROFS:
             return "the file system is read-only: write elsewhere";
         case ENOENT:
         case ENOTDIR:
-            return "its folder is not there: make it, or write elsewhere";
+            return "its folder does not exist: make it, or write elsewhere";
         case EEXIST:
-            return "it is no ordinary file: name another one, or move it away";
+            return "it is not a regular file: name another one, or move it away";
         case EISDIR:
             return "it is a folder: name a file, or move the folder away";
         default:
-            return "is the disk well, and the file system there?";
+            return "check the disk and whether the file system is mounted";
     }
 }
 
@@ -128,7 +127,7 @@ Status<AppError> check_text_place(const FilePlace& file) {
 }
 
 Status<AppError> copy_file(const FilePlace& from, const FilePlace& to) {
-    constexpr std::size_t kBytesMax = std::size_t{64} << 20U;  // four times the largest robot that is read
+    constexpr std::size_t kBytesMax = std::size_t{64} << 20U;  // four times the size limit of a robot file
     const auto opened = from.open();
     if (!opened) return cannot_create(to.shown(), opened.error().message());
     const auto bytes = opened->read(kBytesMax);

@@ -22,19 +22,19 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<std::uint32_t, 16>;
 using Words = hn::Vec<Tag>;
 
-/// An update is three words: x and y, z and a gap, the term.
+/// An update consists of three words: x and y; z and a gap; the term.
 constexpr std::size_t kWords = 3;
 static_assert(sizeof(VoxelUpdate) == kWords * sizeof(std::uint32_t) && offsetof(VoxelUpdate, log_odds) == 8);
 
-/// Neither 0 nor infinite nor a NaN: its magnitude's bits are those of the least number other than 0, or
-/// more, and less than those of infinity.
+/// True for a term that is neither 0 nor infinite nor NaN: the bits of its magnitude are at least those of
+/// the least number above 0, and less than those of infinity.
 HWY_INLINE auto is_plain(Words term) {
     const Tag u;
     const auto magnitude = hn::And(term, hn::Set(u, 0x7FFF'FFFFU));
     return hn::Lt(hn::Sub(magnitude, hn::Set(u, 1)), hn::Set(u, 0x7F80'0000U - 1));
 }
 
-/// Of each half of a word the lowest three bits, with room for two others' between: kSpreadInBrick.
+/// Spreads the lowest three bits of each half of a word, with two free bits between them: kSpreadInBrick.
 HWY_INLINE Words spread_halves(Words word) {
     const Tag u;
     return hn::Or(hn::And(word, hn::Set(u, 0x0001'0001U)),
@@ -54,14 +54,14 @@ void find_runs(const VoxelUpdate* updates, std::size_t count, BrickRuns& found) 
     const Tag u;
     const std::size_t lanes = hn::Lanes(u);
     const auto in_lane_0 = hn::FirstN(u, 1);
-    // One lane on, and in lane 0 what was in the last one.
+    // Rotates by one lane; lane 0 receives the last lane.
     alignas(64) std::array<std::int32_t, hn::MaxLanes(u)> lane_before;
     for (std::size_t lane = 0; lane < lanes; ++lane)
         lane_before[lane] = static_cast<std::int32_t>((lane + lanes - 1) % lanes);
     const auto one_on = hn::SetTableIndices(u, lane_before.data());
     Words xy_turned_before = hn::Zero(u);
-    Words z_turned_before = hn::Set(u, 0xFFFF'FFFFU);  // no brick's: the first update begins a run
-    std::array<VoxelUpdate, hn::MaxLanes(u)> last;     // what comes after the last update has a term of 0
+    Words z_turned_before = hn::Set(u, 0xFFFF'FFFFU);  // no brick: the first update begins a run
+    std::array<VoxelUpdate, hn::MaxLanes(u)> last;     // padding behind the last update has a term of 0
     std::size_t runs = 0;
     found.updates = 0;
     for (std::size_t begin = 0; begin < count; begin += lanes) {
@@ -87,7 +87,8 @@ void find_runs(const VoxelUpdate* updates, std::size_t count, BrickRuns& found) 
         std::uint8_t bytes[8] = {};
         hn::StoreMaskBits(u, begins, bytes);
         const std::uint32_t bits = bytes[0] | (std::uint32_t{bytes[1]} << 8U);
-        // Not by CompressStore: for AVX2, GCC copies its table of 1 KiB to the stack, vector by vector.
+        // CompressStore is slower here: for AVX2, GCC copies its table of 1 KiB to the stack, vector by
+        // vector.
         for (std::size_t lane = 0; lane < lanes; ++lane) {
             found.first_of[runs] = static_cast<std::uint32_t>(begin + lane);
             runs += bits >> lane & 1U;

@@ -12,8 +12,8 @@ namespace {
 
 using wire::NodeState;
 
-/// A hold ends only when "now" is known and the last sign is old enough, or as far in the future: then the
-/// host's own clock began anew.
+/// A hold ends only when the host time is known and the last event is old enough. An event as far in the
+/// future also ends it: the host's own clock then restarted.
 bool is_held(bool is_set, std::optional<HostTime> since, std::optional<HostTime> now, Nanoseconds hold) {
     return is_set && !(since && now && std::chrono::abs(*now - *since) >= hold);
 }
@@ -34,13 +34,13 @@ bool is_suspect(const NodeRecord& record, std::optional<HostTime> now) {
            is_held(record.is_suspected, record.suspected, now, NodeRegistry::kSuspectHold);
 }
 
-/// Before the heartbeat is the newest.
+/// Call before the heartbeat is stored as the newest.
 void note_suspicion(NodeRecord& record, const wire::Heartbeat& heartbeat, std::optional<HostTime> now) {
     if (heartbeat.is_time_suspect) {
         record.is_suspected = true;
         record.suspected = now;
     } else if (record.is_suspected && !record.suspected) {
-        record.suspected = now;  // the hold starts when there is a time to count from
+        record.suspected = now;  // the hold starts once the host time is known
     } else {
         record.is_suspected = is_held(record.is_suspected, record.suspected, now, NodeRegistry::kSuspectHold);
     }
@@ -49,7 +49,7 @@ void note_suspicion(NodeRecord& record, const wire::Heartbeat& heartbeat, std::o
 void note_second_board(NodeRecord& record, std::optional<HostTime> now) {
     record.is_in_conflict = true;
     record.conflict = now;
-    record.pages = {};  // of which of the two they are, nobody knows
+    record.pages = {};  // unknown which of the two boards sent them
     record.registers = {};
 }
 
@@ -60,7 +60,7 @@ bool NodeRecord::is_info_complete() const {
 }
 
 std::string NodeMismatch::text() const {
-    constexpr std::uint32_t kCountsBelow = 256;  // counts and versions; hashes are larger
+    constexpr std::uint32_t kCountsBelow = 256;  // counts and versions are below; hashes are above
     const bool is_count = found < kCountsBelow && expected < kCountsBelow;
     const auto written = [&](std::uint32_t value) {
         std::array<char, 16> text{};
@@ -120,7 +120,7 @@ void NodeRegistry::add(const HostNode& node, const HostJointSource& joints) {
 
 bool NodeRegistry::is_lost(const NodeRecord& record, std::optional<HostTime> now) const {
     if (!now) return running_ - record.heard_running > kLostAfter;
-    // Heard in the future: the host's own clock began anew.
+    // Heard in the future: the host's own clock restarted.
     return !record.heard || std::chrono::abs(*now - *record.heard) > kLostAfter;
 }
 
@@ -157,7 +157,7 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
     if (is_other_board && !is_lost(record, now)) {
         note_second_board(record, now);
     } else if (record.is_in_conflict && !record.conflict) {
-        record.conflict = now;  // the hold starts when there is a time to count from
+        record.conflict = now;  // the hold starts once the host time is known
     }
     if (record.is_other_version && !record.other_version) {
         record.other_version = now;
@@ -237,7 +237,7 @@ std::optional<NodeMismatch> NodeRegistry::reason(wire::NodeId node, std::optiona
     const NodeRecord& record = records_.at(node);
     const NodeVerdict judged = verdict(node, now);
     if (judged == NodeVerdict::other_version) {
-        return NodeMismatch{"version", record.version_told, wire::kProtocolVersion, "this host speaks"};
+        return NodeMismatch{"version", record.version_told, wire::kProtocolVersion, "this host uses"};
     }
     if (judged == NodeVerdict::build_refused) {
         return NodeMismatch{"build_id", record.page<wire::InfoBuild>()->build_id,
@@ -259,8 +259,8 @@ std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> no
     if (judged == NodeVerdict::quarantined) why = "two boards send under this node id: take one off the bus";
     if (judged == NodeVerdict::babbling) {
         why = "over " + std::to_string(traffic_.at(node).frames_max()) +
-              " frames within a second, twice what the rig has it send: refused until a second after it "
-              "keeps to that";
+              " frames within a second, twice the rig's rate for it: refused until a second after it stays "
+              "below that";
     }
     return "node " + std::to_string(node) + " '" + records_.at(node).expected.name +
            "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(judged)] +

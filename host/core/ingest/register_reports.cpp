@@ -44,8 +44,8 @@ std::string leave_out_text(const wire::RegisterReport& report, const std::string
 }
 
 std::string alike_text(const wire::RegisterReport& report) {
-    return text_of(report) + ", alike on " + std::to_string(report.subject) +
-           " sensors or more: this type of part is so, and nothing is withheld for it";
+    return text_of(report) + ", the same on " + std::to_string(report.subject) +
+           " sensors or more: normal for this type of part, no reading is withheld";
 }
 
 }  // namespace octoskin

@@ -35,7 +35,7 @@ void to_eigen(const KDL::Frame& frame, Eigen::Isometry3d& T) {
     }
 }
 
-/// What is wrong with the numbers of a joint, if anything.
+/// The fault in a joint's numbers, if there is one.
 std::optional<RobotModelError> fault_of(const JointDescription& joint) {
     const Eigen::Matrix3d rotation = joint.T_parent_joint.linear();
     const double skew = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -50,16 +50,16 @@ std::optional<RobotModelError> fault_of(const JointDescription& joint) {
     return std::nullopt;
 }
 
-/// The rotation that takes z to the joint's axis; exactly none for z itself.
+/// The rotation from z to the joint's axis; the exact identity if the axis is z.
 Eigen::Isometry3d align_z(const Eigen::Vector3d& axis) {
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     if (axis != Eigen::Vector3d::UnitZ()) T.linear() = turned_z(axis.normalized());
     return T;
 }
 
-/// One link and how it hangs from its parent. KDL's joint about an arbitrary axis keeps the last angle in a
-/// mutable member, which two threads must not share; one about z does not. So every joint is turned to its z
-/// and back.
+/// A link and its connection to its parent. KDL's joint about an arbitrary axis stores the last angle in a
+/// mutable member, which two threads must not share; a joint about z does not. Therefore each joint's axis is
+/// rotated to z and back.
 struct Link {
     KDL::Frame T_parent_axis;
     KDL::Segment axis_to_link;
@@ -80,7 +80,7 @@ Link make_link(const JointDescription& description, std::size_t parent, std::siz
 
 using Fault = std::optional<RobotModelFault>;
 
-/// Faults that show joint by joint.
+/// Faults of single joints and their names.
 Fault find_joint_fault(const std::string& base_link, std::span<const JointDescription> joints) {
     std::set<std::string_view> names;
     std::set<std::string_view> children = {base_link};
@@ -96,7 +96,7 @@ Fault find_joint_fault(const std::string& base_link, std::span<const JointDescri
     return std::nullopt;
 }
 
-/// Faults of the list of moved joints against the joints there are.
+/// Faults in the list of moved joints compared with the joints of the description.
 Fault find_moved_fault(std::span<const JointDescription> joints, std::span<const std::string> moved) {
     std::set<std::string_view> movable;
     for (const JointDescription& joint : joints) {
@@ -149,7 +149,7 @@ Result<RobotModel, RobotModelFault> RobotModel::build(const std::string& base_li
     impl->names.push_back(base_link);
     impl->links.emplace_back();
     impl->limits.resize(moved.size());
-    // Breadth first from the base: each link is visited once, since it has one parent, so this ends.
+    // Breadth first from the base: each link has one parent and is visited once, so the loop ends.
     for (std::size_t parent = 0; parent < impl->names.size(); ++parent) {
         for (const JointDescription& joint : joints) {
             if (joint.parent_link == impl->names[parent]) impl->add(joint, parent, moved);
@@ -230,7 +230,7 @@ std::vector<double> RobotModel::levers_m(std::span<const double> farthest) const
     std::vector<bool> are_moved(links.size(), false);
     for (std::size_t i = 1; i < links.size(); ++i) {
         const Link& link = links[i];
-        // What lies below the first joint is no part of any lever.
+        // The part below the first joint is not part of any lever.
         if (are_moved[link.parent]) levers_m[i] = levers_m[link.parent] + link.T_parent_axis.p.Norm();
         are_moved[i] = are_moved[link.parent] || link.joint != kNoJoint;
         if (link.axis_to_link.getJoint().getType() == KDL::Joint::TransZ) levers_m[i] += farthest[link.joint];
@@ -247,13 +247,13 @@ const char* describe(RobotModelError error) noexcept {
         case RobotModelError::unmoved_joint:
             return "a joint that moves but gets no position: add it to the joint names";
         case RobotModelError::two_parents:
-            return "hangs from two joints: a loop cannot be computed, remove one";
+            return "has two parent joints: loops are not supported, remove one";
         case RobotModelError::unreachable:
-            return "does not hang below the base link";
+            return "is not connected to the base link";
         case RobotModelError::non_unit_axis:
             return "expected an axis of length 1";
         case RobotModelError::invalid_number:
-            return "has a number that is not finite, a rotation that is none, or limits the wrong way round";
+            return "has a number that is not finite, an invalid rotation, or limits the wrong way round";
         case RobotModelError::too_large:
             return "expected at most 1000 links";
     }

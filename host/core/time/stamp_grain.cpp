@@ -36,9 +36,10 @@ std::optional<std::string> describe_stamps(Nanoseconds grain) {
         "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer, or setserial /dev/ttyUSB0 low_latency), and keep "
         "all decimals of the stamps";
     if (grain <= StampGrain::kBridgedMax) {
-        return what + "; up to 16 ms are bridged: what places a reading is in its frames, SYNC and FOLLOW_UP";
+        return what +
+               "; up to 16 ms are bridged: the time of a reading comes from its frames, SYNC and FOLLOW_UP";
     }
-    return what + "; over 16 ms it cannot be told which turn of its clock a reading is of (clock_in_doubt)";
+    return what + "; over 16 ms the turn of the clock of a reading cannot be determined (clock_in_doubt)";
 }
 
 }  // namespace octoskin

@@ -1,4 +1,4 @@
-// What the witness found out, in words for a person.
+// Results of the cross-check as text for people.
 #include <array>
 #include <cstdio>
 #include <string>
@@ -56,25 +56,24 @@ const char* name(WitnessVerdict verdict) {
 namespace {
 
 std::string describe_fault(const SensorEvidence& evidence) {
-    const std::string offset = ": set its offset (docs/bring-up.md, \"A sensor with a wrong offset\")";
+    const std::string offset = ": set its offset (docs/hardware/calibration.md)";
     if (!evidence.fault)
-        return "is it swapped with another at the harness, stuck, or its pose in the rig not the true one?";
+        return "it may be swapped with another at the harness, be stuck, or have a wrong pose in the rig";
     switch (*evidence.fault) {
         case SensorFault::ranges_too_long:
             return "its ranges are some centimetres too long" + offset;
         case SensorFault::ranges_too_short:
             return "its ranges are some centimetres too short" + offset + ", if its cover glass is clean";
         case SensorFault::often_short:
-            return "some of its ranges end where nothing is: is its cover glass clean?";
+            return "some of its ranges end in free space: clean its cover glass";
         case SensorFault::turned:
-            return "it ranges like one turned by some 10 degrees: is its mount bent, or its pose in the rig "
-                   "not "
-                   "the true one?";
+            return "its ranges fit a sensor turned by about 10 degrees: check its mount and its pose in the "
+                   "rig";
         case SensorFault::exchanged:
             break;
     }
-    return "it ranges like sensor " + std::to_string(evidence.exchanged_with.value_or(0)) +
-           " of its node: are the two swapped at the harness?";
+    return "its ranges fit sensor " + std::to_string(evidence.exchanged_with.value_or(0)) +
+           " of its node: check whether the two are swapped at the harness";
 }
 
 std::string describe_error(const CameraError& error) {
@@ -86,36 +85,38 @@ std::string describe_error(const CameraError& error) {
 
 std::string describe_error(const JointError& error) {
     std::array<char, 64> by{};
-    std::snprintf(by.data(), by.size(), "further by %+.3f rad, or m of a prismatic joint", error.offset);
+    std::snprintf(by.data(), by.size(), "offset by %+.3f rad, or m of a prismatic joint", error.offset);
     return by.data();
 }
 
 }  // namespace
 
-/// Ranges that agree are not told: those of a sensor that is 6 cm off do, and more of them come while it is
-/// about to be cleared.
+/// Ranges that agree are not listed: a sensor with an offset of 6 cm has many of them, also shortly before it
+/// is cleared.
 std::string describe(const SensorEvidence& evidence) {
     std::string text = "contradicts the camera: " + describe_fault(evidence);
     if (evidence.in_free_space + evidence.behind_surface == 0) return text;
     return text + " (" + std::to_string(evidence.in_free_space) +
-           " of its ranges end where the camera sees through, " + std::to_string(evidence.behind_surface) +
-           " behind a surface that it sees)";
+           " of its ranges end where the camera sees free space, " + std::to_string(evidence.behind_surface) +
+           " behind a surface)";
 }
 
 std::string describe(const PoseFault& fault, std::span<const std::string> joints) {
     const std::string explains =
-        ": that explains what " + std::to_string(fault.explained) + " sensors contradict (by an estimate ";
-    const std::string see = " (docs/method.md, \"A sensor that contradicts the camera\")";
+        ": that explains the contradictions of " + std::to_string(fault.explained) + " sensors (estimate: ";
+    const std::string see = " (docs/concepts/cross-check.md)";
     if (!fault.joint)
-        return "camera: not where the rig has it, or its scale is off" + explains +
-               describe_error(*fault.camera) + "): measure the camera's pose anew" + see;
+        return "camera: its pose in the rig or its depth scale is wrong" + explains +
+               describe_error(*fault.camera) + "): measure the camera's pose again" + see;
     const std::string joint = "joint " + joints[fault.joint->joint];
     if (!fault.camera)
-        return joint + ": not where its joint states say" + explains + describe_error(*fault.joint) +
-               "): compare the arm's posture with its joint states, and set the joint's zero anew" + see;
-    return "camera or " + joint + ": one of them is not where it is said to be; which of them is not known" +
-           explains + describe_error(*fault.joint) + ", or the camera " + describe_error(*fault.camera) +
-           "). Compare the arm's posture with its joint states first; else measure the camera's pose anew" +
+        return joint + ": its position differs from its joint states" + explains +
+               describe_error(*fault.joint) +
+               "): compare the arm's posture with its joint states, and set the joint's zero again" + see;
+    return "camera or " + joint + ": one of them has a wrong pose; which one is not known" + explains +
+           describe_error(*fault.joint) + ", or the camera " + describe_error(*fault.camera) +
+           "). Compare the arm's posture with its joint states first; otherwise measure the camera's pose "
+           "again" +
            see;
 }
 

@@ -16,12 +16,12 @@ std::string reason_of(const FolderError& error) {
     if (error.fault == FolderFault::not_a_file && error.what == "a folder")
         return "is a directory; give the log file itself";
     if (error.fault == FolderFault::not_a_file)
-        return "is a pipe or a device; write the log into an ordinary file first";
+        return "is a pipe or a device; write the log into a regular file first";
     if (error.fault == FolderFault::link) return error.message();
     return std::string("cannot open: ") + std::strerror(error.error_number);
 }
 
-/// How a file begins: enough to see whose it is, and what its times count from.
+/// The beginning of a file: enough to recognise its format and the reference of its times.
 struct Beginning {
     std::string text;
     StampKind stamps = StampKind::absolute;
@@ -42,22 +42,22 @@ Beginning beginning_of(std::ifstream stream) {
     return beginning;
 }
 
-/// Differences that add up to more are no times: nanoseconds since 1970 leave 63 bits.
+/// Differences with a larger sum are not valid: nanoseconds since 1970 have 63 bits.
 constexpr WallTime kStampMax{std::numeric_limits<std::int64_t>::max()};
 
-/// What a line lacks, in half a sentence.
+/// The fault of a line, as half a sentence.
 const char* lack(LineFault fault) {
     switch (fault) {
         case LineFault::foreign:
             return "does not begin with a time in parentheses";
         case LineFault::timestamp:
-            return "has no time of 3 to 9 decimals in its parentheses";
+            return "has no time with 3 to 9 decimals in its parentheses";
         case LineFault::interface:
-            return "has no name of an interface behind its time";
+            return "has no interface name after its time";
         case LineFault::identifier:
             return "has no identifier of 3 or 8 hexadecimal digits";
         case LineFault::data:
-            return "has no bytes in hexadecimal digits, behind a # or a [length]";
+            return "has no bytes in hexadecimal digits after a # or a [length]";
         case LineFault::length:
             return "has more bytes than a frame of its kind";
         case LineFault::too_long:
@@ -70,7 +70,7 @@ const char* lack(LineFault fault) {
     return "is blank";
 }
 
-/// For a message: printable, and not too long.
+/// For a message: printable and short.
 std::string shown(std::string_view line) {
     constexpr std::size_t kCharsMax = 60;
     std::string text(line.substr(0, kCharsMax));
@@ -101,7 +101,7 @@ void LogReader::note(LineFault fault) {
 }
 
 Result<std::optional<LogEntry>, LogError> LogReader::next() {
-    while (true) {  // ends with the file
+    while (true) {  // until the end of the file
         const LineStream::End end = lines_.next();
         if (lines_.has_failed()) {
             return unexpected(
@@ -115,7 +115,7 @@ Result<std::optional<LogEntry>, LogError> LogReader::next() {
         }
         Result<LogEntry, LineFault> entry = parse_line(lines_.line());
         if (entry && stamps_ == StampKind::difference) {
-            // Both are 0 or more.
+            // Both are 0 or more: no overflow.
             if (entry->stamp.ns > kStampMax.ns - newest_.ns) {
                 note(LineFault::timestamp);
                 continue;
@@ -126,8 +126,8 @@ Result<std::optional<LogEntry>, LogError> LogReader::next() {
             account_.use();
             return std::optional<LogEntry>(std::move(entry).value());
         }
-        // A cut line may still look like a shorter frame; its checksum decides then. What makes no sense was
-        // cut.
+        // A line that is cut off may look like a shorter frame; its checksum decides that later. If it cannot
+        // be parsed, it counts as cut off.
         const bool is_cut_off = end == LineStream::End::end_of_file && entry.error() != LineFault::blank;
         note(is_cut_off ? LineFault::truncated : entry.error());
     }
@@ -140,9 +140,9 @@ std::optional<LogError> LogReader::foreign_file() const {
         return LogError{file_,
                         "is a log in the format " + std::string(format->name) +
                             "; make one of candump's of it: " + conversion(*format, name, "candump.log") +
-                            " (docs/recording.md has what each command needs)"};
+                            " (docs/reference/recording-folder.md has what each command needs)"};
     }
-    return LogError{file_, "no line is a frame as candump writes them: line " +
+    return LogError{file_, "no line is a frame in candump's format: line " +
                                std::to_string(first_fault_->line) + " " + lack(first_fault_->fault) + ": '" +
                                first_fault_->text + "'; record with `candump -L can0 > can.log`"};
 }

@@ -9,22 +9,20 @@ namespace octoskin {
 std::string FolderError::reason() const {
     switch (fault) {
         case FolderFault::link:
-            return "is a symbolic link; none is followed below the folder that you name: put the file or "
-                   "folder "
-                   "itself there, or remove the link";
+            return "is a symbolic link; links are not followed below the named folder: put the file or "
+                   "folder itself there, or remove the link";
         case FolderFault::outside:
-            return "leads out of the folder; only what is in it is used";
+            return "leads out of the folder; only files inside it are used";
         case FolderFault::foreign_owner:
             return fmt::format(
-                "belongs to {}: octoskin writes only to folders that are yours or root's; give "
-                "another folder",
+                "belongs to {}: octoskin writes only to folders owned by you or root; give another folder",
                 what);
         case FolderFault::not_a_file:
-            return fmt::format("is {}, not an ordinary file", what);
+            return fmt::format("is {}, not a regular file", what);
         case FolderFault::not_a_folder:
-            return "is no folder";
+            return "is not a folder";
         case FolderFault::is_there:
-            return "is there already; move it away";
+            return "exists already; move it away";
         case FolderFault::absent:
         case FolderFault::not_permitted:
         case FolderFault::system:

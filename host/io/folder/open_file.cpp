@@ -29,13 +29,14 @@ std::string other_kind_of(unsigned mode) {
 
 namespace {
 
-/// A file of holes is larger than the disk that it came on; all of it is read nonetheless, for hours. What is
-/// smaller than this is read in seconds.
+/// A sparse file can be larger than the disk, and reading all of it can take hours. A file below this size is
+/// read within seconds.
 constexpr off_t kHolesMatter = off_t{1} << 30U;
-/// Frames of nothing, copied by a tool that leaves holes for zeros, hold more than that.
+/// Frames without content, copied by a tool that writes zeros as holes, have a larger share of data than
+/// that.
 constexpr off_t kBytesPerByteThere = 100;
 
-/// Leaves the descriptor at its begin. Where the file system does not know its holes there are none.
+/// Leaves the file position at the beginning. Without support of the file system there are no holes.
 bool is_nearly_all_holes(int descriptor, off_t size) {
     if (size <= kHolesMatter) return false;
     off_t there = 0;
@@ -89,9 +90,9 @@ Result<OpenFile, FolderError> open_ordinary(const Descriptor& path, const std::f
     Descriptor opened(::open(path_of_descriptor(path.get()).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (!opened) return unexpected(folder_error_of(errno, shown));
     if (is_nearly_all_holes(opened.get(), status.st_size))
-        return unexpected(
-            FolderError{FolderFault::not_a_file, shown, 0,
-                        fmt::format("a file of {} bytes that are nearly all holes", status.st_size)});
+        return unexpected(FolderError{
+            FolderFault::not_a_file, shown, 0,
+            fmt::format("a file of {} bytes that consists almost only of holes", status.st_size)});
     return OpenFile(std::move(opened), shown);
 }
 

@@ -34,24 +34,25 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 constexpr std::uint32_t kArchitecture = 0;
 #endif
 
-// The sanitizers look at /proc, start a program for their reports and stop the other threads for them.
+// Sanitizers read /proc, start a program for their reports and stop the other threads for that.
 #ifdef OCTOSKIN_SANITIZED
 constexpr bool kConfines = false;
 #else
 constexpr bool kConfines = kArchitecture != 0;
 #endif
 
-/// As x86-64 marks the calls of its 32-bit relative (x32), which have the same numbers.
+/// Marks the system calls of x32, the 32-bit variant of x86-64, which have the same numbers.
 constexpr std::uint32_t kOtherCalls = 0x4000'0000U;
 
-/// One half of an argument, of which only the bits of `mask` are looked at.
+/// One half of an argument; only the bits in `mask` are compared.
 struct Wanted {
     std::size_t offset;
     std::uint32_t mask;
     std::uint32_t value;
 };
 constexpr Wanted low_half(std::size_t argument, std::uint32_t value, std::uint32_t mask = ~0U) {
-    return {offsetof(seccomp_data, args) + 8 * argument, mask, value};  // both machines are little-endian
+    return {offsetof(seccomp_data, args) + 8 * argument, mask,
+            value};  // both architectures are little-endian
 }
 constexpr Wanted high_half(std::size_t argument, std::uint32_t value) {
     return {offsetof(seccomp_data, args) + 8 * argument + 4, ~0U, value};
@@ -70,27 +71,27 @@ class Filter {
     void allow(std::initializer_list<long> calls) {
         for (const long call : calls) rule(call, SECCOMP_RET_ALLOW, {});
     }
-    /// If its arguments are all as wanted.
+    /// Allows the call if all its arguments are as wanted.
     void allow(long call, std::initializer_list<Wanted> wanted) { rule(call, SECCOMP_RET_ALLOW, wanted); }
-    /// As on a kernel that does not have it: for calls whose arguments are in memory, which a filter does not
-    /// see, and for which the library or we have an older way.
+    /// As on a kernel without this call. Used for calls whose arguments are in memory, where a filter cannot
+    /// see them, and for which the library or octoskin has an older alternative.
     void lack(long call) { rule(call, SECCOMP_RET_ERRNO | ENOSYS, {}); }
 
-    /// 0, or the error.
+    /// Returns 0, or the error number.
     [[nodiscard]] int install() {
         answer(SECCOMP_RET_KILL_PROCESS);
         const sock_fprog program{static_cast<unsigned short>(code_.size()), code_.data()};
         const long result =
             ::syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program);
-        if (result > 0) return EBUSY;  // a thread has a filter of its own
+        if (result > 0) return EBUSY;  // a thread has a different filter
         return result == 0 ? 0 : errno;
     }
 
   private:
-    /// Behind the number of the call, which is loaded when it begins and when it ends.
+    /// Appended after the load of the call number; each rule loads it again at its end.
     void rule(long call, std::uint32_t result, std::span<const Wanted> wanted) {
         const std::size_t length = 1 + 3 * wanted.size();
-        std::size_t left = length;  // up to where the rule does not hold
+        std::size_t left = length;  // distance to the end of the rule, for when it does not match
         add(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, left + (wanted.empty() ? 0 : 1));
         for (const Wanted& one : wanted) {
             left -= 3;
@@ -115,7 +116,7 @@ class Filter {
 };
 
 void allow_reading(Filter& filter) {
-    // Of O_TMPFILE the bit that O_DIRECTORY does not have.
+    // O_TMPFILE contains O_DIRECTORY: use only its other bit.
     constexpr std::uint32_t kWrites =
         O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~std::uint32_t{O_DIRECTORY});
     filter.allow(SYS_openat, {low_half(2, O_RDONLY, kWrites)});
@@ -123,10 +124,10 @@ void allow_reading(Filter& filter) {
     filter.allow({SYS_read, SYS_readv, SYS_pread64, SYS_lseek, SYS_close, SYS_fstat, SYS_newfstatat,
                   SYS_statx, SYS_statfs, SYS_fstatfs, SYS_getdents64, SYS_readlinkat, SYS_faccessat,
                   SYS_faccessat2, SYS_getcwd, SYS_fadvise64, SYS_dup});
-    // Not F_SETOWN and F_SETSIG, which send signals to others.
+    // Without F_SETOWN and F_SETSIG, which can send signals to other processes.
     for (const int command : {F_GETFD, F_SETFD, F_GETFL, F_DUPFD, F_DUPFD_CLOEXEC})
         filter.allow(SYS_fcntl, {low_half(1, static_cast<std::uint32_t>(command))});
-#ifdef __x86_64__  // the older machine has the older calls, too
+#ifdef __x86_64__  // the older architecture also has the older calls
     filter.allow(SYS_open, {low_half(1, O_RDONLY, kWrites)});
     filter.allow({SYS_stat, SYS_lstat, SYS_access, SYS_readlink, SYS_poll, SYS_time});
 #endif
@@ -134,12 +135,14 @@ void allow_reading(Filter& filter) {
 
 void allow_writing_to_what_is_open(Filter& filter) {
     filter.allow({SYS_write, SYS_writev, SYS_ppoll});
-    filter.allow(SYS_sendto, {low_half(4, 0), high_half(4, 0)});  // to the other end, and nowhere else
-    filter.allow(SYS_ioctl, {low_half(1, TCGETS)});               // whether it is a terminal
+    filter.allow(
+        SYS_sendto,
+        {low_half(4, 0), high_half(4, 0)});  // only without an address: to the other end of the connection
+    filter.allow(SYS_ioctl, {low_half(1, TCGETS)});  // the test for a terminal
 }
 
 void allow_threads(Filter& filter) {
-    // In the namespaces of the process: root could else have a thread with its own.
+    // A thread must stay in the namespaces of the process; root could otherwise start one with its own.
     constexpr std::uint32_t kNamespaces = CLONE_NEWNS | CLONE_NEWCGROUP | CLONE_NEWUTS | CLONE_NEWIPC |
                                           CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNET;
     filter.allow(SYS_clone, {low_half(0, CLONE_THREAD, CLONE_THREAD | kNamespaces)});
@@ -157,10 +160,10 @@ void allow_memory_and_time(Filter& filter) {
     filter.allow(SYS_prctl, {low_half(0, PR_SET_NAME)});
     filter.allow(SYS_tgkill, {low_half(0, static_cast<std::uint32_t>(::getpid()))});  // abort()
     filter.allow(SYS_prlimit64, {low_half(0, 0), low_half(1, RLIMIT_CPU)});
-    filter.allow(SYS_prlimit64, {low_half(0, 0), low_half(2, 0), high_half(2, 0)});  // to ask
+    filter.allow(SYS_prlimit64, {low_half(0, 0), low_half(2, 0), high_half(2, 0)});  // only to read a limit
 }
 
-/// Whatever cannot be confined goes on with all that it has.
+/// If confinement is impossible, the process continues with all its rights.
 bool has_filters() {
     const std::uint32_t action = SECCOMP_RET_KILL_PROCESS;
     return ::syscall(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &action) == 0;
@@ -182,8 +185,8 @@ bool confine_this_process(const char* program, NewThreads threads) {
         error = filter.install();
     }
     if (error != 0)
-        std::fprintf(stderr, "%s: runs without confinement, for the kernel has no filter here: %s\n", program,
-                     std::strerror(error));
+        std::fprintf(stderr, "%s: runs without confinement, because the kernel has no such filter: %s\n",
+                     program, std::strerror(error));
     return error == 0;
 }
 

@@ -21,7 +21,7 @@ constexpr std::string_view kPartialSuffix = ".octoskin-part";
 class PosixFileOperations final : public FileOperations {
   public:
     int create(const char* path) override {
-        // A link that somebody laid there, symbolic or hard, goes; what it leads to stays as it is.
+        // A symbolic or hard link of this name, possibly a trap, is removed; its target stays unchanged.
         if (::unlink(path) != 0 && errno != ENOENT) return -1;
         return ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644);
     }
@@ -29,7 +29,7 @@ class PosixFileOperations final : public FileOperations {
     int copy_attributes(const char* path, int descriptor) override {
         struct stat old {};
         if (::stat(path, &old) != 0) return errno == ENOENT ? 0 : -1;
-        (void)::fchown(descriptor, old.st_uid, old.st_gid);  // only root may give files away
+        (void)::fchown(descriptor, old.st_uid, old.st_gid);  // only root may change the owner
         constexpr mode_t kPermissions = 0777;
         return ::fchmod(descriptor, old.st_mode & kPermissions);
     }
@@ -49,7 +49,7 @@ const char* name_of(SaveStep step) {
         case SaveStep::create:
             return "creating a file beside it";
         case SaveStep::attributes:
-            return "keeping its permissions";
+            return "copying its permissions";
         case SaveStep::write:
             return "writing";
         case SaveStep::sync:
@@ -77,14 +77,15 @@ std::string draft_name_of(const std::string& file) {
 
 std::string SaveError::message() const {
     const std::string reason =
-        error_number == 0 ? "the path names no file" : std::generic_category().message(error_number);
+        error_number == 0 ? "the path does not name a file" : std::generic_category().message(error_number);
     const char* const outcome = step == SaveStep::sync_directory
                                     ? "the new file is in place, but may not survive a power failure"
-                                    : "the old file, if any, is untouched";
+                                    : "the old file, if any, is unchanged";
     return fmt::format("{}: {} failed ({}); {}", file.string(), name_of(step), reason, outcome);
 }
 
-/// The file beside the one that it is to replace. Each step returns what it failed at; errno says why.
+/// The temporary file beside the one that it replaces. Each function returns the failed step; errno has the
+/// reason.
 class FileDraft::Partial {
   public:
     Partial(FileOperations& operations, OpenFolder folder, const FilePlace& file, Attributes attributes)
@@ -107,11 +108,11 @@ class FileDraft::Partial {
         std::optional<SaveError> error;
         try {
             error = fill(descriptor, content);
-        } catch (...) {  // no memory for a piece of it
+        } catch (...) {  // no memory for a piece of the content
             operations_.close(descriptor);
             throw;
         }
-        // A late write error may show only here (network file systems).
+        // Network file systems may report a write error only at close.
         if (operations_.close(descriptor) != 0 && !error) error = failed(SaveStep::close);
         return error;
     }
@@ -122,7 +123,7 @@ class FileDraft::Partial {
         return std::nullopt;
     }
 
-    /// Makes the rename itself durable.
+    /// Makes the rename durable.
     std::optional<SaveError> sync_directory() {
         const int descriptor = operations_.open_directory(folder_.path_for_libraries().c_str());
         if (descriptor < 0) return failed(SaveStep::sync_directory);
@@ -138,7 +139,7 @@ class FileDraft::Partial {
     [[nodiscard]] SaveError failed(SaveStep step) const { return {step, errno, shown_}; }
 
     std::optional<SaveError> fill(int descriptor, const ByteSource& content) {
-        // Before a byte of it: what only its owner may read, nobody else ever may.
+        // Before the first byte: a file that only its owner may read must never be readable for others.
         if (attributes_ == Attributes::of_the_old_file &&
             operations_.copy_attributes(file_.c_str(), descriptor) != 0)
             return failed(SaveStep::attributes);
@@ -156,7 +157,7 @@ class FileDraft::Partial {
         while (!bytes.empty()) {
             const ssize_t written = operations_.write(descriptor, bytes.data(), bytes.size());
             if (written < 0 && errno == EINTR) continue;
-            if (written == 0) errno = EIO;  // no progress and no reason: do not try for ever
+            if (written == 0) errno = EIO;  // no progress without an error: do not loop forever
             if (written <= 0) return failed(SaveStep::write);
             bytes.remove_prefix(static_cast<std::size_t>(written));
         }
@@ -166,7 +167,7 @@ class FileDraft::Partial {
     FileOperations& operations_;
     OpenFolder folder_;
     std::filesystem::path shown_;
-    std::filesystem::path file_;  ///< this and the next by the folder's descriptor
+    std::filesystem::path file_;  ///< this path and the next go through the folder's descriptor
     std::filesystem::path path_;
     Attributes attributes_;
     std::uint32_t crc_ = 0;

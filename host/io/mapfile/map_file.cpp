@@ -13,12 +13,14 @@
 namespace octoskin {
 namespace {
 
-constexpr float kLogOddsMax = 100.0F;          // a mapping file may say no more
-constexpr std::uint64_t kBytesPerNode = 5;     ///< of an .ot file: log-odds, and which children there are
-constexpr std::size_t kHeaderBytesMax = 4096;  ///< of a map that octoskin saved, with comments added since
+constexpr float kLogOddsMax = 100.0F;       // the limit of a mapping file
+constexpr std::uint64_t kBytesPerNode = 5;  ///< in an .ot file: log-odds, and a bit for each child
+constexpr std::size_t kHeaderBytesMax =
+    4096;  ///< for a map that octoskin saved, including comments added later
 
-/// A brick of 512 known voxels takes 2112 bytes of memory, and 585 nodes of a file; one that is alone 13 more
-/// above it. Half as much again as the memory has room for both, the mebibyte for the header of a small one.
+/// A brick of 512 known voxels takes 2112 bytes of memory and 585 nodes of a file; an isolated one adds 13
+/// nodes above it. One and a half times the memory is enough for both; the mebibyte is for the header of a
+/// small file.
 std::uint64_t file_bytes_max_of(const MapConfig& config) {
     return (std::uint64_t{config.memory_max_mib} << 20U) * 3 / 2 + (std::uint64_t{1} << 20U);
 }
@@ -106,7 +108,7 @@ Result<LoadedMap, MapFileError> load_map_of(const MapConfig& config, const FileP
     loaded->map.limit(config);
     return loaded;
 } catch (const std::bad_alloc&) {
-    return fail(file.shown(), "there is no memory to read it");
+    return fail(file.shown(), "there is not enough memory to read it");
 }
 
 }  // namespace octoskin

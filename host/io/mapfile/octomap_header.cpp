@@ -12,19 +12,19 @@ namespace octoskin {
 namespace {
 
 constexpr std::size_t kHeaderMax = std::size_t{1} << 20U;
-constexpr std::size_t kDifferencesMax = 4;  ///< that are told
+constexpr std::size_t kDifferencesMax = 4;  ///< number of differences that a warning lists
 constexpr std::string_view kTextMagic = "# Octomap OcTree file";
 constexpr std::string_view kBinaryMagic = "# Octomap OcTree binary file";
 constexpr std::string_view kOctoskinsComment = "# saved by octoskin";
 constexpr std::string_view kOccupiedComment = "# occupied from log-odds ";
 constexpr std::string_view kWhiteSpace = " \t\n\v\f\r";
 
-/// Of a .bt before OctoMap 1.4, little-endian: the type of tree as 32 bits, the resolution as a double, the
-/// nodes as 32 bits.
+/// A .bt of OctoMap before 1.4, little-endian: type of tree in 32 bits, resolution as a double, number of
+/// nodes in 32 bits.
 constexpr std::string_view kBefore14Type("\x03\x00\x00\x00", 4);
 constexpr std::size_t kBefore14Bytes = 16;
 
-/// Printable, short, for a message: the file may hold anything.
+/// Printable and short, for a message: the file may contain any bytes.
 std::string excerpt(std::string_view text) {
     std::string shown;
     for (const char c : text.substr(0, 40)) shown += c >= ' ' && c <= '~' ? c : '?';
@@ -35,7 +35,7 @@ Unexpected<MapReadError> fail(MapFault fault, std::string what) {
     return unexpected(MapReadError{fault, std::move(what)});
 }
 
-/// Written so that a NaN is none.
+/// This form is false for a NaN.
 bool is_resolution(double resolution_m) {
     return resolution_m >= 1e-6 && resolution_m <= 1e6;
 }
@@ -48,7 +48,7 @@ class HeaderParser {
     Result<OctomapHeader, MapReadError> parse() {
         if (!take_first_line()) {
             return fail(MapFault::not_a_map,
-                        fmt::format("the first line is not \"{}\" nor \"{}\"", kTextMagic, kBinaryMagic));
+                        fmt::format("the first line is neither \"{}\" nor \"{}\"", kTextMagic, kBinaryMagic));
         }
         for (std::string_view word = next_word(); !word.empty(); word = next_word()) {
             if (word == "data") return finish();
@@ -68,7 +68,7 @@ class HeaderParser {
         if (has_carriage_returns_) {
             differ("its lines end with a carriage return");
         } else if (!behind.empty()) {
-            differ(fmt::format("\"{}\" behind the first line", excerpt(behind)));
+            differ(fmt::format("\"{}\" after the first line", excerpt(behind)));
         }
         return true;
     }
@@ -94,19 +94,19 @@ class HeaderParser {
         const std::string_view number = line.substr(kOccupiedComment.size());
         float from = 0.0F;
         const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), from);
-        constexpr float kMost = 100.0F;  // of what a mapping may say
+        constexpr float kMost = 100.0F;  // the limit of a mapping file
         if (error != std::errc{} || end != number.data() + number.size() || !(std::fabs(from) <= kMost)) {
             return MapReadError{
                 MapFault::header_malformed,
-                fmt::format("\"{}\" is no log-odds from which voxels are occupied", excerpt(number))};
+                fmt::format("\"{}\" is not a log-odds threshold for occupied voxels", excerpt(number))};
         }
         header_.occupied_from = from;
         return std::nullopt;
     }
 
-    /// The word behind a key. Expected is a line of the two, one blank between them.
+    /// The word after a key. Expected is a line with only the two, separated by one blank.
     std::string_view next_value(std::string_view key, bool& is_known) {
-        if (std::exchange(is_known, true)) differ(fmt::format("{} comes twice, the last counts", key));
+        if (std::exchange(is_known, true)) differ(fmt::format("{} is repeated; the last one counts", key));
         const std::size_t begin = position_ - key.size();
         const std::string_view value = next_word();
         const std::string plain = fmt::format("{} {}{}", key, value, has_carriage_returns_ ? "\r\n" : "\n");
@@ -116,20 +116,21 @@ class HeaderParser {
     }
 
     std::optional<MapReadError> take_id(std::string_view value) {
-        // What a .bt says of a node is the same for every tree of occupancies.
+        // In a .bt the nodes are the same for every type of occupancy tree.
         const bool has_same_nodes = value == "OcTree" || value == "OcTreeStamped";
         const bool has_colours = value == "ColorOcTree";
         header_.colour_bytes = !header_.is_binary && has_colours ? 3 : 0;
         if (value == "1") {
-            differ("id is 1, as OctoMap wrote it once for OcTree");
+            differ("id is 1, as an early OctoMap wrote it for OcTree");
         } else if (header_.is_binary && !value.empty()) {
             if (!has_same_nodes && !has_colours)
                 differ(fmt::format("id is \"{}\", read as OcTree", excerpt(value)));
         } else if (!has_same_nodes && !has_colours) {
-            return MapReadError{MapFault::wrong_tree_type,
-                                fmt::format("id is \"{}\", only OcTree, ColorOcTree and OcTreeStamped can be "
-                                            "read of a .ot (OctoMap's convert_octree may make a .bt of it)",
-                                            excerpt(value))};
+            return MapReadError{
+                MapFault::wrong_tree_type,
+                fmt::format("id is \"{}\", but from an .ot only OcTree, ColorOcTree and OcTreeStamped can be "
+                            "read (OctoMap's convert_octree may convert it to a .bt)",
+                            excerpt(value))};
         }
         is_octree_ = value == "OcTree";
         return std::nullopt;
@@ -161,7 +162,7 @@ class HeaderParser {
         return std::nullopt;
     }
 
-    /// The number that the word begins with; what follows it in the word is the next word.
+    /// The number at the beginning of the word; the rest of the word is then the next word.
     template <class T>
     bool take_number(std::string_view word, T& number) {
         const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
@@ -175,7 +176,7 @@ class HeaderParser {
 
     Result<OctomapHeader, MapReadError> finish() {
         if (const std::string_view behind = rest_of_line(); !behind.empty() && behind != "\r")
-            differ(fmt::format("\"{}\" behind \"data\"", excerpt(behind)));
+            differ(fmt::format("\"{}\" after \"data\"", excerpt(behind)));
         header_.data_begin = position_;
         if (!has_id_ || !has_resolution_)
             return fail(MapFault::header_malformed, "id or res is missing before \"data\"");
@@ -183,8 +184,9 @@ class HeaderParser {
         if (header_.is_octoskins && !is_octree_)
             return fail(MapFault::wrong_tree_type, "octoskin saved it, but its id is not OcTree");
         if (header_.is_octoskins && !header_.differences.empty()) {
-            return fail(MapFault::header_malformed,
-                        "octoskin saved it, and its header was changed since: " + header_.differences[0]);
+            return fail(
+                MapFault::header_malformed,
+                "octoskin saved it, and its header was changed afterwards: " + header_.differences[0]);
         }
         if (header_.is_octoskins && *header_.nodes > nodes_max_) {
             return fail(MapFault::too_many_nodes,
@@ -204,7 +206,7 @@ class HeaderParser {
         return bytes_.substr(begin, position_ - begin);
     }
 
-    /// Without its end, which is passed.
+    /// Without its line end, which is skipped.
     std::string_view rest_of_line() {
         const std::size_t begin = position_;
         const std::size_t end = std::min(bytes_.find('\n', begin), bytes_.size());
@@ -232,13 +234,13 @@ std::uint64_t little_endian(std::string_view bytes) {
 
 Result<OctomapHeader, MapReadError> parse_header_before_1_4(std::string_view bytes) {
     if (bytes.size() < kBefore14Bytes)
-        return fail(MapFault::truncated, "the file ends within a header as before OctoMap 1.4");
+        return fail(MapFault::truncated, "the file ends within a header of the format before OctoMap 1.4");
     OctomapHeader header;
     header.is_binary = true;
     header.resolution_m = std::bit_cast<double>(little_endian(bytes.substr(4, 8)));
     header.nodes = little_endian(bytes.substr(12, 4));
     header.data_begin = kBefore14Bytes;
-    header.differences = {"the format is that before OctoMap 1.4 (convert_octree makes a new one)"};
+    header.differences = {"it has the format before OctoMap 1.4 (convert_octree converts it)"};
     if (!is_resolution(header.resolution_m)) {
         return fail(MapFault::resolution_not_valid,
                     fmt::format("the resolution is {}, not between 1e-6 and 1e6 m", header.resolution_m));

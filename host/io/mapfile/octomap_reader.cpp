@@ -16,10 +16,10 @@
 namespace octoskin {
 namespace {
 
-using LeafVisitor = std::function<bool(const VoxelCube&, float log_odds)>;  // false: stop, no room
+using LeafVisitor = std::function<bool(const VoxelCube&, float log_odds)>;  // false: stop, there is no room
 
-/// Walks the nodes of a file without recursion, checks each, and hands over the leaves. The two formats share
-/// the walk and differ in what a node's bytes say.
+/// Walks the nodes of a file without recursion, checks each, and passes on the leaves. Both formats share the
+/// walk; only the bytes of a node differ.
 class TreeWalk {
   public:
     TreeWalk(std::string_view bytes, const OctomapHeader& header, const MapReadLimits& limits)
@@ -37,16 +37,16 @@ class TreeWalk {
         return check_end();
     }
 
-    /// How the tree's end differs from what the header says; empty if it does not.
+    /// How the end of the tree differs from the header; empty if it does not.
     [[nodiscard]] std::string why_end_differs() const {
         if (!header_.nodes || *header_.nodes != nodes_)
             return fmt::format("size is {}, the tree has {} nodes", said_nodes(), nodes_);
-        if (bytes_behind() > 0) return fmt::format("{} bytes behind the last node", bytes_behind());
+        if (bytes_behind() > 0) return fmt::format("{} bytes after the last node", bytes_behind());
         return {};
     }
 
   private:
-    /// What a .bt says about a child, in two bits; 0 is unknown.
+    /// A child's code in a .bt, two bits; 0 is unknown.
     static constexpr std::uint32_t kFreeLeaf = 1;
     static constexpr std::uint32_t kInner = 3;
 
@@ -58,7 +58,7 @@ class TreeWalk {
     /// A node whose children are being read.
     struct Open {
         Node node;
-        unsigned next = 0;        ///< child to be looked at next
+        unsigned next = 0;        ///< next child to examine
         std::uint32_t codes = 0;  ///< two bits a child
     };
     struct Content {
@@ -73,13 +73,13 @@ class TreeWalk {
     [[nodiscard]] std::string said_nodes() const {
         return header_.nodes ? fmt::format("{}", *header_.nodes) : "not known";
     }
-    /// A header says that there is no node; other programs say so, too, of a tree that they did not count.
+    /// The header gives zero nodes. Some other programs write zero for a tree whose nodes they did not count.
     [[nodiscard]] bool is_empty() const {
         return header_.nodes == 0U && (header_.is_octoskins || bytes_behind() == 0);
     }
 
-    /// What octoskin saved ends as its header says. Of another's file one of two must speak for the tree that
-    /// was read: the number of its nodes, or that it ends with the file.
+    /// A file from octoskin must end as its header says. For another program's file one of two must confirm
+    /// the tree: the number of nodes, or that tree and file end together.
     [[nodiscard]] std::optional<MapReadError> check_end() const {
         const bool has_said_nodes = header_.nodes && *header_.nodes == nodes_;
         const bool ends_with_file = bytes_behind() == 0;
@@ -87,7 +87,7 @@ class TreeWalk {
             return std::nullopt;
         if (has_said_nodes) return error(MapFault::trailing_bytes, why_end_differs());
         return error(MapFault::node_count_differs,
-                     fmt::format("{} nodes, the header says {}", nodes_, said_nodes()));
+                     fmt::format("{} nodes, but the header has {}", nodes_, said_nodes()));
     }
 
     MapReadError truncated() const { return error(MapFault::truncated, "the data end within the tree"); }
@@ -123,7 +123,7 @@ class TreeWalk {
         return std::nullopt;
     }
 
-    /// The next child that exists of the innermost open node; closes nodes that have no more.
+    /// The next existing child of the innermost open node; closes nodes without further children.
     std::optional<Node> next_node() {
         while (open_count_ > 0) {
             Open& parent = open_[open_count_ - 1];
@@ -154,7 +154,7 @@ class TreeWalk {
         return Content{log_odds, codes};
     }
 
-    /// .bt: an inner node has two bits for each child; a leaf has no bytes, its parent has said what it is.
+    /// .bt: an inner node has two bits for each child; a leaf has no bytes, its parent's code describes it.
     Result<Content, MapReadError> take_binary(const Node& node) {
         if (node.code != kInner) {
             return Content{node.code == kFreeLeaf ? config_.log_odds_min : config_.log_odds_max, 0};
@@ -168,7 +168,7 @@ class TreeWalk {
 
     std::optional<MapReadError> check(float log_odds) const {
         if (!std::isfinite(log_odds))
-            return error(MapFault::log_odds_not_finite, "a node's log-odds is no number");
+            return error(MapFault::log_odds_not_finite, "a node's log-odds is not a finite number");
         if (log_odds >= config_.log_odds_min && log_odds <= config_.log_odds_max) return std::nullopt;
         return error(MapFault::log_odds_outside_clamps,
                      fmt::format("log-odds {}, the clamps are {} and {}", log_odds, config_.log_odds_min,
@@ -181,22 +181,22 @@ class TreeWalk {
     MapConfig config_;
     std::uint64_t nodes_max_ = 0;
     std::uint64_t nodes_ = 0;
-    std::array<Open, kOctreeDepth> open_{};  // one for each level that can have children
+    std::array<Open, kOctreeDepth> open_{};  // one for each level whose nodes can have children
     std::size_t open_count_ = 0;
 };
 
-/// One sentence: the differences matter to the program that wrote them, not one by one.
+/// One sentence for all differences: they rarely matter one by one.
 std::vector<std::string> warnings_of(const OctomapHeader& header, const std::string& end) {
     std::vector<std::string> differences = header.differences;
     if (!end.empty()) differences.push_back(end);
     std::vector<std::string> warnings;
     if (!differences.empty()) {
-        std::string warning = "not as OctoMap writes it, but read";
+        std::string warning = "not in OctoMap's own form, but read";
         for (const std::string& difference : differences)
             warning += (&difference == differences.data() ? ": " : "; ") + difference;
         warnings.push_back(std::move(warning));
     }
-    if (header.colour_bytes > 0) warnings.emplace_back("its voxels' colours are left out");
+    if (header.colour_bytes > 0) warnings.emplace_back("its voxels' colours are dropped");
     return warnings;
 }
 

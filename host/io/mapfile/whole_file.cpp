@@ -26,13 +26,13 @@ Result<std::string, WholeFileError> read_whole_file(const FilePlace& file, std::
     }
     struct stat status {};
     if (::fstat(opened->descriptor(), &status) != 0)
-        return fail(file, fmt::format("looking at it failed ({})", std::generic_category().message(errno)));
+        return fail(file, fmt::format("examining it failed ({})", std::generic_category().message(errno)));
     const auto size = static_cast<std::uint64_t>(status.st_size);
     if (size > bytes_max) return fail(file, fmt::format("{} bytes, the limit is {}", size, bytes_max), true);
     auto bytes = opened->read(size);
     if (!bytes) return fail(file, fmt::format("reading failed ({})", bytes.error().reason()));
     if (bytes->size() < size) return fail(file, "became shorter while it was read");
-    bytes->resize(size);  // what was added since is of another save
+    bytes->resize(size);  // bytes added since belong to another save
     return std::move(*bytes);
 }
 

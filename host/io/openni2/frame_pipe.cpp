@@ -25,7 +25,8 @@ struct Header {
     std::uint32_t rate_mhz = 0;
 };
 
-/// To a socket without blocking and without SIGPIPE, whoever handles that; to anything else as usual.
+/// Writes to a socket without blocking and without SIGPIPE, whatever the signal's handler; to any other
+/// descriptor as usual.
 ssize_t write_some(int descriptor, std::span<const std::byte> bytes) {
     const ssize_t sent = ::send(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     return sent < 0 && errno == ENOTSOCK ? ::write(descriptor, bytes.data(), bytes.size()) : sent;
@@ -38,9 +39,9 @@ const char* name(PipeError error) noexcept {
         case PipeError::timeout:
             return "no data in time";
         case PipeError::closed:
-            return "ended in the middle";
+            return "ended in the middle of a frame";
         case PipeError::interrupted:
-            return "told to end";
+            return "cancelled";
         case PipeError::wrong_format:
             return "not a stream of depth frames";
         case PipeError::io:

@@ -22,12 +22,12 @@
 namespace octoskin::openni2 {
 namespace {
 
-/// Room for a frame of 512 x 424, where Linux gives half.
+/// Room for a frame of 512 x 424; Linux allows half of the value.
 constexpr int kSendBuffer = 1 << 20;
 constexpr std::chrono::milliseconds kStep{5};
 
-/// What posix_spawn is told. A thread without signals, or a program that ignores some, has a child that would
-/// inherit both.
+/// The attributes for posix_spawn. The calling thread may have blocked signals, and the program may ignore
+/// some; the child would inherit both.
 class Spawning {
   public:
     Spawning() {
@@ -51,7 +51,7 @@ class Spawning {
     void open_nothing_as(int descriptor) {
         posix_spawn_file_actions_addopen(&actions_, descriptor, "/dev/null", O_RDONLY, 0);
     }
-    /// 0, or why not.
+    /// Returns 0, or the error number.
     int spawn(pid_t& process, std::string program, std::vector<std::string> arguments) const {
         std::vector<char*> pointers{program.data()};
         for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -64,9 +64,8 @@ class Spawning {
     posix_spawnattr_t attributes_{};
 };
 
-/// Helpers that were killed and that the kernel did not let go of in time, as in the middle of a USB
-/// transfer. Each is looked for again with the next one that begins or ends: so many dead ones stay at most
-/// as there are stuck.
+/// Killed helpers that the kernel has not ended in time, for example in the middle of a USB transfer. They
+/// are checked whenever another helper begins or ends, so that only stuck ones remain.
 class LeftBehind {
   public:
     void add(pid_t process) {
@@ -87,14 +86,14 @@ LeftBehind& left_behind() {
     return processes;
 }
 
-/// In words; empty: it exited with 0.
+/// The exit status in words; empty: exit code 0.
 std::optional<std::string> end_of(int status) {
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
         return "it needs more than " + std::to_string(kHelperProcessorSecondsPerFrame) +
                " s of processor time for a frame";
     }
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
-        return "it asked the system for more than to read a file, as one does that is made to attack";
+        return "it made a system call that reading a file does not need, as a malicious file might cause";
     if (WIFSIGNALED(status)) return "signal " + std::to_string(WTERMSIG(status));
     if (WEXITSTATUS(status) == kOutOfMemory)
         return "it needs more than " + std::to_string(kHelperMemoryMib) + " MiB of memory";
@@ -110,21 +109,21 @@ Result<HelperProcess, std::string> HelperProcess::start(const std::filesystem::p
                                                         int inherited) {
     left_behind().reap();
     std::array<int, 2> ends{-1, -1};
-    // Sockets rather than a pipe: a write to a helper that is stuck must not block, and one to a helper that
-    // is gone must not raise SIGPIPE.
+    // Sockets instead of a pipe: a write to a stuck helper must not block, and a write to a helper that has
+    // ended must not raise SIGPIPE.
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
         return unexpected(std::string("no socket: ") + std::strerror(errno));
     const auto [ours, theirs] = ends;
     for (const int end : ends) ::setsockopt(end, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof(kSendBuffer));
     std::array<int, 2> words{-1, -1};
-    // Without blocking: nobody reads before the helper has ended, and it must not wait for that.
+    // Non-blocking: the pipe is read only after the helper ends, and the helper must not wait for that.
     (void)!::pipe2(words.data(), O_CLOEXEC | O_NONBLOCK);
     Spawning spawning;
     spawning.connect(theirs, pipe == HelperPipe::its_input ? STDIN_FILENO : STDOUT_FILENO);
     if (words[1] >= 0) spawning.connect(words[1], STDERR_FILENO);
-    // What a terminal is told is not for it.
+    // Terminal input is not for the helper.
     if (pipe == HelperPipe::its_output) spawning.open_nothing_as(STDIN_FILENO);
-    // Last: it may take the number of one of those above, which are copied by then.
+    // Last: it may use the number of one of the descriptors above, which are duplicated before.
     if (inherited >= 0) spawning.connect(inherited, kInherited);
     pid_t process = -1;
     const int failed = spawning.spawn(process, program.string(), arguments);
@@ -212,11 +211,11 @@ Result<std::filesystem::path, std::string> find_helper(
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
     if (self.is_absolute() && std::filesystem::exists(self / name, error)) return self / name;
     const auto libexec = self.parent_path() / "libexec" / "octoskin";
-    // Above any other folder another user may have made one.
+    // A libexec above any other folder could belong to another user.
     if (self.filename() == "bin" && std::filesystem::exists(libexec / name, error)) return libexec / name;
-    return unexpected(name +
-                      " is neither beside this program nor in libexec: build octoskin_programs, or "
-                      "install octoskin anew");
+    return unexpected(
+        name +
+        " is neither beside this program nor in libexec: build octoskin_programs, or install octoskin again");
 }
 
 }  // namespace octoskin::openni2

@@ -42,7 +42,7 @@ Result<OniReader, DepthSourceError> OniReader::start(const FilePlace& oni,
     if (!opened) {
         const FolderFault fault = opened.error().fault;
         const bool is_clear = fault == FolderFault::link || fault == FolderFault::not_a_file;
-        return failure(is_clear ? opened.error().reason() : "no such file, or not an ordinary one");
+        return failure(is_clear ? opened.error().reason() : "no such file, or not a regular one");
     }
     const auto program = find_helper(kReadHelper, helper);
     const auto without_reader = [&oni](const std::string& what) {
@@ -98,9 +98,9 @@ Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
 std::optional<std::string> OniReader::loss() const {
     if (!header_.is_salvaged) return std::nullopt;
     const std::string read = std::to_string(frames_read_);
-    if (!frames_told_) return file_.string() + ": was cut off; " + read + " frames are whole and used";
+    if (!frames_told_) return file_.string() + ": was cut off; " + read + " frames are complete and used";
     return file_.string() + ": was cut off; " + read + " of its " + std::to_string(*frames_told_) +
-           " frames are whole and used, " +
+           " frames are complete and used, " +
            std::to_string(*frames_told_ - std::min(*frames_told_, frames_read_)) + " are lost";
 }
 

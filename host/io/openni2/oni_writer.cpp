@@ -8,7 +8,7 @@ namespace octoskin::openni2 {
 namespace {
 
 constexpr std::chrono::milliseconds kWritePatience{30'000};
-/// 3 ms on a quiet machine.
+/// Typically 3 ms on an idle machine.
 constexpr std::chrono::milliseconds kPatiencePerFrame{100};
 constexpr const char* kWriteHelper = "octoskin-oni-write";
 
@@ -25,20 +25,20 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const FilePlace& oni, cons
         return unexpected(DepthSourceError{oni.shown().string() + ": " + what});
     };
     if (size.pixels() == 0 || size.pixels() > kPixelsMax || size.width > kSideMax || size.height > kSideMax) {
-        return failure("OpenNI2 cannot record pictures of " + std::to_string(size.width) + " x " +
+        return failure("OpenNI2 cannot record images of " + std::to_string(size.width) + " x " +
                        std::to_string(size.height) + " pixels, only up to 1600 x 1200");
     }
     const auto program = find_helper(kWriteHelper, helper);
     if (!program) return failure(program.error());
-    // An old sidecar must not vouch for a recording that is not finished.
+    // An old sidecar must not make an unfinished recording look complete.
     const auto sidecar = epoch.parent_to_write();
     if (!sidecar) return failure(sidecar.error().message());
     if (const auto removed = sidecar->remove(epoch.filename()); !removed)
         return failure(removed.error().message());
     const auto created = oni.create_anew();
     if (!created) return failure(created.error().reason());
-    // The helper opens this very file, whatever takes its name or its folder's meanwhile, and goes on with it
-    // if this process is killed.
+    // The helper opens this file itself, even if the name of file or folder changes meanwhile, and continues
+    // with it if this process is killed.
     const auto file = path_of_descriptor(HelperProcess::kInherited);
     auto process = HelperProcess::start(*program, {file.string(), oni.shown().string()},
                                         HelperPipe::its_input, HelperComplaints::kept, created->descriptor());
@@ -50,7 +50,7 @@ Result<OniWriter, DepthSourceError> OniWriter::create(const FilePlace& oni, cons
     return OniWriter(oni, epoch, size, std::move(*process));
 }
 
-/// Its own last words tell more than how it ended.
+/// The helper's last message is more specific than its exit status.
 std::string OniWriter::why(const std::string& how) {
     const std::string complaint = helper_.complaint();
     return complaint.empty() ? how : complaint;

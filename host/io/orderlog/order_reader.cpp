@@ -7,7 +7,7 @@
 namespace octoskin::orderlog {
 namespace {
 
-/// A cone of another's file would else be as large as the octree.
+/// A reading outside these bounds, from an untrusted file, could have a cone as large as the octree.
 bool can_be(const Commit& commit) {
     const auto* const reading = std::get_if<RangeMeasurement>(&commit);
     return reading == nullptr || !reading->range_m || can_be_a_range(*reading->range_m, reading->sigma_m);
@@ -24,9 +24,8 @@ Result<OrderReader, CommitSourceError> OrderReader::open(const FilePlace& file) 
     const auto header = reader.read_line() ? parse_header(reader.line_) : std::nullopt;
     if (!header) {
         return reader.failure(
-            "does not begin as an order of this version, 'octoskin-order/2' or "
-            "'octoskin-order/1'; move the file away to replay in "
-            "the order of capture times");
+            "does not begin like an order log of this version, 'octoskin-order/2' or 'octoskin-order/1'; "
+            "move the file away to replay in the order of capture times");
     }
     reader.header_ = *header;
     return reader;
@@ -42,7 +41,7 @@ bool OrderReader::read_line() {
     for (char next = 0; line_.size() <= kLineBytesMax && stream_.get(next); line_ += next) {
         if (next == '\n') return true;
     }
-    return line_.size() > kLineBytesMax;  // which no parser takes
+    return line_.size() > kLineBytesMax;  // no parser accepts a longer line
 }
 
 Result<std::optional<Commit>, CommitSourceError> OrderReader::end(const Trailer& trailer) {
@@ -52,7 +51,7 @@ Result<std::optional<Commit>, CommitSourceError> OrderReader::end(const Trailer&
                        std::to_string(commits_) + " are in the file");
     }
     trailer_ = trailer;
-    if (read_line()) return failure("a line behind the end");
+    if (read_line()) return failure("a line after the end");
     return std::optional<Commit>{};
 }
 
@@ -66,7 +65,7 @@ Result<std::optional<Commit>, CommitSourceError> OrderReader::next() {
             return commit;
         }
         if (const auto trailer = parse_trailer(line_)) return end(*trailer);
-        return failure("no line of an order: '" + line_.substr(0, 60) + "'");
+        return failure("not a line of an order log: '" + line_.substr(0, 60) + "'");
     }
     if (stream_.bad()) return failure("cannot be read on");
     return std::optional<Commit>{};

@@ -42,7 +42,8 @@ HostNode to_host(const rig::Node& node) {
     host.name = node.name;
     host.node_hash = node_hash(node.config);
     host.pinned_build_id = node.pinned_build_id;
-    host.aux_every = node.config.uses_can_fd ? std::uint8_t{0} : node.config.aux_every;  // classical only
+    host.aux_every =
+        node.config.uses_can_fd ? std::uint8_t{0} : node.config.aux_every;  // on classical CAN only
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {
         host.sensors.push_back(to_host(node.sensors[i], node.config.sensors[i]));
     }
@@ -72,7 +73,7 @@ HostRig to_host(const rig::Rig& rig) {
     return host;
 }
 
-/// Of those that the rig does not list; empty if it lists all that there are.
+/// The warning about links that the rig does not list; empty if it lists all of them.
 std::string warning_of(const std::vector<LinkWithoutBody>& links) {
     std::vector<std::string> names;
     for (const LinkWithoutBody& link : links) {
@@ -82,18 +83,18 @@ std::string warning_of(const std::vector<LinkWithoutBody>& links) {
     return rig::joined(names) + (names.size() == 1 ? ": this link moves, has" : ": these links move, have") +
            " a <visual> and no body that covers it, and no link fixed to it has one: it comes into the map "
            "as the world "
-           "does, and a query answers unknown instead of free. Give it capsules (docs/robot.md), or list it "
-           "in robot.links_without_body of the rig";
+           "does, and a query answers unknown instead of free. Give it capsules (docs/how-to/own-robot.md), "
+           "or list it in robot.links_without_body of the rig";
 }
 
-/// Where one lost sample leaves a gap that is not bridged, a sentence; else empty.
+/// A warning if one lost sample leaves a gap that is not bridged; otherwise empty.
 std::string rate_warning(double rate_hz) {
     const double bridged_s = std::chrono::duration<double>(JointHistoryConfig{}.bracket_max).count();
     const double wanted_hz = 2.0 / bridged_s;
     if (rate_hz >= wanted_hz) return {};
     return fmt::format(
-        "joints.rate_hz {:g}: at most {:g} ms between two joint samples are bridged: what is measured about "
-        "one that is lost or late has no pose (joints_missing). Have them sent {:g} times a second or more, "
+        "joints.rate_hz {:g}: at most {:g} ms between two joint samples are bridged: measurements about a "
+        "lost or late sample have no pose (joints_missing). Send joint states {:g} times a second or more, "
         "and write that rate there",
         rate_hz, bridged_s * 1e3, wanted_hz);
 }
@@ -101,8 +102,8 @@ std::string rate_warning(double rate_hz) {
 std::vector<std::string> notes_of(const std::vector<LinkWithBorrowedBody>& links) {
     std::vector<std::string> notes;
     for (const LinkWithBorrowedBody& link : links) {
-        notes.push_back(link.link + ": this link moves, has a <visual> and no body of its own; that of " +
-                        link.body_of + ", which is fixed to it, is taken for it. See that it covers both");
+        notes.push_back(link.link + ": this link moves, has a <visual> and no body of its own; the body of " +
+                        link.body_of + ", which is fixed to it, is used instead. Check that it covers both");
     }
     return notes;
 }
@@ -127,10 +128,9 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
     HostRig host = to_host(rig);
     for (const rig::Capsule& capsule : *capsules) {
         if (!robot->find_link(capsule.link)) {
-            return unexpected(
-                rig::RigError{rig.urdf.shown(), 0, "link " + capsule.link,
-                              "has a <collision> but does not hang below the rig's base link '" +
-                                  rig.base_link + "': remove it, or use another base_link"});
+            return unexpected(rig::RigError{rig.urdf.shown(), 0, "link " + capsule.link,
+                                            "has a <collision> but is not below the rig's base link '" +
+                                                rig.base_link + "': remove it, or use another base_link"});
         }
         host.body.push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
     }
@@ -151,7 +151,7 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
     std::vector<std::string> warnings = rig::reflex_warnings(rig);
     if (host.body.empty()) {
         warnings.push_back("no link at or below " + rig.base_link +
-                           " has a <collision>: nothing of the robot is taken out of images and ranges");
+                           " has a <collision>: the robot is not removed from images and ranges");
     }
     if (auto warning = warning_of(host.links_without_body); !warning.empty())
         warnings.push_back(std::move(warning));

@@ -13,8 +13,8 @@
 namespace octoskin {
 namespace {
 
-/// Log-odds, counts and times come to less than twice the log-odds' share (`bytes_needed`), also where a
-/// daemon goes on with less memory than before; readings to far less than the rest.
+/// Log-odds, counts and times need less than twice the share of the log-odds (`bytes_needed`), also if a
+/// daemon continues with less memory than before; readings need far less than the rest.
 std::uint64_t file_bytes_max_of(const MapConfig& config) {
     return (std::uint64_t{config.memory_max_mib} << 21U) + (std::uint64_t{64} << 20U);
 }
@@ -45,8 +45,8 @@ Result<Snapshot, SnapshotError> load_snapshot(const FilePlace& file, const Mappi
                                         fmt::format("{}: {}", file.shown().string(), snapshot.error().what)});
     return snapshot;
 } catch (const std::bad_alloc&) {
-    return unexpected(
-        SnapshotError{SnapshotFault::no_room, file.shown().string() + ": there is no memory to read it"});
+    return unexpected(SnapshotError{SnapshotFault::no_room,
+                                    file.shown().string() + ": there is not enough memory to read it"});
 }
 
 std::optional<SnapshotOrigin> origin_of_snapshot_file(const FilePlace& file) {

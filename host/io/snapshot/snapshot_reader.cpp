@@ -14,7 +14,7 @@ namespace {
 
 using namespace snapshot;
 
-/// What a mapping file may say is no more.
+/// The limit of a mapping file.
 constexpr float kLogOddsMax = 100.0F;
 
 bool is_log_odds(float value) {
@@ -35,7 +35,7 @@ std::size_t known_voxels_of(const BrickTree& log_odds) {
     return known;
 }
 
-/// Counts are in the same bricks; what else was known there is in some of them.
+/// All counts have the same bricks; other layers have some of them.
 bool are_of_one_layer(const CountLayer& counts) {
     bool are = counts.hits.bricks() == counts.misses.bricks();
     counts.misses.for_each([&](MortonCode brick, const BrickView&) { are = are && counts.has(brick); });
@@ -50,7 +50,7 @@ struct Head {
     VoxelAges::Clock clock;
 };
 
-/// Empty if it cannot be one.
+/// Empty if it is not valid.
 std::optional<Head> read_head(const Block& block) {
     ByteReader reader(block.payload);
     Head head;
@@ -86,12 +86,12 @@ class Decoder {
         if (!blocks_.has_magic()) return no_snapshot();
         while (!is_done_) {
             const auto block = blocks_.next();
-            if (!block) return fail(SnapshotFault::damaged, blocks_.at(), "no whole and undamaged block");
+            if (!block) return fail(SnapshotFault::damaged, blocks_.at(), "no complete and undamaged block");
             if (has_head_ == (block->kind == BlockKind::head))
-                return fail(SnapshotFault::damaged, block->at, "not one head, and that first");
+                return fail(SnapshotFault::damaged, block->at, "not exactly one head at the beginning");
             if (const auto taken = take(*block); !taken) return unexpected(taken.error());
         }
-        if (!blocks_.is_over()) return fail(SnapshotFault::damaged, blocks_.at(), "more behind the end");
+        if (!blocks_.is_over()) return fail(SnapshotFault::damaged, blocks_.at(), "bytes after the end");
         FusedMap map(mapping_.map, std::move(layers_), has_undated_);
         return Snapshot{origin_, {std::move(map), std::move(histories_)}};
     }
@@ -131,12 +131,12 @@ class Decoder {
             case BlockKind::done:
                 return take_done(block);
         }
-        return fail(SnapshotFault::damaged, block.at, "a block of no kind");
+        return fail(SnapshotFault::damaged, block.at, "a block of an unknown kind");
     }
     static Taken records(const Block& block, bool are_taken) {
         if (are_taken) return Done{};
         return fail(SnapshotFault::damaged, block.at,
-                    fmt::format("the block {} has a record that cannot be", tag_of(block.kind)));
+                    fmt::format("the block {} has an invalid record", tag_of(block.kind)));
     }
     Taken bricks(const Block& block, BricksRead read) const {
         if (read != BricksRead::no_room) return records(block, read == BricksRead::all);
@@ -157,9 +157,10 @@ class Decoder {
                         fmt::format("its voxels are {} m, the mapping's are {} m", head->resolution_m,
                                     mapping_.map.resolution_m));
         if (origin_.mapping_crc32 != mapping_crc32_)
-            return fail(SnapshotFault::other_mapping, block.at,
-                        fmt::format("it belongs to the mapping of CRC-32 {:08x}, the one in force has {:08x}",
-                                    origin_.mapping_crc32, mapping_crc32_));
+            return fail(
+                SnapshotFault::other_mapping, block.at,
+                fmt::format("it belongs to the mapping with CRC-32 {:08x}, the present one has {:08x}",
+                            origin_.mapping_crc32, mapping_crc32_));
         return Done{};
     }
 

@@ -31,8 +31,8 @@ WallTime wall_now() {
     return wall_time(now.tv_sec, now.tv_nsec);
 }
 
-/// The other end sends nothing any more. An empty packet reads like that end: what tells them apart is that
-/// the other end has hung up, and that nothing with a byte in it waits.
+/// True if the other end has closed. An empty packet reads like that end. The difference: the other end has
+/// hung up, and no datagram with content is waiting.
 bool has_ended(int descriptor) {
     pollfd entry{descriptor, POLLRDHUP, 0};
     if (::poll(&entry, 1, 0) <= 0 || (entry.revents & (POLLRDHUP | POLLHUP)) == 0) return false;
@@ -43,7 +43,7 @@ bool has_ended(int descriptor) {
 std::string remedy(int error_number) {
     switch (error_number) {
         case ENODEV:
-            return " (is the adapter plugged in? `ip link show type can` names the interfaces there are)";
+            return " (is the adapter plugged in? `ip link show type can` lists the interfaces)";
         case ENETDOWN:
             return " (bring it up: `sudo ip link set NAME up type can bitrate 500000`, with your rates)";
         case EAFNOSUPPORT:
@@ -59,7 +59,7 @@ std::string remedy(int error_number) {
 std::vector<can_filter> kernel_filters(std::span<const IdFilter> filters) {
     std::vector<can_filter> kernel;
     for (const IdFilter& filter : filters) {
-        // Only standard data frames are ours.
+        // Octoskin uses standard data frames only.
         kernel.push_back({filter.can_id, filter.mask | CAN_EFF_FLAG | CAN_RTR_FLAG});
     }
     return kernel;
@@ -71,7 +71,7 @@ bool set(int descriptor, int level, int option, const Value& value) {
 }
 
 bool filter(int descriptor, std::span<const IdFilter> filters) {
-    // A mask of nothing lets everything pass.
+    // An empty mask lets everything pass.
     const std::vector<can_filter> kernel =
         filters.empty() ? std::vector<can_filter>{{}} : kernel_filters(filters);
     const auto bytes = static_cast<socklen_t>(kernel.size() * sizeof(can_filter));
@@ -81,7 +81,7 @@ bool filter(int descriptor, std::span<const IdFilter> filters) {
 bool set_options(int descriptor, const SocketOptions& options) {
     const can_err_mask_t errors = options.wants_error_frames ? CAN_ERR_MASK : 0;
     const bool is_filtered = filter(descriptor, options.filters);
-    // As large as the system allows, which may be less than asked for.
+    // As large as the system allows, which may be less than requested.
     (void)set(descriptor, SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes);
     return is_filtered && set(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1) &&
            set(descriptor, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors) &&
@@ -89,7 +89,7 @@ bool set_options(int descriptor, const SocketOptions& options) {
            want_stamps(descriptor) && set(descriptor, SOL_SOCKET, SO_RXQ_OVFL, 1);
 }
 
-/// 0, or why not.
+/// Returns 0, or the error number.
 int bind_to(int descriptor, const std::string& interface) {
     sockaddr_can address{};
     address.can_family = AF_CAN;
@@ -124,10 +124,10 @@ bool CanSocket::set_filters(std::span<const IdFilter> filters) {
 CanSocket::CanSocket(std::string interface, int descriptor, bool hears_itself)
     : interface_(std::move(interface)), descriptor_(descriptor), has_echo_(hears_itself) {
     if (descriptor_ < 0) return;
-    (void)::fcntl(descriptor_, F_SETFD, FD_CLOEXEC);  // no helper program may keep the bus open
+    (void)::fcntl(descriptor_, F_SETFD, FD_CLOEXEC);  // a helper program must not inherit the socket
     (void)::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
-    (void)want_stamps(descriptor_);   // Unix sockets have stamps too, on most kernels
-    (void)want_senders(descriptor_);  // which leaves descriptors no room
+    (void)want_stamps(descriptor_);   // most kernels give Unix sockets time stamps, too
+    (void)want_senders(descriptor_);  // which leaves no room for descriptors
     refuse_descriptors(descriptor_);
 }
 
@@ -175,8 +175,8 @@ Result<std::optional<Received>, SocketFault> CanSocket::receive(int& datagrams_l
     return std::optional<Received>{};
 }
 
-/// What came before a frame of ours goes before its echo; what comes meanwhile has its place behind, and a
-/// flood of it holds nothing up. A fault shows again when it is this socket's turn.
+/// Frames that arrived before an own frame come before its echo; later ones come after it. The time for this
+/// is limited, so that a flood cannot delay it. An error appears again at the next read of this socket.
 void CanSocket::take_what_came() {
     const WallTime begun = wall_now();
     for (std::size_t i = 0; i < kWaitingMax && waiting_.size() < kWaitingMax; ++i) {
@@ -209,13 +209,14 @@ Result<std::optional<CanSocket::Taken>, SocketFault> CanSocket::take_one() {
 Result<bool, SocketFault> CanSocket::send(const wire::CanFrame& frame) {
     const wire::SocketCanBytes raw = wire::to_socketcan(frame);
     if (has_echo_) take_what_came();
-    const WallTime handed_over = wall_now();  // not behind it: it wakes its receiver, which may run first
+    const WallTime handed_over =
+        wall_now();  // before the call, because it wakes the receiver, which may run first
     const ssize_t count = ::send(descriptor_, raw.bytes().data(), raw.size, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (count == static_cast<ssize_t>(raw.size)) {
         if (has_echo_) waiting_.push_back({.entry = {handed_over, frame}, .is_own = true});
         return true;
     }
-    // ENOBUFS: the interface's queue is full, as when nobody acknowledges.
+    // ENOBUFS: the queue of the interface is full, for example because no node acknowledges.
     if (errno == EAGAIN || errno == EWOULDBLOCK || errno == ENOBUFS || errno == EINTR) return false;
     return unexpected(fault(errno, "cannot send"));
 }

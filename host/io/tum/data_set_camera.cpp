@@ -10,18 +10,18 @@
 namespace octoskin::tum {
 namespace {
 
-/// The pixels of calibrations have centres of whole numbers, ours have such corners.
+/// In these calibrations whole numbers are the centres of pixels; in octoskin they are the corners.
 constexpr CameraIntrinsics intrinsics(double fx, double fy, double cx, double cy) {
     return {.width = 640, .height = 480, .fx = fx, .fy = fy, .cx = cx + 0.5, .cy = cy + 0.5};
 }
 
-/// Fault of a calibration's numbers; empty if a camera has them.
+/// The fault of a calibration's numbers; empty if a camera can have them.
 const char* fault_of(const CameraIntrinsics& camera) {
     const auto is_focal = [](double pixels) { return pixels >= 1.0 && pixels <= 100'000.0; };
-    if (!is_focal(camera.fx) || !is_focal(camera.fy)) return "focal lengths are from 1 to 100000 pixels";
+    if (!is_focal(camera.fx) || !is_focal(camera.fy)) return "focal lengths must be from 1 to 100000 pixels";
     const bool is_within =
         camera.cx >= 0.0 && camera.cx <= camera.width && camera.cy >= 0.0 && camera.cy <= camera.height;
-    return is_within ? nullptr : "the principal point is outside of the first image";
+    return is_within ? nullptr : "the principal point is outside the first image";
 }
 
 }  // namespace
@@ -33,10 +33,10 @@ std::optional<CameraIntrinsics> data_set_camera(std::string_view name) {
     if (name == "freiburg1") return intrinsics(517.3, 516.5, 318.6, 255.3);
     if (name == "freiburg2") return intrinsics(520.9, 521.0, 325.1, 249.7);
     if (name == "freiburg3") return intrinsics(535.4, 539.2, 320.1, 247.6);
-    // https://www.doc.ic.ac.uk/~ahanda/VaFRIC/codes.html; its fy is -480 as its y is upwards.
+    // https://www.doc.ic.ac.uk/~ahanda/VaFRIC/codes.html; its fy is -480 because its y axis points up.
     if (name == "icl_nuim") return intrinsics(481.2, 480.0, 319.5, 239.5);
-    // https://www.microsoft.com/en-us/research/project/rgb-d-dataset-7-scenes: the middle of the image is
-    // named as 320, 240.
+    // https://www.microsoft.com/en-us/research/project/rgb-d-dataset-7-scenes: it names 320, 240 as the image
+    // centre.
     if (name == "seven_scenes") return intrinsics(585.0, 585.0, 319.5, 239.5);
     return std::nullopt;
 }

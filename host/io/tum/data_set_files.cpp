@@ -8,11 +8,11 @@
 namespace octoskin::tum {
 namespace {
 
-/// depth.txt is the list of the TUM RGB-D benchmark and of ETH3D; the others also have the colour images, as
-/// that of ICL-NUIM and what the benchmark's associate.py prints.
+/// depth.txt is the list of the TUM RGB-D benchmark and of ETH3D. The other lists also contain the colour
+/// images, like that of ICL-NUIM and the output of the benchmark's associate.py.
 constexpr std::array<std::string_view, 5> kImageLists{"depth.txt", "associations.txt", "associated.txt",
                                                       "association.txt", "associate.txt"};
-/// ETH3D's: fx fy cx cy. That of frames whose poses are files: a 3 x 3 matrix.
+/// That of ETH3D: fx fy cx cy. That of frames with a pose file each: a 3 x 3 matrix.
 constexpr std::array<std::string_view, 2> kCalibrations{"calibration.txt", "camera-intrinsics.txt"};
 
 constexpr std::string_view kFramePrefix = "frame-";
@@ -41,7 +41,7 @@ std::vector<std::string> names_in(const NamedFolder& folder) {
     return names ? std::move(*names) : std::vector<std::string>{};
 }
 
-/// A file, or a link in its place, which is refused when it is opened.
+/// A file, or a link of that name, which is refused when it is opened.
 bool is_there(const NamedFolder& folder, std::string_view name) {
     const EntryKind kind = FilePlace(folder, std::string(name)).kind();
     return kind == EntryKind::file || kind == EntryKind::link;
@@ -54,7 +54,7 @@ std::string first_there(const NamedFolder& folder, const std::array<std::string_
     return found == names.end() ? std::string() : std::string(*found);
 }
 
-/// Of "frame-000012.depth.png"; empty for any other name.
+/// The number in "frame-000012.depth.png"; empty for any other name.
 std::optional<std::int64_t> frame_number(std::string_view name) {
     constexpr std::int64_t kNumberMax = 1'000'000'000;
     if (!name.starts_with(kFramePrefix) || !name.ends_with(kFrameImage)) return std::nullopt;
@@ -79,7 +79,7 @@ std::vector<NumberedFrame> frames_of(const std::vector<std::string>& names) {
     return frames;
 }
 
-/// Those that are there; a pattern stands for what it begins with.
+/// The existing ones; a pattern is compared with the end of a name.
 std::vector<std::string> trajectories(const std::vector<std::string>& names, std::string_view poses) {
     std::vector<std::string> found;
     const bool is_pattern = poses.starts_with('*');
@@ -115,7 +115,8 @@ Result<DataSetFiles, DepthSourceError> find_data_set(const NamedFolder& folder) 
         const auto found = trajectories(names, layout.poses);
         if (found.size() > 1) {
             return unexpected(DepthSourceError{folder.shown().string() + ": has " + found[0] + " and " +
-                                               found[1] + ": move away what is not of these images"});
+                                               found[1] +
+                                               ": move away those that do not belong to these images"});
         }
         if (found.empty()) continue;
         files.layout = &layout;

@@ -11,11 +11,11 @@ namespace octoskin::tum {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
-constexpr std::int64_t kSecondsMax = 9'000'000'000;  // so that nanoseconds fit
+constexpr std::int64_t kSecondsMax = 9'000'000'000;  // so that nanoseconds fit in 63 bits
 constexpr double kPositionMax = 1e6;
 constexpr double kTolerance = 0.01;  // of a quaternion's length, and of a rotation's numbers
 
-/// Cuts the first word off; empty if there is none.
+/// Removes the first word and returns it; empty if there is none.
 std::string_view take_word(std::string_view& line) {
     const std::size_t begin = std::min(line.find_first_not_of(kBlanks), line.size());
     line.remove_prefix(begin);
@@ -33,13 +33,13 @@ std::string_view without_plus(std::string_view word) {
     return word;
 }
 
-/// A decimal number: digits, and the place of its point among them.
+/// A decimal number: digits, and the position of its point.
 struct Decimal {
-    std::string digits;  ///< without zeros in front
+    std::string digits;  ///< without leading zeros
     std::int64_t point = 0;
 };
 
-/// "1305031102.16", "1.30503110216e+09", ".5", "7.": no sign but a plus.
+/// "1305031102.16", "1.30503110216e+09", ".5", "7."; no sign except a plus.
 std::optional<Decimal> parse_decimal(std::string_view word) {
     constexpr int kExponentMax = 1000;
     word = without_plus(word);
@@ -63,7 +63,7 @@ std::optional<Decimal> parse_decimal(std::string_view word) {
     return decimal;
 }
 
-/// Exactly, which a double would not be: seconds of today leave it 0.2 us.
+/// Exact; a double would not be: at present-day seconds its resolution is 0.2 us.
 std::optional<HostTime> parse_time(std::string_view word) {
     constexpr std::int64_t kPlacesMax = 10;  // of kSecondsMax
     constexpr std::int64_t kDecimals = 9;
@@ -109,7 +109,7 @@ Result<ImageLine, std::string> take_image(std::string_view& line) {
     const auto captured = parse_time(time);
     if (!captured) return refuse_time(time);
     const std::string_view file = take_word(line);
-    if (file.empty()) return unexpected(std::string("expected the name of an image behind the time"));
+    if (file.empty()) return unexpected(std::string("expected the name of an image after the time"));
     return ImageLine{*captured, std::string(file)};
 }
 
@@ -120,10 +120,10 @@ Result<ImageLine, std::string> parse_image_line(std::string_view line) {
     if (!image || is_blank(line)) return image;
     auto other = take_image(line);
     if (!other || !is_blank(line))
-        return unexpected(std::string("expected a time and the name of an image, found more"));
+        return unexpected(std::string("expected only a time and the name of an image, found more"));
     const bool is_depth = says_depth(image->file);
     if (is_depth == says_depth(other->file)) {
-        return unexpected("expected one depth image, and \"depth\" in its name or its folder's, found '" +
+        return unexpected("expected one depth image, with \"depth\" in its name or its folder's, found '" +
                           image->file + "' and '" + other->file + "'");
     }
     return is_depth ? image : other;
@@ -139,13 +139,13 @@ Result<PoseLine, std::string> parse_pose_line(std::string_view line) {
         const std::string_view word = take_word(line);
         const auto number = parse_number(word);
         if (!number || (std::isfinite(*number) && std::abs(*number) > kPositionMax)) {
-            return unexpected("expected tx ty tz qx qy qz qw behind the time, found '" +
-                              std::string(word.substr(0, 40)) + "' where a number must be");
+            return unexpected("expected tx ty tz qx qy qz qw after the time, found '" +
+                              std::string(word.substr(0, 40)) + "' in place of a number");
         }
         is_known &= std::isfinite(*number);
         value = *number;
     }
-    if (!is_blank(line)) return unexpected(std::string("expected a time and seven numbers, found more"));
+    if (!is_blank(line)) return unexpected(std::string("expected only a time and seven numbers, found more"));
     const Eigen::Quaterniond q_map_camera(values[6], values[3], values[4], values[5]);
     if (!is_known || q_map_camera.coeffs().isZero(0.0)) return PoseLine{*at, std::nullopt};
     if (std::abs(q_map_camera.norm() - 1.0) > kTolerance) {
@@ -160,7 +160,7 @@ Result<PoseLine, std::string> parse_pose_line(std::string_view line) {
 
 Result<std::vector<double>, std::string> parse_numbers(std::string_view text, std::size_t count_max) {
     std::vector<double> numbers;
-    while (!is_blank(text)) {  // a word less each time
+    while (!is_blank(text)) {  // each iteration removes a word
         const std::string_view word = take_word(text);
         const auto number = parse_number(word);
         if (!number) return unexpected("expected a number, found '" + std::string(word.substr(0, 40)) + "'");
@@ -184,7 +184,7 @@ Result<std::optional<Eigen::Isometry3d>, std::string> parse_pose_matrix(std::str
     const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
     if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kTolerance ||
         R.determinant() < 0.0) {
-        return unexpected(std::string("its upper left 3 x 3 numbers are no rotation"));
+        return unexpected(std::string("its upper left 3 x 3 numbers are not a rotation"));
     }
     if (T.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
         return unexpected(std::string("its last row is not 0 0 0 1"));

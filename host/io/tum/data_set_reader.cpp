@@ -13,8 +13,8 @@
 namespace octoskin::tum {
 namespace {
 
-/// Why a file is none of the data set's: its name leads out of the folder, or to a link. Whether it is there,
-/// and an image, shows later.
+/// Why a file cannot belong to the data set: its name leads out of the folder, or to a link. Whether it
+/// exists and is an image is checked later.
 std::optional<std::string> elsewhere_fault(const FilePlace& image) {
     const auto opened = image.open();
     if (opened) return std::nullopt;
@@ -75,7 +75,7 @@ Status<DepthSourceError> DataSetReader::read_list() {
     if (images_.empty() && bad->first) return unexpected(*bad->first);
     if (images_.empty()) {
         return unexpected(
-            DepthSourceError{list.shown().string() + ": names no image: expected lines of TIME FILE"});
+            DepthSourceError{list.shown().string() + ": it names no image: expected lines of TIME FILE"});
     }
     counts_.bad = std::move(*bad);
     std::ranges::stable_sort(images_, {}, [](const Image& image) { return image.named.captured; });
@@ -92,7 +92,7 @@ void DataSetReader::count_without_pose(const Image& image) {
     if (counts_.without_pose++ > 0) return;
     const HostTime captured = image.named.captured;
     counts_.first_without_pose =
-        FirstWithoutPose{about(image, "no pose about its time"), captured, trajectory_.gap_about(captured)};
+        FirstWithoutPose{about(image, "no pose near its time"), captured, trajectory_.gap_about(captured)};
 }
 
 Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
@@ -139,9 +139,9 @@ std::optional<DepthSourceError> DataSetReader::missing_image() const {
         if (opened) continue;
         const FolderFault fault = opened.error().fault;
         std::string what = opened.error().reason();
-        if (fault == FolderFault::not_permitted) what = "may not be read: give yourself the right to";
+        if (fault == FolderFault::not_permitted) what = "may not be read: get the permission to read it";
         if (fault == FolderFault::absent)
-            what = "is not there: unpack the data set anew, or take out the line";
+            what = "does not exist: unpack the data set again, or remove the line";
         return about(image, what);
     }
     return std::nullopt;

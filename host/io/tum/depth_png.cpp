@@ -13,13 +13,13 @@ namespace octoskin::tum {
 namespace {
 
 constexpr png_uint_32 kSideMax = 4096;
-/// Bytes of packed pixels (chunk IDAT) for the last row, at most 8 KiB if they do not shrink, and behind it.
-/// A megabyte of them may unpack to a gigabyte, which takes 12 s.
+/// Limit of the compressed pixels (chunk IDAT) from the last row to the end of the file; the last row needs
+/// at most 8 KiB if it does not compress. A megabyte of them may decompress to a gigabyte, which takes 12 s.
 constexpr std::size_t kPackedLastMax = 64U << 10U;
 constexpr png_uint_32 kPackedPixels = 0x49'44'41'54U;  // "IDAT"
 
-/// What libpng works on. It reports errors by a jump out of itself, so nothing with a destructor may stand
-/// between setjmp() and its calls: all that has one lives here.
+/// The state for libpng, which reports errors by a long jump. Nothing with a destructor may be created
+/// between setjmp() and the calls, so all such objects are members here.
 struct Decoding {
     Decoding() = default;
     Decoding(const Decoding&) = delete;
@@ -33,7 +33,7 @@ struct Decoding {
     DepthPng image;
     std::vector<png_bytep> rows;
     std::size_t packed_left =
-        std::numeric_limits<std::size_t>::max();  ///< packed pixels that may be read yet
+        std::numeric_limits<std::size_t>::max();  ///< compressed pixels that may still be read
 };
 
 [[noreturn]] void keep_error(png_structp png, png_const_charp message) {
@@ -47,7 +47,7 @@ void read_bytes(png_structp png, png_bytep bytes, std::size_t count) {
     Decoding& decoding = *static_cast<Decoding*>(png_get_io_ptr(png));
     if (png_get_io_chunk_type(png) == kPackedPixels) {
         if (count > decoding.packed_left)
-            png_error(png, "over 64 KiB of pixels lie in and behind its last row");
+            png_error(png, "the last row and the data after it have over 64 KiB");
         decoding.packed_left -= count;
     }
     if (std::fread(bytes, 1, count, decoding.file.get()) != count) png_error(png, "the file ends early");
@@ -56,7 +56,7 @@ void read_bytes(png_structp png, png_bytep bytes, std::size_t count) {
 bool read_header(Decoding& decoding) {
     if (setjmp(png_jmpbuf(decoding.png)) != 0) return false;
     png_set_user_limits(decoding.png, kSideMax, kSideMax);
-    // Text, profiles and what else may stand beside the pixels: a kilobyte of it can take 60 ms to unpack.
+    // Skips text, profiles and other data beside the pixels: decompressing a kilobyte of them can take 60 ms.
     png_set_keep_unknown_chunks(decoding.png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_set_read_fn(decoding.png, &decoding, read_bytes);
     png_read_info(decoding.png, decoding.info);
@@ -69,7 +69,7 @@ bool read_pixels(Decoding& decoding) {
     const int passes = png_set_interlace_handling(decoding.png);
     for (int pass = 0; pass < passes; ++pass) {
         for (png_bytep row : decoding.rows) {
-            // With the last row libpng unpacks all that is behind it.
+            // With the last row libpng decompresses everything after it.
             if (pass == passes - 1 && row == decoding.rows.back()) decoding.packed_left = kPackedLastMax;
             png_read_row(decoding.png, row, nullptr);
         }
@@ -94,7 +94,7 @@ Result<DepthPng, std::string> read_depth_png(const FilePlace& file) {
     if (!opened) {
         const FolderError& error = opened.error();
         if (error.fault == FolderFault::not_a_file)
-            return unexpected(std::string("is a pipe or a device, not an ordinary file"));
+            return unexpected(std::string("is a pipe or a device, not a regular file"));
         const bool is_elsewhere = error.fault == FolderFault::link || error.fault == FolderFault::outside;
         return unexpected(is_elsewhere ? error.reason() : std::string("cannot be opened"));
     }
@@ -103,13 +103,13 @@ Result<DepthPng, std::string> read_depth_png(const FilePlace& file) {
     if (!decoding.file) return unexpected(std::string("cannot be opened"));
     decoding.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoding, keep_error, ignore_warning);
     if (decoding.png != nullptr) decoding.info = png_create_info_struct(decoding.png);
-    if (decoding.info == nullptr) return unexpected(std::string("no memory to read it"));
+    if (decoding.info == nullptr) return unexpected(std::string("not enough memory to read it"));
     if (!read_header(decoding)) return unexpected("cannot be read as PNG: " + decoding.complaint);
     const int bits = png_get_bit_depth(decoding.png, decoding.info);
     if (bits != 16 || png_get_color_type(decoding.png, decoding.info) != PNG_COLOR_TYPE_GRAY)
         return unexpected(std::string("expected one grey channel of 16 bits, as depth images have"));
     make_room(decoding);
-    if (!read_pixels(decoding)) return unexpected("cannot be read whole: " + decoding.complaint);
+    if (!read_pixels(decoding)) return unexpected("cannot be read completely: " + decoding.complaint);
     return std::move(decoding.image);
 }
 

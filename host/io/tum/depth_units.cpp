@@ -5,13 +5,13 @@
 namespace octoskin::tum {
 namespace {
 
-/// Of the pixels that have a value, how many are ...
+/// Counts of the pixels that have a value.
 struct Shares {
     std::uint64_t all = 0;
-    std::uint64_t too_near = 0;     ///< nearer than depth_min_m, as they are read
-    std::uint64_t within_1_m = 0;   ///< as they are read
-    std::uint64_t no_fives = 0;     ///< values that are no multiple of 5
-    std::uint64_t over_10_000 = 0;  ///< values: 10 m in millimetres
+    std::uint64_t too_near = 0;     ///< nearer than depth_min_m, at the present scale
+    std::uint64_t within_1_m = 0;   ///< at the present scale
+    std::uint64_t no_fives = 0;     ///< values that are not multiples of 5
+    std::uint64_t over_10_000 = 0;  ///< values above 10 m in millimetres
 };
 
 Shares shares_of(const PixelValues& values, const rig::DataSetDepth& scale, double depth_min_m) {
@@ -34,11 +34,11 @@ bool are_nearly_all(std::uint64_t part, std::uint64_t all) {
     return 20 * part >= 19 * all;
 }
 
-/// "; if they are millimetres, ..."
+/// "; if the values are millimetres, ..."
 std::string remedy(const rig::DataSetDepth& scale) {
     if (scale.units_per_m <= 1000.0)
-        return "set data_set.depth_units_per_m of the rig's camera to what the data set says, or depth_min_m "
-               "lower";
+        return "set data_set.depth_units_per_m of the rig's camera to the data set's value, or lower "
+               "depth_min_m";
     return "if the values are millimetres, set data_set.depth_units_per_m: 1000 in the camera of a --rig";
 }
 
@@ -59,7 +59,7 @@ std::optional<std::string> doubt_units(const PixelValues& values, const rig::Dat
     if (scale.units_per_m != rig::DataSetDepth{}.units_per_m) return std::nullopt;
     if (2 * shares.no_fives > shares.all && are_nearly_all(shares.all - shares.over_10_000, shares.all)) {
         return fmt::format(
-            "{:.0f} % of the values are no multiple of 5, as a camera's millimetres are at {:g} units a "
+            "{:.0f} % of the values are not multiples of 5, as a camera's millimetres are at {:g} units a "
             "metre: {}",
             percent(shares.no_fives), scale.units_per_m, remedy(scale));
     }

@@ -15,15 +15,14 @@ bool is_content(std::string_view line) {
     return begin != std::string_view::npos && line[begin] != '#';
 }
 
-/// Why a list is not opened.
+/// Why a list cannot be opened.
 std::string reason_of(const FolderError& error) {
     switch (error.fault) {
         case FolderFault::not_a_file:
-            return "is a pipe or a device, not an ordinary file";
+            return "is a pipe or a device, not a regular file";
         case FolderFault::absent:
             return "no such file: a data set has a list of its depth images and the poses of the camera, "
-                   "depth.txt "
-                   "and groundtruth.txt; unpack it anew";
+                   "depth.txt and groundtruth.txt; unpack it again";
         case FolderFault::link:
         case FolderFault::outside:
             return error.reason();
@@ -57,15 +56,15 @@ Result<BadLines, DepthSourceError> read_lines(const FilePlace& place, const Take
     if (!lines) return unexpected(lines.error());
     const std::filesystem::path file = place.shown();
     BadLines bad;
-    while (lines->next() != LineStream::End::nothing_left) {  // ends with the file
+    while (lines->next() != LineStream::End::nothing_left) {  // until the end of the file
         if (lines->is_cut()) {
-            bad.add(line_error(file, lines->number(), "longer than 4096 bytes: no line of a data set"));
+            bad.add(line_error(file, lines->number(), "longer than 4096 bytes: not a line of a data set"));
         } else if (is_content(lines->line())) {
             if (const auto taken = take(lines->number(), lines->line()); !taken)
                 bad.add(line_error(file, lines->number(), taken.error()));
         }
     }
-    if (lines->has_failed()) return unexpected(DepthSourceError{file.string() + ": cannot be read on"});
+    if (lines->has_failed()) return unexpected(DepthSourceError{file.string() + ": reading failed"});
     return bad;
 }
 
@@ -76,12 +75,12 @@ Result<std::string, DepthSourceError> read_small_file(const FilePlace& place) {
         return unexpected(DepthSourceError{place.shown().string() + ": " + what});
     };
     std::string text;
-    while (lines->next() != LineStream::End::nothing_left) {  // ends with the file, or its limit
+    while (lines->next() != LineStream::End::nothing_left) {  // until the end of the file, or its limit
         text += lines->line() + '\n';
         if (lines->is_cut() || text.size() > kLineBytesMax)
-            return refuse("longer than 4096 bytes: no pose or calibration");
+            return refuse("longer than 4096 bytes: not a pose or a calibration");
     }
-    if (lines->has_failed()) return refuse("cannot be read on");
+    if (lines->has_failed()) return refuse("reading failed");
     return text;
 }
 

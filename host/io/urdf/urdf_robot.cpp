@@ -35,14 +35,14 @@ std::optional<JointKind> kind_of(const urdf::Joint& joint) {
     return std::nullopt;
 }
 
-/// The kinematics refuse another length, too; here it is known what was written.
+/// The kinematics refuse such an axis, too; but here the text of the file is known.
 std::string axis_fault_of(const urdf::Vector3& axis) {
     constexpr double kUnitTolerance = 1e-6;
     const double length = std::hypot(axis.x, axis.y, axis.z);
     if (std::abs(length - 1.0) <= kUnitTolerance) return "";
     const std::string found =
         fmt::format("expected an axis of length 1, found <axis xyz=\"{} {} {}\">", axis.x, axis.y, axis.z);
-    // Not a number is no length either.
+    // Also true for a NaN.
     if (!(length > 0.0) || !std::isfinite(length)) return found;
     return fmt::format("{} of length {:.4g}: scale it to \"{:.6g} {:.6g} {:.6g}\"", found, length,
                        axis.x / length, axis.y / length, axis.z / length);
@@ -53,7 +53,7 @@ const char* name_of_other(const urdf::Joint& joint) {
     return joint.type == urdf::Joint::PLANAR ? "planar" : "of an unknown type";
 }
 
-/// Why a joint cannot be taken, and in a word; or nothing.
+/// Why a joint cannot be used, also in short; empty if it can.
 struct Refusal {
     std::string what;
     std::string kind;
@@ -67,7 +67,7 @@ std::optional<Refusal> refusal_of(const rig::UrdfDocument& document, const urdf:
             "type=\"fixed\"",
             name_of_other(joint)};
     }
-    if (*kind == JointKind::fixed) return std::nullopt;  // a <mimic> left in it says nothing
+    if (*kind == JointKind::fixed) return std::nullopt;  // a <mimic> on a fixed joint has no effect
     if (joint.mimic) {
         return Refusal{
             "expected a joint with a position of its own, found a mimic joint: make it type=\"fixed\", or "
@@ -78,7 +78,7 @@ std::optional<Refusal> refusal_of(const rig::UrdfDocument& document, const urdf:
     if (needs_limits && !joint.limits) return Refusal{"expected <limit>, found none", "no limit"};
     if (needs_limits && document.is_upper_missing(joint.name)) {
         return Refusal{
-            "expected <limit> with lower and upper, found no upper, for which URDF takes 0: write it",
+            "expected <limit> with lower and upper, found no upper, which URDF treats as 0: write it",
             "no upper limit"};
     }
     auto fault = axis_fault_of(joint.axis);
@@ -101,7 +101,7 @@ JointDescription to_description(const urdf::Joint& joint) {
     return description;
 }
 
-/// The joints below `base`, breadth first. urdfdom has made sure that it is a tree, so each comes once.
+/// The joints below `base`, breadth first. urdfdom has checked that they form a tree, so each appears once.
 Result<std::vector<JointDescription>, rig::RigError> joints_below(const rig::UrdfDocument& document,
                                                                   const urdf::Link& base) {
     std::vector<JointDescription> descriptions;
@@ -132,7 +132,7 @@ Result<RobotModel, rig::RigError> read_robot_model(const FilePlace& urdf, const 
     const auto base = document->model().getLink(base_link);
     if (!base)
         return unexpected(
-            document->error("link", base_link, "expected this base link, found none of its name"));
+            document->error("link", base_link, "expected this base link, found no link with its name"));
     const auto joints = joints_below(*document, *base);
     if (!joints) return unexpected(joints.error());
     auto model = RobotModel::build(base_link, *joints, moved);

@@ -1,5 +1,5 @@
-// octoskin_board: the flashed image on an emulated NUCLEO-G474RE. A program of its own because of Unicorn's
-// licence.
+// octoskin_board: the flashed image on an emulated NUCLEO-G474RE. A separate program because Unicorn is under
+// the GPL.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -31,12 +31,13 @@ double cpu_seconds() {
 }
 
 std::string gateway_report(const std::string& interface, const GatewayCounts& counts) {
-    return fmt::format("{}: {} frames sent, {} not; {} received, {} of them for want of room not passed on",
-                       interface, counts.sent, counts.not_sent, counts.received + counts.not_received,
-                       counts.not_received);
+    return fmt::format(
+        "{}: {} frames sent, {} not; {} received, {} of them not forwarded, the bus had no room", interface,
+        counts.sent, counts.not_sent, counts.received + counts.not_received, counts.not_received);
 }
 
-/// The board alone with a partner that acknowledges, and perhaps the host's SYNC.
+/// Runs the board alone on its bus, with another controller that acknowledges, and with the host's SYNC if
+/// asked for.
 Status<AppError> run(const Arguments& arguments, Bench& bench) {
     sim::SimulatedCanBus bus({bench.config().nominal_bitrate, bench.config().data_bitrate});
     std::optional<candump::LogWriter> log;

@@ -49,7 +49,8 @@ Bench::SceneOfSensor scene_over(sim::LinkSocket& socket) {
             socket.send(sim::WhatIsSeen{sensor, index, middle, roi});
             const auto answer = socket.receive();
             const auto* seen = answer ? std::get_if<sim::Seen>(&*answer) : nullptr;
-            if (seen == nullptr) throw sim::BoardLinkError("board link: no answer to what is seen");
+            if (seen == nullptr)
+                throw sim::BoardLinkError("board link: no answer to a question for a sensor's view");
             return seen->what;
         };
     };
@@ -67,7 +68,7 @@ void serve(Bench& bench, sim::LinkSocket& socket) {
         } else if (std::holds_alternative<sim::AskSummary>(*message)) {
             socket.send(summary_of(board));
         } else {
-            throw sim::BoardLinkError("board link: an order that is none");
+            throw sim::BoardLinkError("board link: an unknown command");
         }
     }
 }

@@ -41,7 +41,7 @@ struct EvaluateOptions {
     std::string configuration = kDefaultMapping;
 };
 
-/// Nobody recorded in which world a data set was made.
+/// A data set has no world file to judge its maps against.
 [[noreturn]] void refuse_data_set(const std::filesystem::path& data_set) {
     throw CommandFailure({ExitCode::usage, data_set.string() +
                                                ": a data set has no ground truth of its world, so its maps "
@@ -53,7 +53,7 @@ Scene judged(Scene scene) {
     return scene;
 }
 
-/// The scene of `recording`, with whatever is given in its place.
+/// The scene of `recording`; files given in `options` replace its own.
 Scene recorded_scene(const FilePlace& recording, const EvaluateOptions& options) {
     auto found = read_recorded_scene(recording, {options.scenario, options.world});
     if (!found) throw CommandFailure(found.error());
@@ -67,7 +67,7 @@ evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resoluti
     config.external_camera = rig.camera;
     if (const auto fault = evaluation::region_fault(config.region, resolution_m, rig.T_map_base))
         throw CommandFailure({ExitCode::bad_config, scene.scenario.error("region", *fault).message()});
-    spdlog::info("ground truth: a noise-free camera goes round the scene");
+    spdlog::info("ground truth: rendering the tour of a noise-free camera");
     auto truth = evaluation::build_truth(
         scene.world, evaluation::render_survey(scene.world, survey_config_of(scene.scenario)), config,
         rig.T_map_base);
@@ -84,7 +84,7 @@ bool is_papers(const rig::Rig& rig, const Scene& scene) {
                                 shipped_file("hw/worlds/experiment.scenario.yaml"));
 }
 
-/// The figures with all that they depend on.
+/// The figures and their provenance.
 evaluation::Results results_of(const std::vector<evaluation::Run>& runs, const rig::Rig& rig,
                                const Scene& scene, const FilePlace& rig_file) {
     auto results =
@@ -95,7 +95,8 @@ evaluation::Results results_of(const std::vector<evaluation::Run>& runs, const r
 
 struct Judged {
     evaluation::Results results;
-    std::optional<AppError> lost = std::nullopt;  ///< most of the recording, though the figures are there
+    std::optional<AppError> lost =
+        std::nullopt;  ///< set if most of the recording was lost, although there are figures
 };
 
 Judged judge_recording(const EvaluateOptions& options) {
@@ -134,7 +135,7 @@ Judged judge_recording(const EvaluateOptions& options) {
             loss_of(*playback)};
 }
 
-/// Says so if `rig` is most likely not the one that the map was made with.
+/// Warns if `rig` is probably not the one that the map was made with.
 void doubt_rig(const EvaluateOptions& options, const rig::Rig& rig, const MapProvenance& provenance) {
     const std::uint32_t hash = rig::rig_hash(rig);
     if (provenance.origin) {
@@ -147,7 +148,7 @@ void doubt_rig(const EvaluateOptions& options, const rig::Rig& rig, const MapPro
     const auto own = RecordingPaths(*provenance.recording).rig();
     const auto recorded = rig::read_rig(own);
     if (!recorded) {
-        spdlog::warn("{}; so nothing says whether {} is the rig that the map was made with",
+        spdlog::warn("{}; it is unknown whether {} is the rig that the map was made with",
                      recorded.error().message(), options.rig.string());
     } else if (rig::rig_hash(*recorded) != hash) {
         spdlog::warn(
@@ -157,9 +158,9 @@ void doubt_rig(const EvaluateOptions& options, const rig::Rig& rig, const MapPro
     }
 }
 
-/// The one to give for a map: what it says that it was made with, else the recording's.
+/// The rig file to name in a remedy: the map's provenance, else the recording's rig.
 std::string rig_to_give(const MapProvenance& provenance) {
-    // Not looked for: a map of somebody else would choose where.
+    // The file is not opened: a map from an untrusted source could name any path.
     if (provenance.origin) return provenance.origin->rig.string();
     if (provenance.recording) {
         const FilePlace own = RecordingPaths(*provenance.recording).rig();
@@ -168,13 +169,12 @@ std::string rig_to_give(const MapProvenance& provenance) {
     return "RECORDING/rig.yaml";
 }
 
-/// The rig that says where the map's grid lies.
+/// The rig with the pose of the map's grid.
 rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provenance) {
     if (options.rig.empty()) {
         throw CommandFailure(
-            {ExitCode::usage,
-             "a map alone does not say where the robot and the camera stood in it: give --rig " +
-                 rig_to_give(provenance) + ", which has the map's shift (T_map_base)"});
+            {ExitCode::usage, "a map does not contain the poses of robot and camera: give --rig " +
+                                  rig_to_give(provenance) + ", which has the map's shift (T_map_base)"});
     }
     rig::Rig rig = value_or_fail(read_given_rig(options.rig, options.robot));
     doubt_rig(options, rig, provenance);
@@ -184,12 +184,11 @@ rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provena
 Scene scene_of_map(const EvaluateOptions& options, const std::optional<FilePlace>& recording) {
     if (recording) return recorded_scene(*recording, options);
     if (options.scenario.empty()) {
-        throw CommandFailure(
-            {ExitCode::usage,
-             "no recording lies beside this map, and a map does not say in which world it was made: give "
-             "--scenario (shipped: " +
-                 shipped_file("hw/worlds/experiment.scenario.yaml").string() +
-                 "), or --recording, the one that it was made from"});
+        throw CommandFailure({ExitCode::usage,
+                              "no recording is beside this map, and a map does not name its world: give "
+                              "--scenario (shipped: " +
+                                  shipped_file("hw/worlds/experiment.scenario.yaml").string() +
+                                  "), or --recording, the recording that it was made from"});
     }
     auto scene = read_scene(options.scenario, options.world);
     if (!scene) throw CommandFailure(scene.error());
@@ -199,8 +198,8 @@ Scene scene_of_map(const EvaluateOptions& options, const std::optional<FilePlace
 
 Judged judge_map(const EvaluateOptions& options) {
     MapReadLimits limits;
-    // Whoever made the map may have clamped wider than octoskin does (OctoMap's own defaults are -2
-    // and 3.511).
+    // Another program may have clamped the map at wider limits than octoskin (OctoMap's defaults are -2 and
+    // 3.511).
     limits.map.log_odds_min = -20.0F;
     limits.map.log_odds_max = 20.0F;
     const auto loaded = load_map(options.input, limits);
@@ -221,14 +220,14 @@ Judged judge_map(const EvaluateOptions& options) {
     return {results_of(runs, rig, scene, options.rig)};
 }
 
-/// Before any work.
+/// Called before any work is done.
 void check_output(const std::filesystem::path& json) {
     std::error_code error;
-    // A link, as /dev/stdout is, is no file that would be overwritten.
+    // A link such as /dev/stdout is not a file that would be overwritten.
     const bool is_file = std::filesystem::is_regular_file(std::filesystem::symlink_status(json, error));
     if (json.extension() != ".json" && is_file) {
         throw CommandFailure({ExitCode::cannot_create,
-                              json.string() + ": is there, and is no .json file; it is not overwritten"});
+                              json.string() + ": exists and is not a .json file; it is not overwritten"});
     }
     if (const auto checked = check_text_place(json); !checked) throw CommandFailure(checked.error());
 }
@@ -236,7 +235,7 @@ void check_output(const std::filesystem::path& json) {
 void evaluate_input(const EvaluateOptions& options) {
     const bool is_recording = std::filesystem::is_directory(options.input);
     if (is_recording && !options.recording.empty()) {
-        throw CommandFailure({ExitCode::usage, "--recording is of a map, and " + options.input.string() +
+        throw CommandFailure({ExitCode::usage, "--recording applies to a map, and " + options.input.string() +
                                                    " is a recording: leave it out"});
     }
     if (!options.json.empty()) check_output(options.json);

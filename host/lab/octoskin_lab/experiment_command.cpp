@@ -27,9 +27,9 @@ void run_experiment(const StudyRequest& request) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     print_text(evaluation::metrics_table(*results) + "\n");
     print(
-        "Two yardsticks: occupied to lost count voxels against what a careful camera would have mapped, "
+        "Two ground truths: occupied to lost count voxels against the map of a noise-free camera, "
         "precision to\n"
-        "brier judge by where the world's surfaces are. docs/evaluation.md has both.\n");
+        "brier judge by where the world's surfaces are. docs/reference/evaluation.md has both.\n");
     print("{:.0f} s in all. Look at {}\n", seconds,
           std::filesystem::absolute(request.out / "report.html").string());
 }

@@ -13,8 +13,8 @@ void add_model_path(CLI::App& command) {
         .add_option_function<std::vector<std::string>>(
             "--model-path",
             [](const std::vector<std::string>& folders) { sim::put_model_folders_first(folders); },
-            "Folders in which the models of the world's model:// lie, before those of SDF_PATH, "
-            "GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH; with colons between them")
+            "Folders for the world's model:// URIs, searched before those of SDF_PATH, "
+            "GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH and GAZEBO_MODEL_PATH; separated by colons")
         ->delimiter(':')
         ->type_name("FOLDERS")
         ->expected(1)

@@ -13,23 +13,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Or why the file cannot be used.
+/// CRC-32 of a file's content, or why the file cannot be used.
 using Checksum = std::function<Result<std::uint32_t, std::string>(const FilePlace&)>;
 
-/// A kind of file that a recording is judged with.
+/// A kind of file that the evaluation of a recording needs.
 struct Part {
     std::string kind;      ///< "world"; with dashes before it, the option that gives another one
-    SourceFile recorded;   ///< as meta.yaml has it
-    fs::path given;        ///< as the command line has it; empty: not at all
-    FilePlace copy;        ///< that simulate put into the recording; empty: none that is whole
-    Checksum checksum_of;  ///< as it was made when recording
+    SourceFile recorded;   ///< as named in meta.yaml
+    fs::path given;        ///< on the command line; empty: not given
+    FilePlace copy;        ///< written into the recording by simulate; empty: none that is complete
+    Checksum checksum_of;  ///< computed as when recording
 };
 
 std::string describe(const fs::path& file, const std::optional<std::uint32_t>& crc32) {
     return file.filename().string() + (crc32 ? " (CRC-32 " + crc_text(*crc32) + ")" : "");
 }
 
-/// Whether `file` is what was recorded: by its content, or by its name where meta.yaml has no more.
+/// Whether `file` is the recorded one: by its checksum, or by its name if meta.yaml has no checksum.
 bool is_recorded(const Part& part, const FilePlace& file) {
     if (!part.recorded.crc32) return file.filename() == part.recorded.file.filename().string();
     const auto crc32 = part.checksum_of(file);
@@ -42,12 +42,12 @@ FilePlace take_given(const Part& part, std::vector<std::string>& warnings) {
         warnings.push_back("recorded in " + describe(part.recorded.file, part.recorded.crc32) +
                            ", judging in " +
                            describe(part.given, crc32 ? std::optional(*crc32) : std::nullopt) + ", as --" +
-                           part.kind + " says");
+                           part.kind + " specifies");
     }
     return part.given;
 }
 
-/// Why `file`, which has the recorded name, is not what was recorded.
+/// Why `file`, which has the recorded name, is not the recorded file.
 AppError other_file(const Part& part, const RecordingPaths& recording, const FilePlace& file) {
     const auto crc32 = part.checksum_of(file);
     const std::string begin = recording.directory.string() + ": recorded in " +
@@ -55,7 +55,7 @@ AppError other_file(const Part& part, const RecordingPaths& recording, const Fil
     const std::string end = ": give --" + part.kind;
     if (!crc32)
         return {ExitCode::bad_data,
-                begin + "and what has its name cannot be used (" + crc32.error() + ")" + end};
+                begin + "and the file of that name cannot be used (" + crc32.error() + ")" + end};
     return {ExitCode::bad_data, begin + "judging in " + file.shown().string() + " (CRC-32 " +
                                     crc_text(*crc32) + "), which is another" + end};
 }
@@ -69,7 +69,7 @@ Result<FilePlace, AppError> find(const Part& part, const RecordingPaths& recordi
             AppError{ExitCode::usage, recording.meta().shown().string() + " names no " + part.kind + remedy});
     }
     const fs::path name = part.recorded.file.filename();
-    // Never by the path that meta.yaml has: a recording of somebody else's would choose what is opened.
+    // The path in meta.yaml is never opened: a recording from an untrusted source could name any file.
     const FilePlace shipped(shipped_file("hw/worlds/" + name.string()));
     if (shipped.is_there() && part.recorded.crc32 && is_recorded(part, shipped)) return shipped;
     if (!part.copy.empty()) return part.copy;
@@ -89,7 +89,7 @@ Result<FilePlace, AppError> find(const Part& part, const RecordingPaths& recordi
 }
 
 Result<std::uint32_t, std::string> scenario_checksum(const FilePlace& file) {
-    // Its world is looked for by itself.
+    // Its world is found separately.
     const auto scenario = sim::read_scenario(file, sim::WorldOf::others);
     if (!scenario) return unexpected(scenario.error().message());
     const auto crc32 = source_file(file, scenario->extended_files).crc32;
@@ -104,7 +104,8 @@ Result<std::uint32_t, std::string> world_checksum(const FilePlace& file) {
     return unexpected(opened ? file.shown().string() + " cannot be read" : opened.error().message());
 }
 
-/// The world; empty: the scenario's own, which only the recording of a robot may mean, and with a warning.
+/// The world file. Empty: the scenario's own; only the recording of a real robot may leave it out, with a
+/// warning.
 Result<FilePlace, AppError> find_world(const RecordingMeta& meta, const GivenScene& given, FilePlace copy,
                                        const RecordingPaths& recording, const FilePlace& scenario,
                                        std::vector<std::string>& warnings) {
@@ -116,7 +117,7 @@ Result<FilePlace, AppError> find_world(const RecordingMeta& meta, const GivenSce
     return find({"world", meta.world, given.world, std::move(copy), world_checksum}, recording, warnings);
 }
 
-/// Whether the recording has its scene; a scene that is not what simulate put there (bad_data) is none.
+/// Whether the recording contains its scene. Error (bad_data): the scene is not as simulate wrote it.
 Result<bool, AppError> has_scene(const RecordingMeta& meta, const RecordingPaths& recording) {
     if (!meta.scene_crc32) return false;
     const auto found = crc32_of_scene(recording);
@@ -125,7 +126,7 @@ Result<bool, AppError> has_scene(const RecordingMeta& meta, const RecordingPaths
                 recording.directory.string() +
                     ": its scene (scenario.yaml, world.sdf and what they name) is " +
                     (found ? "not what `octoskin-lab simulate` put there (CRC-32 " + crc_text(*found) +
-                                 ", meta.yaml says " + crc_text(*meta.scene_crc32) + ")"
+                                 ", in meta.yaml " + crc_text(*meta.scene_crc32) + ")"
                            : "missing, or cannot be read") +
                     ": put it there again, or give --scenario and --world");
 }

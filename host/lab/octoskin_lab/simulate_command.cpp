@@ -25,7 +25,7 @@ struct SimulateOptions {
     bool allows_violations = false;
 };
 
-/// octoskin_board lies beside this program.
+/// octoskin_board is in the same folder as this program.
 std::filesystem::path board_program() {
     std::error_code error;
     return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "octoskin_board";
@@ -37,14 +37,15 @@ sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
         throw CommandFailure(
             {ExitCode::unavailable,
              boards.program.string() +
-                 ": not there; no package has it. In octoskin's sources: sudo apt install libunicorn-dev, "
+                 ": not found; no package contains it. In octoskin's sources: sudo apt install "
+                 "libunicorn-dev, "
                  "then cmake --preset host-release -DOCTOSKIN_EMULATED_BOARD=ON && cmake --build --preset "
                  "host-release --target octoskin_board. Without --board, the node core is simulated"});
     }
     if (!std::filesystem::exists(boards.image)) {
         throw CommandFailure({ExitCode::no_input,
                               boards.image.string() +
-                                  ": no such image; name one with --image: octoskin's sources build it with "
+                                  ": no such image; give one with --image: octoskin's sources build it with "
                                   "the preset firmware-release"});
     }
     return boards;
@@ -70,7 +71,7 @@ void simulate(const SimulationRequest& request, bool allows_violations) {
         100.0 * *std::max_element(summary->i2c_busy_fraction.begin(), summary->i2c_busy_fraction.end()));
     if (summary->violations.empty() || allows_violations) return;
     throw CommandFailure(
-        {ExitCode::failed, "the image does what the chip's manuals forbid:\n" + summary->violations});
+        {ExitCode::failed, "the image breaks rules of the chip's manuals:\n" + summary->violations});
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ void add_simulate_command(CLI::App& app) {
     add_model_path(*command);
     command
         ->add_option("--seed", request->seed,
-                     "Noise, parts, clocks, and where the world stands in the map's grid")
+                     "Seed of noise, parts, clocks, and of the world's offset in the map's grid")
         ->capture_default_str()
         ->check(seed());
     command->add_flag(
@@ -114,17 +115,17 @@ void add_simulate_command(CLI::App& app) {
         ->check(existing_file());
     command
         ->add_option("--cycles-per-instruction", options->cycles_per_instruction,
-                     "Of the emulated boards' cores")
+                     "Core cycles per instruction of the emulated boards")
         ->capture_default_str()
         ->check(from_to(1, 20));
     command->add_flag("--allow-violations", options->allows_violations,
-                      "Exit code 0 although the image does what the chip's manuals forbid");
+                      "Exit with code 0 although the image breaks rules of the chip's manuals");
     command->callback([options] {
         options->request.out = options->out;
         options->request.on_world_warning = [](const std::string& warning) { spdlog::warn("{}", warning); };
         options->request.on_scene_gap = [](const std::string& why) {
             spdlog::warn(
-                "the recording goes without its world, and evaluating it needs --scenario and "
+                "the recording does not contain its world; to evaluate it, give --scenario and "
                 "--world: {}",
                 why);
         };

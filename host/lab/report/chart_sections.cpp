@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::string_view kPairedText =
     R"(<p>Each dot is one seed’s fused map minus the same seed’s depth map, the bar their mean (configuration
-<code>{}</code>). The spread of a metric over seeds is mostly the phase of the voxel grid against the furniture; a
-paired difference cancels it.</p>
+<code>{}</code>). The spread of a metric over seeds comes mostly from the phase of the voxel grid relative to the
+furniture; a paired difference cancels it.</p>
 <ul class="legend">
 <li><i class="swatch-better"></i>better</li>
 <li><i class="swatch-worse"></i>worse</li>
@@ -19,8 +19,8 @@ paired difference cancels it.</p>
 )";
 
 constexpr std::string_view kVoxelCaption =
-    R"(Fewer is better, except for occupied. Fusion is not free: beams that graze a surface erase some of it, which
-shows as lost.)";
+    R"(Fewer is better, except for occupied. Fusion has a cost: beams that graze a surface erase part of it, which
+counts as lost.)";
 
 constexpr std::string_view kUpdateHead =
     R"(<section id="update" class="split">
@@ -29,18 +29,18 @@ constexpr std::string_view kUpdateHead =
 <p>The probability that a voxel is occupied after a single hit, from the update model that this run used{}.</p>
 )";
 
-/// Of a run with range sensors that are rays, as the paper's are.
+/// For a run whose range sensors are ideal rays, as in the paper.
 constexpr std::string_view kPapersLabels =
-    R"(<p>The paper’s prose gives 0.73 → 0.68 to the camera and 0.72 → 0.64 to the proximity sensor; its equations say
-the reverse, so the two labels are swapped. We keep the equations.</p>
+    R"(<p>The paper’s text gives 0.73 → 0.68 for the camera and 0.72 → 0.64 for the proximity sensor; its equations give
+the reverse, so the two labels are swapped. This report uses the equations.</p>
 )";
 
 constexpr std::string_view kCountingText =
-    R"(<p>The range sensors {} see a cone. No such curve holds for their ranges: they are counted, as hits H and misses F of
-a voxel, and P = (a + H) / (a + b + H + F). Here a = {:g} and b = {:g} where nothing else is known; what the camera knows
-makes them larger. A range of up to {} adds {} to H in all, shared by the voxels of its cap: most get a small part of
+    R"(<p>The range sensors {} see a cone. Their ranges have no such curve: they are counted as hits H and misses F of
+a voxel, and P = (a + H) / (a + b + H + F). Here a = {:g} and b = {:g} without other measurements; camera measurements
+increase them. A range of up to {} adds {} to H in total, shared by the voxels of its cap: most get a small part of
 it. Every range adds {} to F of each voxel that it passed near its axis. A voxel is occupied from P = {:g} on if it has
-{:g} hits or the camera says so, and free, where only such ranges spoke of it, with more than {:g} misses.</p>
+{:g} hits or the camera confirms it. A voxel with such ranges only is free with more than {:g} misses.</p>
 )";
 
 constexpr std::string_view kUpdateCaption =
@@ -48,22 +48,22 @@ constexpr std::string_view kUpdateCaption =
 through.)";
 
 constexpr std::string_view kCountingCaption =
-    R"(A voxel of which nothing else is known. Solid: each range’s hit falls to it alone, the most that counting gives.
+    R"(A voxel without other measurements. Solid: each range’s hit counts for it alone, the maximum of counting.
 Dashed: each range passed it.)";
 
 constexpr std::string_view kCalibrationText =
     R"(<section id="calibration" class="split">
-<h2>Can the probabilities be believed?</h2>
+<h2>Are the probabilities calibrated?</h2>
 <div>
-<p>Known voxels in ten bins of predicted probability, all seeds pooled. On the dotted diagonal a map that says 70 % is
-right seven times in ten. A dot above it: more of these voxels are surface than the map says; below: fewer. So for what
-a map calls occupied (over 0.5), above is too timid and below too bold; for what it calls free, above is too bold and
-below too timid. The larger a dot, the more voxels (on a
+<p>Known voxels in ten bins of predicted probability, all seeds pooled. On the dotted diagonal, of the voxels with
+70 % seven in ten are surface. A dot above it: more of these voxels are surface than predicted; below: fewer. So for
+occupied voxels (over 0.5), above is underconfident and below overconfident; for free voxels, above is overconfident and
+below underconfident. The larger a dot, the more voxels (on a
 logarithmic scale).</p>
 <ul class="legend">
 )";
 
-/// "0.7 m", or of both kinds of beam "0.7 m (of a zone 2 m)".
+/// "0.7 m", or for both kinds of beam "0.7 m (of a zone 2 m)".
 template <class Number>
 std::string of_each_beam(const RangeCounting& ranges, Number ConeModel::*figure, std::string_view unit) {
     const auto text = [&](const ConeModel& beam) { return fmt::format("{:g}{}", beam.*figure, unit); };

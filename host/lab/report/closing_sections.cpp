@@ -34,8 +34,8 @@ std::string seeds_text(const std::vector<std::uint64_t>& seeds) {
 
 constexpr std::string_view kAccountText =
     R"(<section id="account">
-<h2>The account</h2>
-<p>Whatever comes in is used or adds one to exactly one named counter: in = used + sum of rejected. Seed {}.</p>
+<h2>Input counters</h2>
+<p>Each input is used or adds one to exactly one named counter: in = used + sum of rejected. Seed {}.</p>
 <div class="table"><table>
 <thead><tr><th>input</th><th>in</th><th>used</th><th>rejected</th></tr></thead>
 <tbody>
@@ -43,8 +43,8 @@ constexpr std::string_view kAccountText =
 
 constexpr std::string_view kIdealisationsText =
     R"(<section id="idealisations">
-<h2>What is idealised</h2>
-<p>The simulation is kinder than a robot cell in these ways:</p>
+<h2>Idealisations</h2>
+<p>The simulation is simpler than a robot cell in these ways:</p>
 <ul>
 )";
 

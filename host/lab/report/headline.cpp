@@ -71,8 +71,8 @@ std::string f1_tile(const Contest& contest) {
 }
 
 constexpr std::string_view kLeadText =
-    R"(Of the surfaces that the external camera cannot see, its own map holds {}; with the range sensors on the arm, the
-fused map holds {}.)";
+    R"(Of the surfaces that the external camera cannot see, its own map contains {}; with the range sensors on the arm, the
+fused map contains {}.)";
 
 std::string lead_sentence(const Contest& contest, const std::string& hidden_objects) {
     if (!contest.has("occluded_recall")) {
@@ -98,7 +98,7 @@ std::string plain_tile(std::string_view what, const std::string& value) {
                        what, value);
 }
 
-/// Of a rig without a camera: nothing to compare with, so the figures stand alone.
+/// For a rig without a camera: there is no map to compare with.
 std::string ranges_headline(const MapSummary& map, const ReportInput& input) {
     const auto share = [&](std::string_view metric, std::string_view what) {
         const auto& mean = map.at(metric).mean;
@@ -106,7 +106,7 @@ std::string ranges_headline(const MapSummary& map, const ReportInput& input) {
     };
     std::string html =
         "<p class=\"lead\">What the range sensors on the arm found; this rig has no camera.</p>\n";
-    html += "<div class=\"tiles\">\n" + share("recall", "Surfaces that the map holds");
+    html += "<div class=\"tiles\">\n" + share("recall", "Surfaces that the map contains");
     html += share("object_recall", "The same, on " + hidden_objects_text(input) + " only");
     html += share("precision", "Of what it calls occupied, truly surface");
     html +=
@@ -141,8 +141,8 @@ std::string headline_section(const ReportInput& input) {
         const std::string lead = lead_sentence(contest, hidden_objects_text(input));
         html += lead.empty() ? "" : fmt::format("<p class=\"lead\">{}</p>\n", lead);
         html += "<div class=\"tiles\">\n";
-        html +=
-            share_tile(contest, "occluded_recall", "Surfaces out of the camera’s sight that the map holds");
+        html += share_tile(contest, "occluded_recall",
+                           "Surfaces out of the camera’s sight that the map contains");
         html += share_tile(contest, "object_recall", "The same, on the objects named as hidden");
         html += fewer_is_better_tile(contest, "missed", "Missed: occupied voxels that the map does not know");
         html += fewer_is_better_tile(contest, "lost", "Lost: occupied voxels that the map calls free");

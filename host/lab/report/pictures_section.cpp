@@ -6,7 +6,7 @@
 namespace octoskin::report {
 namespace {
 
-/// A click on the picture fills the window with it, another one ends that.
+/// A click enlarges the picture to the window, another one ends that.
 std::string picture(const Image& image, std::string_view title, std::string_view side) {
     return fmt::format(
         "<label class=\"zoom\"><input type=\"checkbox\" aria-label=\"Enlarge\"><img width=\"{}\" "
@@ -25,14 +25,14 @@ std::string figure(const PicturePair& pair) {
 constexpr std::string_view kLegend =
     R"(<ul class="legend">
 <li><i class="swatch-right"></i>occupied, and a surface is there</li>
-{}<li><i class="swatch-wrong"></i>occupied, but nothing is there</li>
-<li><i class="swatch-lost"></i>called free, but a surface is there</li>
+{}<li><i class="swatch-wrong"></i>occupied, but no surface is there</li>
+<li><i class="swatch-lost"></i>free, but a surface is there</li>
 <li><i class="swatch-floor"></i>floor, not judged</li>
 </ul>
 )";
 
 constexpr std::string_view kOrigin =
-    R"(<p class="soft">Every cube is one occupied voxel of the map file itself, ray-cast as it stands; space that is free or
+    R"(<p class="soft">Every cube is one occupied voxel of the map file itself, ray-cast without changes; space that is free or
 unknown is not drawn. Click a picture to enlarge it.</p>
 )";
 

@@ -107,9 +107,9 @@ std::string configuration_table(const ReportInput& input, const std::string& con
 constexpr std::string_view kTableText =
     R"(<section id="paper">
 <h2>{}</h2>
-<p>Voxels of the judged region against a ground truth that a noise-free camera, moved by hand round the scene without
-the robot, would have mapped. Occupied and free: right in both. Missed: occupied in truth, unknown in the map.
-Incorrect: occupied in the map, not in truth. Lost{}: occupied in truth, but called free; without it Missed could be
+<p>Voxels of the judged region against the map of a noise-free camera that is moved round the scene without
+the robot. Occupied and free: the same in both. Missed: occupied in truth, unknown in the map.
+Incorrect: occupied in the map, not in truth. Lost{}: occupied in truth, free in the map; without it, Missed could be
 lowered by clearing more.</p>
 <div class="table"><table>
 <thead><tr><th></th><th>Occupied</th><th>Free</th><th>Missed</th><th>Incorrect</th><th>Lost</th></tr></thead>
@@ -124,10 +124,10 @@ only.</p>
 constexpr std::string_view kMetricsText =
     R"(<section id="metrics">
 <h2>All metrics</h2>
-<p>The first five as above. The others against the voxels that the world’s surfaces pass through; voxels inside a solid
-are not judged. Occluded recall looks at surface voxels more than two voxels from anything that the camera sees, object
-recall at those of the objects that the scenario names as hidden. Coverage is the known share of the region; log loss and Brier score its
-probabilities, unknown voxels counting as one half. Mean ± standard deviation over the seeds.</p>
+<p>The first five as above. The others compare with the voxels that the world’s surfaces pass through; voxels inside a solid
+are not judged. Occluded recall is over surface voxels more than two voxels from every voxel that the camera sees, object
+recall over those of the objects that the scenario names as hidden. Coverage is the known share of the region; log loss and
+Brier score judge its probabilities, with one half for unknown voxels. Mean ± standard deviation over the seeds.</p>
 )";
 
 }  // namespace

@@ -11,22 +11,22 @@ constexpr std::size_t kPocketsShown = 8;
 
 constexpr std::string_view kText =
     R"(<section id="unknown">
-<h2>What nobody has seen yet</h2>
+<h2>Unknown space</h2>
 <p>Unknown space within {} m of the robot’s base and above it, {} m³ in all, while the arm moves
-(configuration <code>{}</code>, seed {}). What is inside of solid things never becomes known.</p>
+(configuration <code>{}</code>, seed {}). The inside of solids stays unknown.</p>
 <ul class="legend">
 )";
 
 constexpr std::string_view kDepthText =
     R"(<b>Depth camera only</b>, at the end, seen from above: how much of each column of that space is unknown,
-from nothing (no colour) to {} m (full colour).)";
+from 0 m (no colour) to {} m (full colour).)";
 constexpr std::string_view kFusedText =
-    R"(<b>Fused</b>, at the end, seen from above: how much of each column of that space is unknown, from nothing
+    R"(<b>Fused</b>, at the end, seen from above: how much of each column of that space is unknown, from 0 m
 (no colour) to {} m (full colour).)";
 constexpr std::string_view kPocketText =
-    R"( The numbers are the largest pockets that are left, at their centres; <code>octoskin query --unknown</code>
-lists them, in the map’s frame, with a posture of the arm that would look into each. The table has them from
-the robot’s base.)";
+    R"( The numbers are the largest remaining pockets, at their centres; <code>octoskin query --unknown</code>
+lists them, in the map’s frame, with a posture of the arm from which a sensor sees into each. The table has them relative
+to the robot’s base.)";
 
 std::string pocket_table(const evaluation::UnknownSpace& space) {
     std::string html =

@@ -40,8 +40,8 @@ Status<AppError> check_stands_still(const Scene& scene) {
         AppError{ExitCode::bad_config,
                  scene.scenario
                      .error("world_motion",
-                            "what moves has no one place that a map could be judged by: `octoskin "
-                            "simulate` and `replay` take such a scenario, evaluate and experiment "
+                            "a model that moves has no single place to judge a map by: `octoskin "
+                            "simulate` and `replay` accept such a scenario, evaluate and experiment "
                             "do not")
                      .message()});
 }

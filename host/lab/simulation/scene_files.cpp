@@ -29,13 +29,13 @@ std::string bytes_of(const sim::World& world) {
     return sim::to_bytes(sim::SolidsOfFile{world.solids()});
 }
 
-/// What differs between the scene and what is read from its files; empty: nothing.
+/// The difference between the scene and the scene read back from its files; empty: none.
 SceneGap difference(const Scene& scene, const RecordingPaths& recording) {
     const auto again = read_scene(recording.scenario(), {});
     if (!again) return again.error().message;
     if (again->scenario.standalone_text != scene.scenario.standalone_text)
-        return "its scenario reads otherwise there";
-    if (bytes_of(again->world) != bytes_of(scene.world)) return "its world reads otherwise there";
+        return "its scenario reads back differently from there";
+    if (bytes_of(again->world) != bytes_of(scene.world)) return "its world reads back differently from there";
     return std::nullopt;
 }
 
@@ -51,7 +51,7 @@ Status<AppError> remove_files(const RecordingPaths& recording, const sim::WorldC
     return Done{};
 }
 
-/// A recording of somebody else may have a file that has no end: nothing is read beyond what simulate writes.
+/// A recording from an untrusted source may contain an endless file: reads no more than simulate writes.
 std::optional<std::string> read_bounded(const FilePlace& file) {
     const std::size_t bytes_max = is_scene_mesh(file.filename()) ? sim::kMeshBytesMax : sim::kWorldBytesMax;
     const auto opened = file.open();
@@ -73,7 +73,7 @@ Result<SceneGap, AppError> write_scene(const Scene& scene, const RecordingPaths&
     if (on_warning && !world->left_out.empty()) {
         on_warning(scene.world_place.shown().string() + ": mesh '" + world->left_out.front() + "' (" +
                    std::to_string(world->left_out.size()) +
-                   " in all) is that of no visual, and is left out of the recording");
+                   "in all) does not belong to a visual and is left out of the recording");
     }
     if (const auto written = write_files(scene, *world, recording); !written)
         return unexpected(written.error());

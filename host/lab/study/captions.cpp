@@ -30,7 +30,7 @@ const char* name_of(DistanceMode mode) {
     return "long";
 }
 
-/// The distinct ways in which the rig's sensors range: mode, budget, period.
+/// The distinct timings of the rig's sensors: mode, budget, period.
 std::set<std::tuple<DistanceMode, unsigned, unsigned>> timings_of(const rig::Rig& rig) {
     std::set<std::tuple<DistanceMode, unsigned, unsigned>> timings;
     for (const rig::Node& node : rig.nodes) {
@@ -42,7 +42,7 @@ std::set<std::tuple<DistanceMode, unsigned, unsigned>> timings_of(const rig::Rig
     return timings;
 }
 
-/// VL53L1X datasheet, section 2.5.2: the shortest budgets, and what 4 m take.
+/// VL53L1X datasheet, section 2.5.2: the shortest budgets, and the budget for 4 m.
 std::string timing_sentence(DistanceMode mode, unsigned budget_ms, unsigned period_ms) {
     std::string text = fmt::format("Range sensors run in {} mode with a {} ms timing budget every {} ms.",
                                    name_of(mode), budget_ms, period_ms);
@@ -54,7 +54,7 @@ std::string timing_sentence(DistanceMode mode, unsigned budget_ms, unsigned peri
     return text;
 }
 
-/// What the rig's sensors see, all boards together.
+/// The optics of the rig's sensors, all boards together.
 struct Optics {
     std::size_t rays = 0;  ///< sensors that are ideal rays
     std::size_t cones = 0;
@@ -82,7 +82,7 @@ Optics optics_of(const rig::Rig& rig) {
     return optics;
 }
 
-/// "The range sensors", or how many of them if others are otherwise.
+/// "The range sensors", or the count if the sensors differ.
 std::string sensors_text(std::size_t count, const Optics& optics) {
     const std::size_t all = optics.rays + optics.cones;
     return count == all ? "The range sensors" : fmt::format("{} of the {} range sensors", count, all);
@@ -92,12 +92,12 @@ std::vector<std::string> ray_sentences(const Optics& optics, const sim::RangeOpt
     if (optics.rays == 0) return {};
     return {
         fmt::format("{} measure along one ideal ray each{}. The real sensor sees a cone of 27 degrees and "
-                    "answers with something like the nearest part of it.",
+                    "reports about the nearest part of it.",
                     sensors_text(optics.rays, optics),
                     optics.has_ray_zones ? ", of a zone along its middle" : ""),
         fmt::format("The noise ({:g} cm) and reach ({:g} to {:g} m) of these rays are set by the scenario, "
-                    "not by budget, target or ambient light; of the mode, only the longest range that it "
-                    "can tell counts.",
+                    "not by budget, target or ambient light; of the mode, only the longest range "
+                    "is modelled.",
                     100.0 * ranges.sigma_m, ranges.min_m, ranges.max_m)};
 }
 
@@ -108,20 +108,19 @@ std::vector<std::string> cone_sentences(const Optics& optics, const sim::RangeOp
         degrees += fmt::format("{}{:g}", degrees.empty() ? "" : ", ", each);
     return {
         fmt::format("{} see a cone of {} degrees as a bundle of sub-rays{}; a range is that of the nearest "
-                    "peak of what returns. Every surface scatters {:g} % of the light evenly: none "
-                    "mirrors, is darker than another or lets light bounce twice, and the arm stands still "
+                    "peak of the echoes. Every surface is diffuse with a reflectivity of {:g} %: no "
+                    "mirrors, no differences in darkness, no multiple reflections, and the arm stands still "
                     "while a sensor measures.",
                     sensors_text(optics.cones, optics), degrees,
-                    optics.has_cone_zones ? ", of which each zone gets its part" : "",
-                    100.0 * ranges.reflectivity),
-        fmt::format("The noise of these ranges, and whether there is one, follow from the signal: from "
-                    "distance, incidence and how much of the cone a thing fills, not from budget or "
-                    "ambient light. Of the mode, only the longest range that it can tell counts; nothing "
+                    optics.has_cone_zones ? ", shared between the zones" : "", 100.0 * ranges.reflectivity),
+        fmt::format("The noise of these ranges, and whether there is a range, follow from the signal: from "
+                    "distance, incidence and the filled part of the cone, not from budget or "
+                    "ambient light. Of the mode, only its longest range is modelled; nothing "
                     "nearer than {:g} m or further than {:g} m is seen.",
                     ranges.min_m, ranges.max_m)};
 }
 
-/// As one word of a POSIX shell.
+/// `text` as one word of a POSIX shell.
 std::string shell_word(const std::string& text) {
     const auto is_plain = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -130,7 +129,7 @@ std::string shell_word(const std::string& text) {
     if (!text.empty() && std::ranges::all_of(text, is_plain)) return text;
     std::string inner;
     for (const char c : text) {
-        if (c == '\'') inner += R"('\')";  // the quotes end, one stands escaped, and they begin again
+        if (c == '\'') inner += R"('\')";  // ends the quotes, adds an escaped one, begins quotes again
         inner += c;
     }
     return fmt::format("'{}'", inner);
@@ -160,10 +159,10 @@ std::vector<std::string> idealisations_of(const rig::Rig& rig, const sim::Scenar
     for (auto& sentence : ray_sentences(optics, scenario.ranges)) sentences.push_back(std::move(sentence));
     for (auto& sentence : cone_sentences(optics, scenario.ranges)) sentences.push_back(std::move(sentence));
     if (rig.camera) {
-        sentences.push_back(fmt::format(
-            "The camera's noise ({:g} cm along the ray, independent from pixel to pixel) knows no "
-            "flying pixels, no reflections and no dependence on distance or material.",
-            100.0 * scenario.depth_sigma_m));
+        sentences.push_back(
+            fmt::format("The camera's noise ({:g} cm along the ray, independent from pixel to pixel) has no "
+                        "flying pixels, no reflections and no dependence on distance or material.",
+                        100.0 * scenario.depth_sigma_m));
     }
     sentences.push_back(
         "Extrinsics, link lengths and joint angles are exactly those of the rig file and the robot "

@@ -29,7 +29,7 @@ constexpr const char* kRecording = "recording";
 constexpr const char* kMetrics = "metrics.json";
 constexpr const char* kReport = "report.html";
 
-/// Of each file that an experiment left, by its name below the folder: the CRC-32 of its bytes, as text.
+/// Name of each file of an experiment, relative to the folder, and the CRC-32 of its bytes as text.
 using Notes = std::map<std::string, std::string>;
 
 constexpr std::size_t kNotesBytesMax = 16'384;
@@ -38,7 +38,7 @@ std::string in_recording(const FilePlace& file) {
     return std::string(kRecording) + "/" + file.filename();
 }
 
-/// The names, below the folder, of all that an experiment may note.
+/// The names, relative to the folder, of all files that an experiment may note.
 std::vector<std::string> notable_names(const OpenFolder& folder) {
     std::vector<std::string> names{kMetrics, kReport, kMapOriginFile};
     for (const FilePlace& file : RecordingPaths(FilePlace(folder, kRecording)).files())
@@ -46,7 +46,7 @@ std::vector<std::string> notable_names(const OpenFolder& folder) {
     return names;
 }
 
-/// Empty: they are not there, or not what an experiment writes.
+/// Empty: there are no notes, or they are not as an experiment writes them.
 Notes read_notes(const OpenFolder& folder) {
     const auto opened = FilePlace(folder, kNotesFile).open();
     const auto text = opened ? opened->read(kNotesBytesMax) : unexpected(opened.error());
@@ -67,7 +67,7 @@ Notes read_notes(const OpenFolder& folder) {
     return notes;
 }
 
-/// What octoskin itself hides in a folder does not count. In order of names.
+/// The names in a folder, sorted, without octoskin's own hidden files.
 std::set<std::string> names_in(const NamedFolder& named) {
     std::set<std::string> visible;
     const auto folder = named.open();
@@ -79,7 +79,7 @@ std::set<std::string> names_in(const NamedFolder& named) {
     return visible;
 }
 
-/// A map that is not what the maps.yaml beside it describes, or a maps.yaml that cannot be read.
+/// A map that does not match the maps.yaml beside it, or a maps.yaml that cannot be read.
 std::optional<std::string> foreign_map(const NamedFolder& folder) {
     const auto origin = read_map_origin(folder);
     const bool is_told = origin && *origin;
@@ -93,7 +93,7 @@ std::optional<std::string> foreign_map(const NamedFolder& folder) {
     return std::nullopt;
 }
 
-/// The first thing that an experiment would replace and none has left there as it is.
+/// The first file that an experiment would replace but that is not an unchanged result of an earlier one.
 std::optional<std::string> foreign_result(const OpenFolder& folder, const Notes& notes) {
     for (const std::string& name : notable_names(folder)) {
         const FilePlace place(folder, name);
@@ -102,14 +102,14 @@ std::optional<std::string> foreign_result(const OpenFolder& folder, const Notes&
         const auto crc = crc32_of(place);
         if (note == notes.end() || !crc || note->second != crc_text(*crc)) return name;
     }
-    // Replacing a recording removes the maps that were made of it.
+    // Replacing a recording removes its maps.
     if (auto map = foreign_map(NamedFolder(FilePlace(folder, std::string(kRecording) + "/maps"))))
         return std::string(kRecording) + "/maps/" + *map;
     return foreign_map(NamedFolder(folder));
 }
 
-/// That each place is free or taken by what can be replaced: a link, pipe, device or folder of another kind
-/// is none.
+/// Checks that each place is free or holds something that can be replaced. A link, a pipe, a device or a
+/// folder in a file's place cannot be replaced.
 Status<AppError> check_places(const OpenFolder& folder) {
     for (const char* const name : {kNotesFile, kMetrics, kReport}) {
         const FilePlace place(folder, name);
@@ -136,10 +136,11 @@ Status<AppError> check_results_folder(const OpenFolder& folder) {
         foreign = *names.begin();
     }
     if (foreign) {
-        return cannot_create(folder.shown(),
-                             fmt::format("has a {} that no experiment left there as it is: nothing is "
-                                         "overwritten; move it away, or give another directory",
-                                         *foreign));
+        return cannot_create(
+            folder.shown(),
+            fmt::format("has a {} that is not an unchanged result of an experiment: nothing is "
+                        "overwritten; move it away, or give another directory",
+                        *foreign));
     }
     return check_places(folder);
 }

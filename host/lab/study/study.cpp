@@ -36,7 +36,7 @@ struct StudyWorld {
     evaluation::TruthConfig truth;
 };
 
-/// Reads it, and refuses what cannot be judged: before anything is rendered or simulated.
+/// Reads the scene, and refuses one that cannot be judged before anything is rendered or simulated.
 Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double resolution_m) {
     auto scene = read_scene(inputs.scenario, inputs.world);
     if (!scene) return unexpected(scene.error());
@@ -45,14 +45,15 @@ Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double 
     const auto rig = read_given_rig(inputs.rig, inputs.robot);
     if (!rig) return unexpected(rig.error());
     evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);
-    // Each seed shifts the map a little and is looked at again: this is for what is hopeless.
+    // Each seed shifts the map a little and is checked again. This check is for regions that no shift makes
+    // valid.
     if (auto fault =
             evaluation::region_fault(truth.region, truth.resolution_m, Eigen::Isometry3d::Identity()))
         return fail(ExitCode::bad_config, scene->scenario.error("region", *fault).message());
     return StudyWorld{std::move(*scene), source_file(inputs.rig, rig->extended_files), std::move(truth)};
 }
 
-/// That a configuration can be told from those before it, and compared with them.
+/// Checks that a configuration's name is unique and that its figures can be compared with those before it.
 Status<AppError> check_next(const std::vector<NamedMapping>& before, const NamedMapping& next) {
     for (const NamedMapping& one : before) {
         if (one.name == next.name)
@@ -91,7 +92,7 @@ Status<AppError> check_seeds(const std::vector<std::uint64_t>& seeds) {
     return Done{};
 }
 
-/// The one that the maps, the pictures and the headline are of.
+/// The configuration of the maps, the pictures and the headline.
 const NamedMapping& main_of(const std::vector<NamedMapping>& configurations) {
     const auto ours =
         std::find_if(configurations.begin(), configurations.end(),
@@ -102,7 +103,7 @@ const NamedMapping& main_of(const std::vector<NamedMapping>& configurations) {
 /// Studies every seed, `jobs` of them at once.
 class SeedWorkers {
   public:
-    /// What is not kept is made, and removed, in `work`.
+    /// Files that are not kept are created and removed in `work`.
     SeedWorkers(const StudyRequest& request, const std::vector<NamedMapping>& configurations,
                 const StudyGround& ground, const OpenFolder& results, const OpenFolder& work, const Say& say)
         : request_(request),
@@ -134,7 +135,7 @@ class SeedWorkers {
             .keeps_recording = is_first,
             .main_configuration = main_of(configurations_).name,
             .keeps_maps = is_first};
-        seed_request.simulation.on_world_warning = {};  // they are the same for every seed
+        seed_request.simulation.on_world_warning = {};  // the same warnings for every seed
         seed_request.simulation.seed = request_.seeds[index];
         return seed_request;
     }
@@ -148,7 +149,7 @@ class SeedWorkers {
     std::mutex say_mutex_;
 };
 
-/// Adds up what the seeds took, part by part, in the order of their first appearance.
+/// Sums the times of the seeds by part, in the order of first appearance.
 std::vector<evaluation::PartTime> total_times(const std::vector<SeedOutcome>& outcomes) {
     std::vector<evaluation::PartTime> totals;
     for (const SeedOutcome& outcome : outcomes) {
@@ -194,8 +195,8 @@ Status<AppError> write_report(const StudyRequest& request, const OpenFolder& fol
     return write_text({folder, "report.html"}, report::report_html(input));
 }
 
-/// What is refused is refused as it was. What a killed octoskin left half moved is looked at once that has
-/// been ended.
+/// Refuses a folder before it is changed. A move that a killed octoskin left unfinished is completed first;
+/// the folder is then checked under its lock.
 Status<AppError> check_before_locked(const fs::path& out) {
     const auto there = OpenFolder::open(out, FolderAccess::write);
     if (!there || there->kind_of(FileSet::kReadyFolder) != EntryKind::absent) return Done{};
@@ -226,7 +227,7 @@ evaluation::TruthConfig truth_config_of(const sim::Scenario& scenario, double re
 bool is_papers_experiment(const rig::Rig& rig, const fs::path& scenario, const fs::path& world,
                           const fs::path& papers_scenario) {
     constexpr std::string_view kRigs[] = {"experiment", "experiment_classical", "experiment_low_camera"};
-    std::error_code error;  // a file that is not there is not the paper's
+    std::error_code error;  // a missing file is not the paper's scenario
     return world.empty() && std::ranges::find(kRigs, rig.name) != std::end(kRigs) &&
            fs::equivalent(scenario, papers_scenario, error);
 }
@@ -252,7 +253,7 @@ Result<evaluation::Results, AppError> run_study(const StudyRequest& request, con
     if (const auto checked = check_results_folder(folder->folder()); !checked)
         return unexpected(checked.error());
 
-    say("ground truth: a noise-free camera goes round the scene");
+    say("ground truth: rendering the tour of a noise-free camera");
     const PartTimer survey_timer("ground truth survey");
     const evaluation::Survey survey =
         evaluation::render_survey(world->scene.world, survey_config_of(world->scene.scenario));

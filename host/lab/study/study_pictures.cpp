@@ -15,7 +15,7 @@ using report::PicturePair;
 
 using Beams = std::vector<report::Segment>;
 
-/// One range of each sensor that meets something of the world.
+/// One range of each sensor whose beam meets the world.
 Beams beams_at(const sim::World& world, const rig::Rig& rig, const sim::Arm::LinkPoses& poses) {
     Beams beams;
     for (const rig::Node& node : rig.nodes) {
@@ -31,13 +31,14 @@ Beams beams_at(const sim::World& world, const rig::Rig& rig, const sim::Arm::Lin
     return beams;
 }
 
-/// The robot at the one of a few instants of its motion at which most sensors see something.
+/// Adds the robot at the instant of its motion, out of a few, at which most sensors see the world.
 void dress_with_robot(const sim::World& world, const sim::Scenario& scenario, const rig::Rig& rig,
                       report::SceneDressing& dressing) {
     const auto lock = lock_reading();
     const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints);
     const auto capsules = rig::real_body(rig);
-    if (!arm || !capsules) return;  // the same files were read before; a picture without a robot beats none
+    if (!arm || !capsules)
+        return;  // not expected: the same files were read before; the picture is then drawn without the robot
     const auto trajectory = sim::Trajectory::circle(*arm, scenario.motion, sim::SimTime{0});
     if (!trajectory) return;
     constexpr int kInstants = 8;
@@ -53,7 +54,7 @@ void dress_with_robot(const sim::World& world, const sim::Scenario& scenario, co
     }
 }
 
-/// A map, and how it is called and described.
+/// A map with its title and caption.
 struct NamedMap {
     const char* title;
     const char* caption;
@@ -61,16 +62,15 @@ struct NamedMap {
 };
 
 std::vector<NamedMap> maps_to_draw(std::span<const FedMap> maps, bool has_camera) {
-    const NamedMap ranges = {"Range sensors only", "What the sensors on the arm found during its motion.",
+    const NamedMap ranges = {"Range sensors only", "What the sensors on the arm measured during its motion.",
                              find_map(maps, MapFeed::ranges)};
     if (!has_camera) return {ranges};
-    return {{"Depth camera only", "What a planner with the external camera alone knows.",
-             find_map(maps, MapFeed::camera)},
+    return {{"Depth camera only", "The map of the external camera alone.", find_map(maps, MapFeed::camera)},
             ranges,
             {"Fused", "One map of both.", find_map(maps, MapFeed::both)}};
 }
 
-/// All in one frame, so that they can be laid over each other.
+/// All with the same views, so that the pictures can be compared.
 std::vector<PicturePair> draw_maps(const std::vector<NamedMap>& named, const evaluation::Truth& truth) {
     std::vector<std::vector<report::PaintedVoxel>> painted;
     for (const NamedMap& one : named) painted.push_back(report::paint_map(*one.map, truth));

@@ -1,6 +1,6 @@
-// octoskin-world-read MEMORY_MIB PROCESSOR_S FILE [--beneath]: the solids of an SDF file to standard output,
-// as solids_bytes.hpp has them. The libraries behind it are not trusted with more: that is why
-// this is a process of its own. Beneath its working directory it reads nothing outside of that.
+// octoskin-world-read MEMORY_MIB PROCESSOR_S FILE [--beneath]: writes the solids of an SDF file to standard
+// output, in the format of solids_bytes.hpp. A separate process with limits, because the libraries that read
+// the file are not trusted. With --beneath it reads no file outside its working directory.
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -34,7 +34,7 @@ bool take_number(std::string_view text, std::uint64_t& number) {
 void limit(const Limits& limits) {
     limit_this_process({.memory_mib = limits.memory_mib, .exit_without_memory = kOutOfMemory});
     limit_processor_seconds(limits.processor_s);
-    // It writes to a pipe alone; and sdformat is given no home to make a folder in and write its log to.
+    // It writes to a pipe only. Without HOME, sdformat creates no folder and no log file.
     octoskin::limit_file_size(0);
     ::unsetenv("HOME");
 }
@@ -77,7 +77,8 @@ int main(int argc, char** argv) {
         octoskin::confine_this_process("octoskin-world-read", octoskin::NewThreads::refused);
     auto solids = read(argv[3], is_beneath);
     if (!is_confined && solids)
-        solids->warnings.emplace_back("was read without confinement, for the kernel has no filter here");
+        solids->warnings.emplace_back(
+            "was read without confinement: the kernel has no system call filter here");
     const bool is_written = write_all(output, to_bytes(solids));
-    ::_exit(is_written ? 0 : 1);  // the libraries' ends take time and give nothing
+    ::_exit(is_written ? 0 : 1);  // the libraries' destructors take time and have no use
 }

@@ -43,8 +43,8 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
 }
 
-/// What is there of an included file, as far as it is found without sdformat, which does not say why it
-/// cannot read what is no file.
+/// The path of an included file, as far as it can be found without sdformat. sdformat's own error does not
+/// say why a path is not readable as a file.
 std::filesystem::path place_of(std::string_view uri, const std::filesystem::path& world) {
     constexpr std::string_view kFileScheme = "file://";
     uri = trimmed(uri);
@@ -53,8 +53,8 @@ std::filesystem::path place_of(std::string_view uri, const std::filesystem::path
     return world.parent_path() / uri;
 }
 
-/// What keeps a file from being SDF at all, or nothing. sdformat would only say that it cannot read it, after
-/// trying it as a robot description.
+/// Why a file is not SDF at all; empty if it may be. sdformat would only report that it cannot read the file,
+/// after trying to read it as a robot description.
 std::optional<std::string> xml_error_of(const std::filesystem::path& file, bool may_include) {
     tinyxml2::XMLDocument document;
     if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
@@ -67,7 +67,7 @@ std::optional<std::string> xml_error_of(const std::filesystem::path& file, bool 
     document.Accept(&includes);
     for (const Include& include : includes.found()) {
         const std::string line = "line " + std::to_string(include.line);
-        // sdformat looks for what is included in folders of its own choice, too.
+        // sdformat also searches included files in folders of its own choice.
         if (!may_include)
             return line +
                    ": <include> is not read in a world inside a recording: give the world by its own option, "
@@ -87,13 +87,13 @@ struct SdfModule {
     ReadSolids read_solids = nullptr;
 };
 
-/// The message says why it cannot be had.
+/// The error says why the module cannot be loaded.
 Result<SdfModule, std::string> sdf_module() {
     void* const module = ::dlopen(kSdfModule, RTLD_NOW | RTLD_LOCAL);
     void* const symbol = module == nullptr ? nullptr : ::dlsym(module, kReadSolidsSymbol);
     if (symbol == nullptr) {
         const char* const reason = ::dlerror();
-        return unexpected("what reads SDF files cannot be loaded: " +
+        return unexpected("the reader of SDF files cannot be loaded: " +
                           std::string(reason == nullptr ? kReadSolidsSymbol : reason) +
                           "; build octoskin_programs, or install octoskin anew");
     }
@@ -121,7 +121,7 @@ SolidsOrError load_solids(const std::filesystem::path& sdf, const WorldFiles* fi
     module->read_solids({.file = sdf, .path = path, .files = files}, &solids);
     if (const std::string refused = refused_file(); !refused.empty()) {
         if (!solids) return failed("needs " + refused + ", not an ordinary file");
-        solids->warnings.push_back("needs " + refused + ", not an ordinary file, and goes without it");
+        solids->warnings.push_back("needs " + refused + ", not an ordinary file; it is left out");
     }
     return solids;
 }

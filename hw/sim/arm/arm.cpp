@@ -17,8 +17,8 @@ namespace octoskin::sim {
 namespace {
 
 constexpr int kInverseStepsMax = 200;
-/// No joint turns further than this in one step of the inverse kinematics: far from the goal the
-/// linearisation is worth little.
+/// Limit of a joint's change in one step of the inverse kinematics: far from the goal the linearisation is
+/// inaccurate.
 constexpr double kInverseStepMax_rad = 0.2;
 
 Eigen::Isometry3d isometry_of(const urdf::Pose& pose) {
@@ -35,7 +35,7 @@ Eigen::Vector3d rotation_between(const Eigen::Matrix3d& to, const Eigen::Matrix3
 
 }  // namespace
 
-/// Walks the URDF from the base outwards.
+/// Builds the arm from the URDF, from the base outwards.
 struct Arm::Builder {
     const rig::UrdfDocument& urdf;
     const std::vector<std::string>& joints;
@@ -50,7 +50,7 @@ struct Arm::Builder {
         }
         arm.joints_.assign(joints.size(), Limits{"", 0.0, 0.0});
         arm.links_.push_back({.name = base_link});
-        // A link's children follow it in the list, and urdfdom has made sure that there is no loop.
+        // A link's children follow it in the list, and urdfdom guarantees that there is no loop.
         for (std::size_t i = 0; i < arm.links_.size(); ++i) {
             for (const auto& joint : urdf.model().getLink(arm.links_[i].name)->child_joints) {
                 add(*joint, i);
@@ -69,7 +69,7 @@ struct Arm::Builder {
         }
     }
 
-    /// Its link comes in, too, if the joint cannot be taken: what is beyond it may be wrong as well.
+    /// Adds the link also if the joint is refused, so that errors beyond it are found, too.
     void add(const urdf::Joint& joint, std::size_t parent) {
         Link link{.name = joint.child_link_name, .parent = parent};
         link.T_parent_joint = isometry_of(joint.parent_to_joint_origin_transform);
@@ -92,7 +92,7 @@ struct Arm::Builder {
     void add_moving(const urdf::Joint& joint, Link& link) {
         const auto named = std::find(joints.begin(), joints.end(), joint.name);
         if (named == joints.end() || joint.mimic) {
-            return fail("joint", joint.name, "moves, but the rig's joint states do not say where it is",
+            return fail("joint", joint.name, "moves, but the rig's joint states do not contain its position",
                         joint.mimic ? "mimic" : "not named");
         }
         const double length = link.axis.norm();
@@ -198,7 +198,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> Arm::jacobian(std::size_t tip, const Ei
     Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(6, position.size());
     jacobian.setZero();
     T_base_tip = forward(position, links_[tip].name);
-    // Outwards in: T_link_tip grows, T_base_link shrinks.
+    // From the tip inwards: T_link_tip grows, T_base_link shrinks.
     Eigen::Isometry3d T_link_tip = Eigen::Isometry3d::Identity();
     for (std::size_t i = tip; i != 0; i = links_[i].parent) {
         const Eigen::Isometry3d T_base_link = T_base_tip * T_link_tip.inverse();
@@ -230,7 +230,7 @@ std::optional<Eigen::VectorXd> Arm::inverse(const std::string& link, const Eigen
         if (error.head<3>().norm() <= tolerance && error.tail<3>().norm() <= tolerance) {
             return position;
         }
-        // The damping vanishes with the error, so that the last steps converge as Newton's.
+        // The damping decreases with the error, so that the last steps converge as Newton's method.
         const double damping = 0.01 * error.squaredNorm() + 1e-12;
         const Eigen::Matrix<double, 6, 6> JJt =
             J * J.transpose() + damping * Eigen::Matrix<double, 6, 6>::Identity();

@@ -26,7 +26,7 @@ Result<Trajectory, MotionError> Trajectory::circle(const Arm& arm, const CircleM
         for (const std::string& link : arm.links()) links.append(links.empty() ? "" : ", ").append(link);
         return failure("motion.circle.link", "the scenario moves link '" + motion.link +
                                                  "', but the robot's links are " + links +
-                                                 ": give --scenario one that is made for this robot");
+                                                 ": give --scenario a file for this robot");
     }
     if (static_cast<std::size_t>(motion.start_position.size()) != arm.joint_count()) {
         return failure("motion.circle.start_position_rad",

@@ -20,7 +20,7 @@ namespace {
     throw BoardLinkError(what + ": " + std::strerror(error));
 }
 
-/// Both ends; ours is closed in programs that we start.
+/// Both ends; the simulator's is closed in programs that it starts.
 std::array<int, 2> make_sockets() {
     std::array<int, 2> ends{};
     if (socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()) != 0) fail("board link: no socket", errno);
@@ -48,7 +48,7 @@ BoardProcess::BoardProcess(const std::filesystem::path& program, const std::vect
     : eyes_(std::move(eyes)) {
     const std::array<int, 2> ends = make_sockets();
     socket_.emplace(ends[0]);
-    const LinkSocket theirs(ends[1]);  // closed here once the child has it, or could not be started
+    const LinkSocket theirs(ends[1]);  // closed here after the start, also if that failed
     child_ = start(program, arguments, ends[1]);
 }
 
@@ -59,7 +59,7 @@ BoardProcess::~BoardProcess() {
 
 BoardMessage BoardProcess::next() {
     auto message = socket_->receive();
-    if (!message) throw BoardLinkError("the emulated board ended; what it said is above");
+    if (!message) throw BoardLinkError("the emulated board ended; its output is above");
     return std::move(*message);
 }
 

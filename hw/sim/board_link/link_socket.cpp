@@ -43,7 +43,7 @@ std::optional<BoardMessage> LinkSocket::receive() {
         ready = poll(&waiting, 1, kSilenceMs);
     } while (ready < 0 && errno == EINTR);
     if (ready < 0) fail("cannot wait");
-    if (ready == 0) throw BoardLinkError("board link: silence for a minute");
+    if (ready == 0) throw BoardLinkError("board link: no message for 60 s");
     static thread_local std::vector<std::uint8_t> buffer(kMessageBytesMax);
     ssize_t received = 0;
     do {

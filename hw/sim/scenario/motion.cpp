@@ -11,7 +11,7 @@ namespace octoskin::sim {
 namespace {
 
 constexpr double kLongest_s = 600.0;
-constexpr double kFurthest_m = 20.0;  ///< beyond it, somebody wrote millimetres
+constexpr double kFurthest_m = 20.0;  ///< a larger value is probably in millimetres
 
 ModelPlace read_place(const rig::Value& value, const std::string& path, const ModelPlace* before) {
     const rig::Table table(value, path, {"at_s", "is_there", "offset_m", "moves_on"});
@@ -27,7 +27,7 @@ ModelPlace read_place(const rig::Value& value, const std::string& path, const Mo
                                        place.from_s));
     if (before != nullptr && before->moves_on && !place.is_there)
         rig::fail(value, path,
-                  "the place before moves on to here, and it is not there; give it a place first");
+                  "the place before moves on to here, but the model is not there; give it a place first");
     return place;
 }
 
@@ -45,7 +45,7 @@ ModelMotion read_model(const rig::Value& value, const std::string& path, const s
     if (motion.places.empty()) table.fail("places", "expected at least one place");
     const auto has_no_way = [](const ModelPlace& place) { return place.moves_on && !place.is_there; };
     if (motion.places.back().moves_on || std::ranges::any_of(motion.places, has_no_way))
-        table.fail("places", "what moves on must be there, and have a place to go to");
+        table.fail("places", "a model that moves on must be there, and needs a next place");
     return motion;
 }
 

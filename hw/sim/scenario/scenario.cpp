@@ -13,7 +13,7 @@ namespace {
 using rig::Table;
 using rig::Value;
 
-constexpr double kReach_m = 20.0;  ///< of positions: beyond it, somebody wrote millimetres
+constexpr double kReach_m = 20.0;  ///< of positions: a larger value is probably in millimetres
 
 Eigen::Vector3d position(const Table& table, std::string_view key) {
     return rig::read_position(table.require(key), table.path_of(key), kReach_m);
@@ -71,7 +71,7 @@ CircleMotion read_circle(const Value& value, const std::string& path, Scenario& 
 
 void read_motion(const Table& top, Scenario& scenario) {
     const Table table(top.require("motion"), "motion", {"rest_s", "circle"});
-    // A node is usable after two SYNCs at 1 Hz, and START must find all of them usable.
+    // A node is usable after two SYNCs at 1 Hz, and all must be usable at START.
     scenario.rest_s = table.number("rest_s", {3.0, 600.0});
     scenario.motion = read_circle(table.require("circle"), table.path_of("circle"), scenario);
     note_place(table, "circle", scenario);
@@ -91,7 +91,7 @@ SlowClockSpread read_slow_clocks(const Table& top) {
     SlowClockSpread spread;
     const Value* value = top.find("slow_clocks");
     if (value == nullptr) return spread;
-    // No part is known to be so far off; beyond it, somebody wrote percent.
+    // No known part deviates this far; a value outside is probably in percent.
     constexpr rig::Range<double> kModelled{0.9, 1.2};
     const Table table(*value, "slow_clocks", {"factor_min", "factor_max"});
     spread.factor_min = table.number("factor_min", kModelled, spread.factor_min);
@@ -126,7 +126,8 @@ TraitsOf read_traits(const Value& value, const std::string& path) {
     return of;
 }
 
-/// `sensor_traits: [{register: 0x47, reads: 0x0c}]`: of all sensors, unless `node_id` and `sensor` say which.
+/// `sensor_traits: [{register: 0x47, reads: 0x0c}]`: for all sensors, unless `node_id` and `sensor` select
+/// some.
 void read_sensor_traits(const Table& top, Scenario& scenario) {
     const Value* list = top.find("sensor_traits");
     if (list == nullptr) return;
@@ -164,7 +165,7 @@ void read_judgement(const Table& top, Scenario& scenario) {
     }
 }
 
-/// `what`: it holds, for a person.
+/// `what`: description of the file for messages.
 FilePlace read_path(const Table& top, std::string_view key, const std::string& what) {
     const Value& value = top.require(key);
     FilePlace file = confined_to_recording(value.file->beside(value.text));
@@ -178,7 +179,7 @@ FilePlace read_path(const Table& top, std::string_view key, const std::string& w
     top.fail(key, expected + "there is none at " + file.shown().string());
 }
 
-/// The document with other files in the place of those that it names.
+/// The document with the names of its files replaced by those in a recording.
 std::string standalone(Value document) {
     for (Value& item : document.items) {
         if (item.kind != Value::Kind::scalar) continue;
@@ -198,7 +199,8 @@ Scenario read_checked(const FilePlace& file, WorldOf world) {
     scenario.name = top.name("name");
     if (world == WorldOf::scenario) scenario.world = read_path(top, "world", "an SDF file");
     if (top.find("world_motion") != nullptr) {
-        scenario.world_motion = read_path(top, "world_motion", "a file that says what moves in the world");
+        scenario.world_motion =
+            read_path(top, "world_motion", "a file with the motion of the world's models");
         note_place(top, "world_motion", scenario);
     }
     read_motion(top, scenario);

@@ -16,7 +16,7 @@ constexpr std::uint32_t kFlashBase = 0x0800'0000;
 constexpr std::uint32_t kFlashBytes = 512 * 1024;
 constexpr std::uint32_t kRamBase = 0x2000'0000;
 constexpr std::uint32_t kRamBytes = 128 * 1024;
-constexpr std::uint32_t kCcmOffset = 0x1'8000;  // CCM SRAM is seen at two places
+constexpr std::uint32_t kCcmOffset = 0x1'8000;  // CCM SRAM is mapped at two addresses
 constexpr std::uint32_t kCcmBase = 0x1000'0000;
 constexpr std::uint32_t kSystemMemoryBase = 0x1FFF'7000;
 constexpr std::uint32_t kUniqueIdOffset = 0x590;
@@ -98,7 +98,7 @@ void NucleoBoard::load(const ElfImage& image, std::span<const std::uint8_t> conf
     }
     const std::uint32_t page = kConfigurationPage - kFlashBase;
     if (configuration.size() > kFlashBytes - page)
-        throw std::runtime_error("the configuration is over a page");
+        throw std::runtime_error("the configuration is larger than a page of flash");
     std::ranges::copy(configuration, flash_.begin() + page);
 }
 
@@ -174,14 +174,14 @@ void NucleoBoard::make_external_interrupts(const Surroundings& env) {
                          [this](std::uint32_t lines) { return next_pin_change(lines); }});
 }
 
-/// Of all pins only those of the data-ready lines change by themselves.
+/// Only the pins of the data-ready lines change by themselves.
 BoardTime NucleoBoard::next_pin_change(std::uint32_t lines) const {
     BoardTime next = kNever;
     for (std::uint32_t bus = 0; bus < kI2cBuses; ++bus) {
         const std::uint32_t line = kFirstDataReadyPin + bus;
         if ((lines >> line & 1U) == 0 || syscfg_->port_of(line) != kPortB) continue;
         const auto change = data_ready_.at(bus).next_change(now());
-        // Rounding must not put it into the past, where it would be waited for without end.
+        // Rounding must not give a time in the past, which would never be reached.
         if (change) next = std::min(next, std::max(to_board_time(*change), now_ + kPsPerUs));
     }
     return next;

@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMiB = 1U << 20U;
 
-/// A process with its standard output as a pipe; killed, if it is still there, at the end. `folder`: its
+/// A process with its standard output as a pipe; the destructor kills it if it still runs. `folder`: its
 /// working directory, or -1.
 class Reader {
   public:
@@ -36,7 +36,8 @@ class Reader {
             return;
         }
         output_ = ends[0];
-        // Without blocking: nothing reads before the process has ended, and it must not wait for that.
+        // Non-blocking: this pipe is read only after the process has ended, and the process must not wait for
+        // it.
         std::array<int, 2> words{-1, -1};
         (void)!::pipe2(words.data(), O_CLOEXEC | O_NONBLOCK);
         words_ = words[0];
@@ -53,10 +54,10 @@ class Reader {
         if (words_ >= 0) ::close(words_);
     }
 
-    /// Why it could not be started; 0: it was.
+    /// errno of a failed start; 0: it was started.
     [[nodiscard]] int error() const noexcept { return error_; }
 
-    /// Up to `size` bytes of its output, none at its end; empty if it keeps silent until then.
+    /// Up to `size` bytes of its output, none at its end; empty if there is no output until `until`.
     [[nodiscard]] std::optional<std::size_t> read(char* to, std::size_t size, Clock::time_point until) const {
         while (true) {
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
@@ -69,15 +70,14 @@ class Reader {
             if (errno != EINTR) return 0;
         }
     }
-    /// What it has said on its standard error: maybe a foreign file's words, which no terminal sees as they
-    /// are.
+    /// Its standard error, escaped: it may contain text of an untrusted file.
     [[nodiscard]] std::string words() const {
         std::string text(4096, '\0');
         const ssize_t count = words_ < 0 ? 0 : ::read(words_, text.data(), text.size());
         text.resize(count > 0 ? static_cast<std::size_t>(count) : 0U);
         return text;
     }
-    /// Its status for waitpid(2)'s macros; empty if it has not ended until then.
+    /// Its status for waitpid(2)'s macros; empty if it has not ended by `until`.
     [[nodiscard]] std::optional<int> ended_by(Clock::time_point until) {
         constexpr std::chrono::milliseconds kStep{2};
         while (process_ > 0) {
@@ -98,10 +98,11 @@ class Reader {
   private:
     struct Ends {
         int output;
-        int words;  ///< for its standard error; -1: ours
+        int words;  ///< for its standard error; -1: that of this process
     };
-    /// With nothing of ours open but the pipe, and with no signal blocked or ignored. `folder`: its working
-    /// directory, so that what it opens is beneath what was opened here; -1: ours.
+    /// Starts it with no open descriptor of this process but the pipes, and with no signal blocked or
+    /// ignored. `folder`: descriptor of its working directory, the folder opened here; -1: that of this
+    /// process.
     [[nodiscard]] int spawn(std::vector<std::string> command, Ends ends, int folder) {
         posix_spawn_file_actions_t actions{};
         posix_spawnattr_t attributes{};
@@ -134,8 +135,8 @@ class Reader {
     int error_ = 0;
 };
 
-/// Beside the running program, or in ../libexec/octoskin/ of one in a folder bin: above any other folder
-/// another user may have made one. Empty if it is nowhere.
+/// Beside the running program, or in ../libexec/octoskin/ of one in a folder bin: another user may be able to
+/// create a program in any other folder. Empty if it is not found.
 std::filesystem::path find_reader() {
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
@@ -149,23 +150,23 @@ std::string refusal(const std::string& limit) {
     return "needs more than " + limit + " to be read: give a world of fewer models, or coarser meshes";
 }
 
-/// What its end means, if it is no good one.
+/// The fault for its exit status; empty if it was successful.
 std::optional<std::string> fault_of(int status, const ReadLimits& limits) {
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
         return refusal(std::to_string(limits.processor_s) + " s of processor time");
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS) {
-        return "what reads it asked the system for more than to read files, and was ended: the file, or one "
+        return "the reader made a forbidden system call and was ended: the file, or one "
                "of "
-               "its meshes, is made to attack; do not use it";
+               "its meshes, may be an attack; do not use it";
     }
     if (WIFSIGNALED(status)) {
-        return "what reads it was ended by signal " + std::to_string(WTERMSIG(status)) +
+        return "the reader was ended by signal " + std::to_string(WTERMSIG(status)) +
                ": the file, or one of its meshes, is damaged; take it out, or save it anew";
     }
     if (WEXITSTATUS(status) == kOutOfMemory)
         return refusal(std::to_string(limits.memory_mib) + " MiB of memory");
     if (WEXITSTATUS(status) != 0)
-        return "what reads it ended with exit code " + std::to_string(WEXITSTATUS(status));
+        return "the reader ended with exit code " + std::to_string(WEXITSTATUS(status));
     return std::nullopt;
 }
 
@@ -176,7 +177,7 @@ Result<std::string, ReadFault> read_in_process(const FilePlace& sdf, const ReadL
     const auto until = Clock::now() + limits.patience;
     const auto program = program_given.empty() ? find_reader() : program_given;
     if (program.empty()) {
-        return unexpected(ReadFault{std::string("what reads SDF files is not there: ") + kWorldReader +
+        return unexpected(ReadFault{std::string("the reader of SDF files is not there: ") + kWorldReader +
                                         " is neither beside this program nor in libexec: build "
                                         "octoskin_programs, or install octoskin anew",
                                     true});
@@ -192,7 +193,7 @@ Result<std::string, ReadFault> read_in_process(const FilePlace& sdf, const ReadL
     }
     Reader reader(std::move(command), folder ? folder->descriptor() : -1);
     if (reader.error() != 0) {
-        return unexpected(ReadFault{"what reads SDF files cannot be started: " + program.string() + ": " +
+        return unexpected(ReadFault{"the reader of SDF files cannot be started: " + program.string() + ": " +
                                         std::strerror(reader.error()),
                                     true});
     }
@@ -208,10 +209,10 @@ Result<std::string, ReadFault> read_in_process(const FilePlace& sdf, const ReadL
         bytes.append(part.data(), *count);
     }
     const auto status = reader.ended_by(std::max(until, Clock::now() + Reader::kPatienceForEnd));
-    if (!status) return unexpected(ReadFault{"what reads it did not end"});
+    if (!status) return unexpected(ReadFault{"the reader did not end"});
     if (auto fault = fault_of(*status, limits)) {
         const std::string words = reader.words();
-        return unexpected(ReadFault{std::move(*fault) + (words.empty() ? "" : "; it said: " + words)});
+        return unexpected(ReadFault{std::move(*fault) + (words.empty() ? "" : "; its output: " + words)});
     }
     return bytes;
 }

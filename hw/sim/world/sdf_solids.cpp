@@ -8,7 +8,7 @@
 namespace octoskin::sim {
 namespace {
 
-/// As long as a message about a foreign file may become, whatever names and values it has.
+/// Limits the length of a message about an untrusted file.
 std::string cut_message(const std::string& text) {
     constexpr std::size_t kShown = 1000;
     return cut_text(text, kShown);
@@ -25,7 +25,7 @@ SolidsOrError read_solids(const FilePlace& sdf, const ReadLimits& limits) {
         return unexpected(WorldError{sdf.shown(), "", bytes.error().what, bytes.error().is_reader_missing});
     }
     auto solids = from_bytes(*bytes);
-    if (!solids) return failed("what reads it broke off");
+    if (!solids) return failed("the reader's output is incomplete");
     if (*solids) {
         for (std::string& warning : (*solids)->warnings)
             warning = sdf.shown().string() + ": " + cut_message(warning);

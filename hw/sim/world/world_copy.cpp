@@ -29,7 +29,7 @@ Result<std::string, std::string> read_all(const FilePlace& file, std::size_t byt
     return std::move(*bytes);
 }
 
-/// What names the file, for the reader of the world, too.
+/// The file name in a uri, as the reader of the world takes it.
 std::string trimmed(std::string uri) {
     constexpr std::string_view kFileScheme = "file://";
     const auto begin = uri.find_first_not_of(" \t\r\n");
@@ -95,7 +95,7 @@ class Copier {
             return std::string(kLeftOut);
         }
         if (const auto known = names_.find(uri); known != names_.end()) return known->second;
-        // What lies in a recording refers to that alone.
+        // A world in a recording refers only to files of the recording.
         const auto of_model = sdf_.folder() == nullptr ? find_model_file(uri) : std::nullopt;
         const FilePlace mesh = of_model ? FilePlace(*of_model) : sdf_.beside(uri);
         std::string ending = mesh.name().extension().string();
@@ -105,7 +105,7 @@ class Copier {
         if (copy_.meshes.size() == kMeshesMax)
             return unexpected(fmt::format("{}: has more than {} meshes", sdf_.shown().string(), kMeshesMax));
         if (!has_mesh_kind(name))
-            return unexpected(mesh.shown().string() + ": has no ending as a file of a mesh has");
+            return unexpected(mesh.shown().string() + ": does not have the ending of a mesh file");
         auto bytes = read_all(mesh, kMeshBytesMax);
         if (!bytes) return unexpected(bytes.error());
         bytes_ += bytes->size();

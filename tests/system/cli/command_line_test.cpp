@@ -23,7 +23,7 @@ TEST_F(CommandLine, names_the_command_that_is_none_and_the_one_that_is_like_it) 
     EXPECT_THAT(near.output, AllOf(HasSubstr("'reply'"), HasSubstr("did you mean 'replay'?")));
     const Said far = octoskin("frobnicate");
     EXPECT_EQ(far.exit_code, 64);
-    EXPECT_THAT(far.output, HasSubstr("'frobnicate'. There are replay"));
+    EXPECT_THAT(far.output, HasSubstr("'frobnicate'. The commands are replay"));
     EXPECT_THAT(far.output,
                 AllOf(HasSubstr("'frobnicate'"), Not(HasSubstr("did you mean")), HasSubstr("repair")));
     const Said of_lab = run(OCTOSKIN_PROGRAM " simulate x");
@@ -79,8 +79,8 @@ TEST_F(CommandLine, answers_64_to_what_can_be_no_interface_and_no_socket) {
         EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
         EXPECT_NE(said.output.find(why), std::string::npos) << arguments << ": " << said.output;
     };
-    expect(daemon + "fd:0 < /dev/null", "fd:0 is no socket");
-    expect(daemon + "fd:0 < " + source("README.md"), "fd:0 is no socket");
+    expect(daemon + "fd:0 < /dev/null", "fd:0 is not a socket");
+    expect(daemon + "fd:0 < " + source("README.md"), "fd:0 is not a socket");
     for (const char* name : {"a_name_too_long_", "a b", "can#0", "123#00", "fd:0000000000000", ""})
         expect(daemon + "'" + name + "'", "'" + std::string(name) + "': a CAN interface's name");
     for (const std::string& command :
@@ -161,9 +161,9 @@ TEST_F(CommandLine, tells_how_much_of_a_robot_the_self_filter_sees) {
     }
 }
 
-/// The first block of code in this language in docs/robot.md.
+/// The first block of code in this language in docs/how-to/own-robot.md.
 std::string snippet(const std::string& language) {
-    const std::string text = content(source("docs/robot.md"));
+    const std::string text = content(source("docs/how-to/own-robot.md"));
     const std::string begin = "\n```" + language + "\n";
     const auto from = text.find(begin) + begin.size();
     return text.substr(from, text.find("\n```\n", from) + 1 - from);

@@ -219,7 +219,7 @@ TEST_F(DataSet, says_below_the_account_which_size_its_images_have_and_which_is_e
     const Said said = octoskin("replay " + path("set"));
     EXPECT_EQ(said.exit_code, 1) << said.output;
     const auto size = said.output.find("6 depth images are 128 x 106, the camera's are 640 x 480");
-    const auto above = said.output.find("the warnings above say more");
+    const auto above = said.output.find("see the warnings above");
     EXPECT_NE(size, std::string::npos) << said.output;
     EXPECT_NE(above, std::string::npos) << said.output;
     EXPECT_LT(said.output.find("wrong_size"), size) << said.output;
@@ -264,9 +264,10 @@ TEST_F(DataSet, an_image_that_is_not_there_is_named_with_its_line_and_what_to_do
     for (const char* command : {"replay ", "explain 0 0 1 --recording "}) {
         const Said said = octoskin(command + path("set"));
         EXPECT_EQ(said.exit_code, 66) << said.output;
-        EXPECT_THAT(said.output, HasSubstr(path("set/depth.txt") +
-                                           ":7: depth/1.300000.png: is not there: unpack the data set anew, "
-                                           "or take out the line"));
+        EXPECT_THAT(said.output,
+                    HasSubstr(path("set/depth.txt") +
+                              ":7: depth/1.300000.png: does not exist: unpack the data set again, "
+                              "or remove the line"));
     }
     EXPECT_FALSE(std::filesystem::exists(path("set/maps")));
 }

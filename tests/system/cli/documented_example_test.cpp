@@ -33,7 +33,8 @@ class DocumentedExample : public ProgramTest {
 
 TEST_F(DocumentedExample, of_a_daemon_without_a_can_interface_makes_a_map) {
     record_short("bench");
-    const std::string program = python_below("docs/daemon.md", "## Trying it without a CAN interface");
+    const std::string program =
+        python_below("docs/reference/control-socket.md", "## A bus without a CAN interface");
     ASSERT_FALSE(program.empty());
     const Said said = python(program);
     EXPECT_EQ(said.exit_code, 0) << said.output;
@@ -47,7 +48,7 @@ TEST_F(DocumentedExample, of_a_daemon_without_a_can_interface_makes_a_map) {
 TEST_F(DocumentedExample, of_a_ros_message_gives_octomap_the_map_that_was_saved) {
     record_short("bench");
     ASSERT_EQ(octoskin("replay " + path("bench") + " --fused-only").exit_code, 0);
-    const std::string program = python_below("docs/planner.md", "## ROS");
+    const std::string program = python_below("docs/how-to/query.md", "## ROS");
     ASSERT_FALSE(program.empty());
     std::filesystem::create_directories(path("octomap_msgs"));
     write(path("octomap_msgs/__init__.py"), "");

@@ -35,7 +35,7 @@ class Interrupted : public ProgramTest {
     }
 };
 
-constexpr const char* kRemoved = "interrupted: what was not finished is removed";
+constexpr const char* kRemoved = "interrupted: unfinished files are removed";
 
 TEST_F(Interrupted, replay_leaves_the_maps_of_the_one_before_and_nothing_else) {
     record_short("rec");

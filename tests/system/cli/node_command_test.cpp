@@ -96,7 +96,7 @@ TEST_F(NodeCommand, does_and_tells_each_of_them) {
     EXPECT_EQ(stopped.exit_code, 0) << stopped.output;
     EXPECT_EQ(stopped.output, "node 1 'bench': stop: ranging; 4 sensors: 3 ranging, 1 stopped\n");
     EXPECT_EQ(command("1 start").output, "node 1: start: ranging; 4 sensors: 4 ranging\n");
-    EXPECT_THAT(command("all send_info --rig " + rig_file_).output, HasSubstr(", the rig's; up "));
+    EXPECT_THAT(command("all send_info --rig " + rig_file_).output, HasSubstr(", as in the rig; up "));
     EXPECT_EQ(command("1 identify --seconds 1").exit_code, 0);
     const Said refused = command("1 set_rate --period-ms 1");
     EXPECT_EQ(refused.exit_code, 1) << refused.output;

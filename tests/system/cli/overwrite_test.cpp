@@ -154,7 +154,7 @@ TEST_F(Overwrite, a_directory_in_use_is_named_with_what_to_do) {
     ASSERT_EQ(::flock(::fileno(read), LOCK_SH), 0);
     const Said writer = octoskin(again);
     EXPECT_EQ(writer.exit_code, 73) << writer.output;
-    EXPECT_THAT(writer.output, HasSubstr(path("rec") + ": another octoskin reads this recording"));
+    EXPECT_THAT(writer.output, HasSubstr(path("rec") + ": another octoskin is reading this recording"));
     EXPECT_EQ(octoskin("replay " + path("rec")).exit_code, 0);  // readers do not mind each other
     ASSERT_EQ(::flock(::fileno(read), LOCK_EX), 0);
     const Said reader = octoskin("replay " + path("rec"));
@@ -173,7 +173,8 @@ TEST_F(Overwrite, maps_with_a_directory_in_their_way_are_refused_and_those_befor
     std::filesystem::create_directory(path("rec/maps/proximity.ply"));
     const Said said = octoskin("replay " + path("rec") + " --configuration paper");
     EXPECT_EQ(said.exit_code, 73) << said.output;
-    EXPECT_THAT(said.output, AllOf(HasSubstr("maps/proximity.ply: is no file"), HasSubstr("move it away")));
+    EXPECT_THAT(said.output,
+                AllOf(HasSubstr("maps/proximity.ply: is not a file"), HasSubstr("move it away")));
     EXPECT_EQ(content(path("rec/maps/fused.ot")), fused);
     EXPECT_EQ(content(path("rec/maps/maps.yaml")), origin);
     EXPECT_EQ(run("ls -A " + path("rec/maps") + " | grep -c octoskin").output, "0\n");
@@ -185,8 +186,8 @@ TEST_F(Overwrite, maps_that_a_replay_has_none_of_go_with_the_replay_before) {
     write(path("rec/maps/depth.ot"), "somebody's own");
     const Said said = octoskin("replay " + path("rec") + " --fused-only");
     ASSERT_EQ(said.exit_code, 0) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("being of the replay before: depth.bt, depth.ply, proximity.ot"));
-    EXPECT_THAT(said.output, HasSubstr("depth.ot lie there too, and are not of this replay"));
+    EXPECT_THAT(said.output, HasSubstr("of the replay before: depth.bt, depth.ply, proximity.ot"));
+    EXPECT_THAT(said.output, HasSubstr("depth.ot are there too, and are not of this replay"));
     EXPECT_EQ(names_in("rec/maps"), "depth.ot\nfused.bt\nfused.ot\nfused.ply\nmaps.yaml\n");
     EXPECT_EQ(content(path("rec/maps/depth.ot")), "somebody's own");
 }
@@ -201,7 +202,8 @@ class OverwriteByExperiment : public Overwrite {
         const Said said = experiment();
         EXPECT_EQ(said.exit_code, 73) << said.output;
         EXPECT_THAT(said.output,
-                    AllOf(HasSubstr(path("out") + ": has a " + name + " that no experiment left there"),
+                    AllOf(HasSubstr(path("out") + ": has a " + name +
+                                    " that is not an unchanged result of an experiment"),
                           HasSubstr("give another directory"), testing::Not(HasSubstr("ground truth"))));
     }
 };
@@ -223,7 +225,7 @@ TEST_F(OverwriteByExperiment, replaces_nothing_that_no_experiment_left) {
 
 TEST_F(OverwriteByExperiment, replaces_its_own_results_again_and_again) {
     ASSERT_EQ(experiment().exit_code, 0);
-    // As README.md has it: maps of the recording beside it, and something of one's own.
+    // As docs/start/simulation.md has it: maps of the recording beside it, and something of one's own.
     ASSERT_EQ(octoskin("replay " + path("out/recording")).exit_code, 0);
     write(path("out/notes.txt"), "what I saw");
     const Said again = experiment();

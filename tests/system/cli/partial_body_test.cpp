@@ -68,10 +68,10 @@ TEST_F(PartialBodyTest, a_speck_on_a_bolt_is_no_body_of_the_link_that_it_is_fixe
     EXPECT_EQ(answer["links_unknown"], Json({"upper"}));
     EXPECT_EQ(answer["links_with_borrowed_body"], Json({{"fore", "tool"}}));
     EXPECT_THAT(query(path("map.ot"), speck).output,
-                HasSubstr("asked about with the body of tool, which is fixed to it: fore\n"));
+                HasSubstr("checked with the body of tool, to which it is fixed: fore\n"));
     const Said checked = octoskin("rig " + rig("rig.yaml") + " --robot " + rig("speck.urdf"));
     EXPECT_THAT(checked.output, HasSubstr("  link upper: no body: a query"));
-    EXPECT_THAT(checked.output, HasSubstr("  link fore: no body of its own: that of tool,"));
+    EXPECT_THAT(checked.output, HasSubstr("  link fore: no body of its own: it uses that of tool,"));
 }
 
 TEST_F(PartialBodyTest, a_post_through_the_same_link_with_a_body_is_occupied) {
@@ -150,7 +150,7 @@ TEST_F(PartialBodyTest, replay_tells_whose_body_stands_for_a_link) {
     const Said replayed = octoskin("replay " + path("mount") + " --fused-only");
     EXPECT_EQ(replayed.exit_code, 0) << replayed.output;
     EXPECT_THAT(replayed.output, HasSubstr("mount: this link moves, has a <visual> and no body of its own; "
-                                           "that of panda_link2, "));
+                                           "the body of panda_link2, "));
 }
 
 }  // namespace

@@ -149,7 +149,8 @@ TEST_F(QueryCommandTest, that_cannot_be_asked_says_why) {
         expect(std::string(" --joints ") + joints, 64, "expected a joint configuration: one number for each");
     }
     expect(" --joints 0,9,0,-2,0,1,0", 64, "panda_joint2 is 9; its limits are");
-    expect(" --path " + path("bad.txt"), 65, "bad.txt:2: 'x' is no plain, finite number; expected a joint");
+    expect(" --path " + path("bad.txt"), 65,
+           "bad.txt:2: 'x' is not a plain, finite number; expected a joint");
     write(path("few.txt"), std::string("# two\n") + kReady + "\n\n0,0,0\n");
     expect(" --path " + path("few.txt"), 64, "few.txt:4: configuration 2: 3 joint positions; the rig has 7");
     write(path("beyond.txt"), std::string("# one\n0,9,0,-2,0,1,0\n"));
@@ -159,7 +160,7 @@ TEST_F(QueryCommandTest, that_cannot_be_asked_says_why) {
     expect(" --path ''", 66, "cannot be read: No such file");
     expect(" --path /proc/self/mem", 74, "/proc/self/mem: cannot be read");
     expect(" --path /dev/zero", 65, "/dev/zero: has more than 1048576 bytes, which no path has");
-    expect(" --path " + directory_.string(), 64, "is a directory, not a file with a configuration a line");
+    expect(" --path " + directory_.string(), 64, "is a directory, not a file with one configuration a line");
     expect(" --path " + path("none.txt"), 65, "no joint configuration");
     expect(" --path " + path("nowhere.txt"), 66, "nowhere.txt");
     expect(std::string(" --ignore-link hand --joints ") + kReady, 64, "the robot has no link 'hand'");
@@ -180,15 +181,16 @@ TEST_F(QueryCommandTest, refuses_what_would_not_be_looked_at) {
         return said.output;
     };
     EXPECT_THAT(refused(joints + rig + " --socket " + path("nobody")),
-                HasSubstr("--rig is of a map file; a daemon has its own: leave it out, or name the map"));
+                HasSubstr("--rig is for a map file; a daemon has its own: leave it out, or name the map"));
     EXPECT_THAT(refused(joints + " --robot " + source("hw/rigs/experiment.yaml")),
-                HasSubstr("--robot is of a"));
-    EXPECT_THAT(refused(joints + " --stands " + kReady), HasSubstr("--stands is of a map file"));
+                HasSubstr("--robot is for a"));
+    EXPECT_THAT(refused(joints + " --stands " + kReady), HasSubstr("--stands is for a map file"));
     EXPECT_THAT(refused(map + rig + joints + " --socket " + path("nobody")),
-                HasSubstr("--socket is where a daemon listens, but a map file is asked"));
+                HasSubstr("--socket is where a daemon listens, but a map file is given"));
     for (const char* option : {" --radius 1", " --above 0", " --pockets 1", " --tries 1"})
-        EXPECT_THAT(refused(map + rig + joints + option), HasSubstr(" is of --unknown: give that, too"));
-    EXPECT_THAT(refused(map + rig + joints + " --unknown --reach 1"), HasSubstr("--reach: of --unknown no"));
+        EXPECT_THAT(refused(map + rig + joints + option), HasSubstr(" is for --unknown: give that, too"));
+    EXPECT_THAT(refused(map + rig + joints + " --unknown --reach 1"),
+                HasSubstr("--reach: --unknown gives no"));
     write(path("way.txt"), std::string(kReady) + "\n");
     EXPECT_THAT(refused(map + rig + " --unknown --path " + path("way.txt")),
                 HasSubstr("give it as --joints"));
@@ -200,7 +202,7 @@ TEST_F(QueryCommandTest, takes_no_variable_that_nothing_set_for_an_option_that_w
     const auto expect_refused = [](const std::string& arguments, const std::string& what) {
         const Said said = octoskin("query " + arguments);
         EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
-        EXPECT_THAT(said.output, HasSubstr(what + ": the name of a file is missing"));
+        EXPECT_THAT(said.output, HasSubstr(what + ": the file name is missing"));
     };
     expect_refused("''" + joints, "map");
     expect_refused(map + " --rig ''" + joints, "--rig");
@@ -257,7 +259,7 @@ TEST_F(QueryCommandTest, takes_for_own_space_where_the_arm_is_said_to_stand) {
     EXPECT_EQ(query(unknown + " --own-space 0.05 --stands " + kReady).exit_code, 0) << "as it stands";
     const Said few = query(unknown + aside + " --stands 0,1");
     EXPECT_EQ(few.exit_code, 64);
-    EXPECT_THAT(few.output, HasSubstr("how the arm stands: 2 joint positions; the rig has 7 joints"));
+    EXPECT_THAT(few.output, HasSubstr("the present posture: 2 joint positions; the rig has 7 joints"));
     EXPECT_THAT(query(unknown + aside + " --stands 1,,2").output,
                 HasSubstr("--stands '1,,2': a number is missing"));
 }
@@ -273,7 +275,7 @@ TEST_F(QueryCommandTest, warns_if_the_map_was_made_with_another_rig) {
     EXPECT_EQ(other.exit_code, same.exit_code);
     EXPECT_THAT(other.output, HasSubstr("experiment.yaml is another rig than " + path("run/rig.yaml")));
     write(path("maps/fused.ot"), content(path("maps/proximity.ot")));
-    EXPECT_THAT(octoskin(asked + path("run/rig.yaml")).output, HasSubstr("so nothing says whether"));
+    EXPECT_THAT(octoskin(asked + path("run/rig.yaml")).output, HasSubstr("so it is not known whether"));
 }
 
 TEST_F(QueryCommandTest, help_says_what_each_option_takes) {

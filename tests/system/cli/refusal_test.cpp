@@ -31,7 +31,7 @@ class Refusal : public ProgramTest {
 
 TEST_F(Refusal, of_a_place_where_nothing_can_be_made_says_where_else) {
     const std::string daemon = "run --no-camera --can nocan9 --rig " + rig_ + " --maps ";
-    const std::string absent = "does not exist; make it, or name a place elsewhere with ";
+    const std::string absent = "does not exist; create it, or name a place elsewhere with ";
     write(path("file"), "");
     expect_each({
         {daemon + path("maps") + " --socket /nodir/x", 69, "the folder /nodir " + absent + "--socket"},
@@ -50,7 +50,7 @@ TEST_F(Refusal, of_options_that_would_be_ignored) {
         {"rig " + rig_ + " --canonical --block " + path("block"), 64, "--canonical"},
         {"rig " + rig_ + " --node bench", 64, "--block"},
         {can + " --socket " + path("joints") + " < /dev/null", 64, "--socket"},
-        {"joints --can fd:0 --rig " + rig_ + " < /dev/null", 64, "fd:0 is no socket"},
+        {"joints --can fd:0 --rig " + rig_ + " < /dev/null", 64, "fd:0 is not a socket"},
         {"calibrate offset --can fd:0 --target-mm 140 --sensor front --rig " + rig_ + " < /dev/null", 64,
          "fd:0"},
     });
@@ -71,7 +71,7 @@ TEST_F(Refusal, of_one_kind_of_file_in_place_of_another_says_what_it_looks_like)
         {"rig " + source("hw/robots/panda.urdf"), 78,
          "panda.urdf: expected YAML, found XML that looks like a robot (URDF)"},
         {"rig " + source("hw/worlds/experiment.sdf"), 78, "found XML that looks like a world (SDF)"},
-        {"mapping " + rig_, 78, "no key of a mapping file, but of a rig, which this looks like"},
+        {"mapping " + rig_, 78, "not a key of a mapping file, but of a rig, which this looks like"},
     });
 }
 
@@ -104,7 +104,7 @@ TEST_F(Refusal, of_a_step_that_nobody_asks_for_ends_the_replay) {
     record_short("rec");
     const Said said = run("printf '\\n\\n' | " OCTOSKIN_PROGRAM " replay " + path("rec") + " --step");
     EXPECT_EQ(said.exit_code, 74) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("standard input has ended, and with it the replay"));
+    EXPECT_THAT(said.output, HasSubstr("standard input, and with it the replay, ended"));
     EXPECT_THAT(said.output, HasSubstr("(1750000000.000135) can0 040#092E26"));
     EXPECT_FALSE(std::filesystem::exists(path("rec/maps")));
 }

@@ -52,8 +52,9 @@ TEST_F(SceneOfARecording, has_the_meshes_that_were_found_in_folders_of_models) {
     EXPECT_THAT(nowhere.output, AllOf(HasSubstr("model://kitchen/meshes/"), HasSubstr("--model-path")));
     const Said made = octoskin(simulate + " --model-path " + path("worlds") + ":" + path("models"));
     ASSERT_EQ(made.exit_code, 0) << made.output;
-    EXPECT_THAT(made.output, AllOf(HasSubstr("warning " + kitchen() + ": line "),
-                                   HasSubstr("<mimic> in <model>"), Not(HasSubstr("without its world"))));
+    EXPECT_THAT(made.output,
+                AllOf(HasSubstr("warning " + kitchen() + ": line "), HasSubstr("<mimic> in <model>"),
+                      Not(HasSubstr("does not contain its world"))));
     const std::string world = content(path("rec/world.sdf"));
     EXPECT_THAT(world, AllOf(HasSubstr("mesh_01.obj"), Not(HasSubstr("model://"))));
     const Said judged = octoskin("evaluate " + path("rec"));
@@ -78,7 +79,7 @@ TEST_F(SceneOfARecording, has_the_models_that_its_world_includes) {
                                " --scenario " + source("tests/data/short/scenario.yaml") + " --world " +
                                kitchen() + " --model-path " + path("models"));
     ASSERT_EQ(made.exit_code, 0) << made.output;
-    EXPECT_THAT(made.output, Not(HasSubstr("without its world")));
+    EXPECT_THAT(made.output, Not(HasSubstr("does not contain its world")));
     std::filesystem::remove_all(path("models"));
     std::filesystem::remove_all(path("worlds"));
     const Said judged = octoskin("evaluate " + path("rec"));
@@ -180,7 +181,7 @@ TEST_F(SceneOfARecording, made_with_ones_own_scenario_and_world_is_in_it) {
     const Said made = octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
                                " --scenario " + path("mine.yaml"));
     ASSERT_EQ(made.exit_code, 0) << made.output;
-    EXPECT_THAT(made.output, Not(HasSubstr("goes without")));
+    EXPECT_THAT(made.output, Not(HasSubstr("does not contain its world")));
     EXPECT_EQ(run("ls -A " + path("rec")).output,
               "can.log\ndepth.epoch.yaml\ndepth.oni\nmesh_01.obj\nmeta.yaml\nrig.yaml\nrobot.urdf\n"
               "scenario.yaml\nworld.sdf\n");
@@ -296,7 +297,7 @@ TEST_F(SceneOfARecording, whose_meta_cannot_be_read_is_named_when_a_map_beside_i
     write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: simulation\nseed: some\n");
     const Said said = octoskin("evaluate " + path("rec/maps/fused.ot") + " --rig " + path("rec/rig.yaml"));
     EXPECT_NE(said.exit_code, 0) << said.output;
-    EXPECT_THAT(said.output, AllOf(HasSubstr("rec/meta.yaml:3: seed: "), HasSubstr("mend that file")));
+    EXPECT_THAT(said.output, AllOf(HasSubstr("rec/meta.yaml:3: seed: "), HasSubstr("repair that file")));
 }
 
 TEST_F(SceneOfARecording, without_a_checksum_goes_by_its_name) {
@@ -448,11 +449,12 @@ TEST_F(MovingWorld, is_not_judged) {
     record("gone", "world_motion: floor.motion.yaml\n");
     const Said judged = octoskin("evaluate " + path("gone") + " --scenario " + path("gone.yaml"));
     EXPECT_EQ(judged.exit_code, 78) << judged.output;
-    EXPECT_THAT(judged.output, HasSubstr("gone.yaml:5: world_motion: what moves has no one place"));
+    EXPECT_THAT(judged.output,
+                HasSubstr("gone.yaml:5: world_motion: a model that moves has no single place"));
     const Said studied = octoskin("experiment --rig " + source("tests/data/short/rig.yaml") + " --scenario " +
                                   path("gone.yaml") + " --out " + path("study"));
     EXPECT_EQ(studied.exit_code, 78) << studied.output;
-    EXPECT_THAT(studied.output, HasSubstr("world_motion: what moves has no one place"));
+    EXPECT_THAT(studied.output, HasSubstr("world_motion: a model that moves has no single place"));
     EXPECT_THAT(studied.output, Not(HasSubstr("ground truth"))) << "before any work";
     EXPECT_FALSE(std::filesystem::exists(path("study")));
 }
@@ -465,7 +467,7 @@ TEST_F(MovingWorld, is_refused_where_its_motion_is_not_there_or_of_another_world
     const Said absent = octoskin(simulate);
     EXPECT_EQ(absent.exit_code, 78) << absent.output;
     EXPECT_THAT(absent.output,
-                HasSubstr("mine.yaml:2: world_motion: expected the path of a file that says what moves"));
+                HasSubstr("mine.yaml:2: world_motion: expected the path of a file with the motion"));
     write(path("no.yaml"), "models: [{model: guest, places: [{at_s: 1, is_there: false}]}]\n");
     const Said other = octoskin(simulate);
     EXPECT_EQ(other.exit_code, 78) << other.output;

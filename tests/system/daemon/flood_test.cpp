@@ -150,7 +150,7 @@ TEST_F(DaemonTest, maps_on_in_a_flood_of_joint_states_tells_of_it_and_ends_in_ti
     const Flood flood(daemon_->joints());
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->status().dump(1) << daemon_->log();
     const auto is_told = daemon_->wait_until(
-        [](const Json& now) { return has_problem(now, "quicker than they can be taken"); }, 5s);
+        [](const Json& now) { return has_problem(now, "faster than they can be taken"); }, 5s);
     EXPECT_TRUE(is_told) << daemon_->status()["joints_socket"].dump();
     const Json before = daemon_->status();
     const auto begun = std::chrono::steady_clock::now();

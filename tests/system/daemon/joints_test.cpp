@@ -67,7 +67,7 @@ TEST(JointsCommand, waits_for_the_daemon_and_takes_it_back) {
     EXPECT_EQ(WEXITSTATUS(outcome), 0);
     const std::string log = testing_support::ScratchFolder::read(folder / "log");
     EXPECT_NE(log.find("waiting for it"), std::string::npos) << log;
-    EXPECT_NE(log.find("go through again"), std::string::npos) << log;
+    EXPECT_NE(log.find("are sent again"), std::string::npos) << log;
 }
 
 // The kernel keeps ten of them.
@@ -96,7 +96,7 @@ TEST(JointsCommand, holds_nobody_up_for_a_daemon_that_is_stuck) {
     (void)std::system(command.c_str());
     EXPECT_LT(std::chrono::steady_clock::now() - begun, 5s) << "300 lines of 100 ms would be 30 s";
     const std::string log = testing_support::ScratchFolder::read(folder / "log");
-    EXPECT_NE(log.find("takes nothing"), std::string::npos) << log;
+    EXPECT_NE(log.find("accepts no samples"), std::string::npos) << log;
 }
 
 TEST(JointsCommand, says_at_the_end_that_nobody_was_there) {

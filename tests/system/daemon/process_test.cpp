@@ -110,7 +110,7 @@ TEST_F(DaemonTest, reloads_all_or_nothing) {
     folder_.write("rig.yaml", "extends: nowhere.yaml\nname: third\n");
     daemon_->signal(SIGHUP);
     ASSERT_TRUE(daemon_->wait_until(
-        [](const Json& status) { return has_problem(status, "the old settings hold"); }, 10s))
+        [](const Json& status) { return has_problem(status, "the old settings stay in force"); }, 10s))
         << daemon_->log();
     EXPECT_EQ(daemon_->status()["rig"], "second");
     EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();

@@ -89,13 +89,13 @@ TEST_F(RecordCommand, follows_its_own_recording_alone) {
 TEST_F(RecordCommand, says_why_its_recording_ended_before_it_was_to) {
     answer_ = [this](const std::string& request) -> Json {
         Json own = recording(1, "own", request.starts_with("record start") ? "recording" : "ended");
-        own["ended_early"] = "the bus's time went back";
+        own["ended_early"] = "the bus time went back";
         return {{"ok", true}, {"recording", own}};
     };
     const Said ran = record((folder_ / "own").string());
     EXPECT_EQ(ran.exit_code, 1) << ran.output;
     EXPECT_NE(ran.output.find((folder_ / "own").string() +
-                              ": whole, but it ended before it was to: the bus's time went back"),
+                              ": complete, but it ended before its time: the bus time went back"),
               std::string::npos)
         << ran.output;
 }
@@ -110,7 +110,7 @@ TEST_F(RecordCommand, says_so_when_the_daemon_knows_only_of_others) {
     const Said ran = record((folder_ / "own").string());
     EXPECT_EQ(ran.exit_code, 69) << ran.output;
     EXPECT_NE(ran.output.find((folder_ / "own").string() + ": the daemon"), std::string::npos) << ran.output;
-    EXPECT_NE(ran.output.find("knows no more of this recording"), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("no longer knows this one"), std::string::npos) << ran.output;
 }
 
 TEST_F(RecordCommand, tells_a_daemon_that_no_longer_answers_from_one_that_ended) {
@@ -120,9 +120,9 @@ TEST_F(RecordCommand, tells_a_daemon_that_no_longer_answers_from_one_that_ended)
     };
     const Said ran = record((folder_ / "own").string());
     EXPECT_EQ(ran.exit_code, 74) << ran.output;
-    EXPECT_NE(
-        ran.output.find("the daemon no longer answers, and may record on to " + (folder_ / "own").string()),
-        std::string::npos)
+    EXPECT_NE(ran.output.find("the daemon no longer answers, and may continue to record to " +
+                              (folder_ / "own").string()),
+              std::string::npos)
         << ran.output;
     EXPECT_NE(ran.output.find("octoskin record --stop " + (folder_ / "own").string()), std::string::npos);
 }

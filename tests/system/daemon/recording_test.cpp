@@ -62,7 +62,8 @@ class DaemonRecording : public DaemonTest {
         const Said replay = octoskin("replay " + out() + " --fused-only " + configuration);
         EXPECT_EQ(replay.exit_code, 0) << replay.output;
         EXPECT_EQ(replay.output.find("CAN frames"), std::string::npos) << "it plays commits" << replay.output;
-        EXPECT_NE(replay.output.find("the daemon's own, byte for byte"), std::string::npos) << replay.output;
+        EXPECT_NE(replay.output.find("identical to the daemon's, byte for byte"), std::string::npos)
+            << replay.output;
         EXPECT_TRUE(ScratchFolder::read(out() + "/maps/fused.ot") == ScratchFolder::read(out() + "/last.ot"));
     }
 };
@@ -171,7 +172,7 @@ TEST_F(DaemonRecording, begun_with_a_full_map_gives_the_daemons_own_map_and_expl
     const Said explained = octoskin(
         fmt::format("explain --recording {} -- {} {} {}", out(), refused->x(), refused->y(), refused->z()));
     EXPECT_EQ(explained.exit_code, 0) << explained.output;
-    EXPECT_NE(explained.output.find("unknown: the map was full, and had no room for"), std::string::npos)
+    EXPECT_NE(explained.output.find("unknown: the map was full and had no room for"), std::string::npos)
         << explained.output;
     // With another mapping it need not be the daemon's: whether that is complete nobody knows.
     const auto other = folder_.write("other.yaml", "base: paper\nmap: {memory_max_mib: 1}\n");
@@ -197,9 +198,9 @@ TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of
         (void)folder_.write("recording/order.log", changed);
         const Said replay = octoskin("replay " + out() + " --fused-only");
         EXPECT_EQ(replay.exit_code, 1) << replay.output;
-        EXPECT_NE(replay.output.find(
-                      "is not the daemon's own, though nothing else was given than the recording: " + why),
-                  std::string::npos)
+        EXPECT_NE(
+            replay.output.find("differs from the daemon's, although only the recording was given: " + why),
+            std::string::npos)
             << replay.output;
     };
     // All readings of the second half: a single one may have changed nothing in voxels that are sure already.
@@ -207,7 +208,8 @@ TEST_F(DaemonRecording, is_whole_when_the_daemon_is_told_to_end_in_the_middle_of
     ASSERT_NE(half, std::string::npos);
     const std::string of_nobody =
         std::regex_replace(order.substr(half), std::regex("\nR [0-9]+ "), "\nR 99 ");
-    expect_unlike(order.substr(0, half) + of_nobody, "what the daemon took was rejected (see the account)");
+    expect_unlike(order.substr(0, half) + of_nobody,
+                  "input that the daemon used was rejected (see the input counters)");
     const auto crc = order.rfind(" last ");
     ASSERT_NE(crc, std::string::npos);
     expect_unlike(order.substr(0, crc) + " last 00000001\n", "files of the recording were changed");
@@ -230,7 +232,7 @@ TEST_F(DaemonRecording, is_told_by_its_command_when_the_daemon_ends_in_the_middl
     daemon_->signal(SIGTERM);
     command.join();
     EXPECT_EQ(ran.exit_code, 1) << ran.output;
-    EXPECT_NE(ran.output.find(out() + ": whole, but "), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find(out() + ": complete, but "), std::string::npos) << ran.output;
     EXPECT_NE(ran.output.find("the daemon ended"), std::string::npos) << ran.output;
 }
 
@@ -248,7 +250,7 @@ TEST_F(DaemonRecording, ends_whole_when_another_rig_is_read_and_goes_on_while_it
     ASSERT_TRUE(
         daemon_->wait_until([](const Json& status) { return state_of_recording(status) == "ended"; }, 5s))
         << daemon_->status()["recording"].dump();
-    EXPECT_EQ(daemon_->status()["recording"]["ended_early"], "the daemon read its files anew (SIGHUP)");
+    EXPECT_EQ(daemon_->status()["recording"]["ended_early"], "the daemon re-read its files (SIGHUP)");
     expect_own_map();
 }
 
@@ -317,7 +319,7 @@ TEST_F(DaemonRecording, of_a_killed_daemon_can_be_replayed_to_its_last_line) {
     std::ofstream(out() + "/meta.yaml") << "schema: octoskin-recording/1\nsource: robot\n";
     const Said replay = octoskin("replay " + out());
     EXPECT_EQ(replay.exit_code, 0) << replay.output;
-    EXPECT_NE(replay.output.find("order.log was cut off"), std::string::npos) << replay.output;
+    EXPECT_NE(replay.output.find("order.log is cut off"), std::string::npos) << replay.output;
 }
 
 TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {

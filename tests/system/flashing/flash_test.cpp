@@ -138,7 +138,7 @@ TEST_F(FlashTest, option_bytes_are_written_when_told_and_read_again) {
     put_pretended_chip("0x20016469", "0xFFEFF8AA");
     const Said said = flash("--write-option-bytes");
     EXPECT_EQ(said.exit_code, 0) << said.output << content(path("out/openocd.log"));
-    EXPECT_THAT(said.output, HasSubstr("option bytes 0xFBEFFCAA: as they must be"));
+    EXPECT_THAT(said.output, HasSubstr("option bytes 0xFBEFFCAA: as required"));
     EXPECT_THAT(content(path("out/openocd.log")),
                 AllOf(HasSubstr("chip: option_write 0 0x20 0x08000400 0x0C100700"),
                       HasSubstr("chip: option_load 0")));
@@ -202,7 +202,7 @@ TEST_F(FlashTest, a_folder_that_takes_no_files_is_named_with_the_reason_and_a_re
     std::filesystem::create_directories(path("out/flash.hex"));
     const Said no_file = flash("--dry-run");
     EXPECT_EQ(no_file.exit_code, 73) << no_file.output;
-    EXPECT_THAT(no_file.output, HasSubstr("flash.hex: is there already; move it away"));
+    EXPECT_THAT(no_file.output, HasSubstr("flash.hex: exists already; move it away"));
     std::filesystem::remove_all(path("out"));
     std::filesystem::create_directories(path("out"));
     std::filesystem::create_symlink("/dev/full", path("out/flash.cfg"));

@@ -10,9 +10,9 @@ import tempfile
 LISTED = """\
 test-camera
   octoskin, wall
-  80 x 60 at 2 Hz  <- begins with it
+  80 x 60 at 2 Hz  <- initial mode
   160 x 120 at 30 Hz
-  80 x 60 at 2 Hz, not in millimetres: octoskin does not read it
+  80 x 60 at 2 Hz, not in millimetres: octoskin cannot read it
 """
 
 

@@ -150,7 +150,7 @@ TEST_F(OniTest, a_truncated_recording_gives_its_whole_frames_and_says_what_is_lo
         EXPECT_FALSE(end->has_value());
         EXPECT_THAT(reader->loss().value_or(""),
                     testing::HasSubstr("depth.oni: was cut off; " + std::to_string(expected) +
-                                       " of its 12 frames are whole and used, " +
+                                       " of its 12 frames are complete and used, " +
                                        std::to_string(kFrames - expected) + " are lost"));
         EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(6));
     }
@@ -311,8 +311,7 @@ TEST_F(OniTest, a_file_that_is_removed_while_it_is_recorded_is_an_error_that_say
     });
     const auto closed = writer->close();
     ASSERT_FALSE(closed);
-    EXPECT_THAT(closed.error().what,
-                testing::HasSubstr("depth.oni: the file was removed while it was recorded"));
+    EXPECT_THAT(closed.error().what, testing::HasSubstr("depth.oni: the file was removed during recording"));
     EXPECT_FALSE(fs::exists(epoch()));
 }
 

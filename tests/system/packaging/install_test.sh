@@ -48,11 +48,11 @@ simulate() {
 simulate recording
 mv "$folder/prefix/libexec/octoskin/octoskin-sdf.so" "$folder/module"
 if simulate none; then exit 1; fi
-grep -q "what reads SDF files cannot be loaded: octoskin-sdf.so: .* install octoskin anew" "$folder/log"
+grep -q "the reader of SDF files cannot be loaded: octoskin-sdf.so: .* install octoskin anew" "$folder/log"
 mv "$folder/module" "$folder/prefix/libexec/octoskin/octoskin-sdf.so"
 /usr/bin/python3 "$(dirname "$0")/links_test.py" "$folder/prefix/share/doc/octoskin"
 documents=$folder/prefix/share/doc/octoskin
-grep -qF "](../packaging/README.md)" "$documents/docs/daemon.md"
+grep -qF "](../../packaging/README.md)" "$documents/docs/start/beside-a-robot.md"
 grep -qF "](../hw/worlds/bench.scenario.yaml)" "$documents/docs/scenario.md"
 grep -qF "| common/ |" "$documents/README.md"
 echo "OCTOSKIN_CAN=can9" >> "$folder/prefix/etc/default/octoskin"

@@ -10,8 +10,8 @@
 namespace octoskin {
 namespace {
 
-/// Where no node is, our own SYNC tells a time from each to the next, and then looks like a jump: that is no
-/// time that anybody shares, and coming and going it would fill the log.
+/// Without nodes the daemon's own SYNC only defines a time from each SYNC to the next, which then looks like
+/// a time jump. No other device shares that time, and a problem that comes and goes would fill the log.
 bool is_time_shared(const DaemonView& view) {
     const auto& nodes = view.pipeline->intake().nodes().records();
     const bool has_node =
@@ -22,22 +22,23 @@ bool is_time_shared(const DaemonView& view) {
 
 std::string why_no_exchange(const DaemonView& view) {
     if (view.is_listen_only)
-        return "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)";
+        return "the time is not known: no host on the bus sends SYNC and FOLLOW_UP (--listen-only sends "
+               "none)";
     return fmt::format(
-        "the time is not known yet: nodes are heard, but no SYNC of ours came onto the bus (can.not_sent, "
-        "{})",
+        "the time is not known yet: nodes are active, but no SYNC of this host reached the bus "
+        "(can.not_sent, {})",
         view.inputs->can().counts().not_sent);
 }
 
 }  // namespace
 
-/// Each frame's stamp is this clock's: while it shows nonsense no frame has a time.
+/// Each frame's time stamp comes from this clock: with an impossible wall time no frame has a time.
 void add_wall_clock(const DaemonView& view, Problems& problems) {
     if (view.is_wall_clock_right) return;
-    problems.push_back({"wall clock",
-                        "this machine's clock shows a time before 1970 or after 2199, and frames get their "
-                        "stamps from it: set it (`sudo timedatectl set-time '2026-01-31 12:00:00'`, or "
-                        "`set-ntp true`)"});
+    problems.push_back(
+        {"wall clock",
+         "this machine's clock shows a time before 1970 or after 2199, and frames get their time stamps from "
+         "it: set it (`sudo timedatectl set-time '2026-01-31 12:00:00'`, or `set-ntp true`)"});
 }
 
 void add_link(const DaemonView& view, Problems& problems) {
@@ -50,7 +51,7 @@ void add_link(const DaemonView& view, Problems& problems) {
     const CanLink::Counts counts = view.inputs->can().counts();
     if (counts.dropped > 0) {
         problems.push_back(
-            {"kernel", fmt::format("{}: frames were lost in the kernel: this machine is, or was, too busy",
+            {"kernel", fmt::format("{}: the kernel dropped frames: this machine is, or was, too busy",
                                    *view.interface)});
     }
 }
@@ -69,15 +70,15 @@ void add_other_hosts(const DaemonView& view, Problems& problems) {
         problems.push_back(
             {"time back",
              fmt::format(
-                 "the bus's time went back (times_back, {}) within the last minute: the host that sends "
-                 "SYNC began anew, or there are two; joint states and readings go on from there",
+                 "the bus time went back (times_back, {}) within the last minute: the host that sends SYNC "
+                 "restarted, or there are two; joint states and readings continue from there",
                  view.pipeline->times_back())});
     }
     if (view.used.time_ahead && view.now - *view.used.time_ahead < kLeapTold) {
         problems.push_back(
             {"time ahead",
-             fmt::format("the bus's time leapt ahead (times_ahead, {}) within the last minute: another host "
-                         "sends SYNC, or its clock was set; the map stays as old as it was",
+             fmt::format("the bus time jumped ahead (times_ahead, {}) within the last minute: another host "
+                         "sends SYNC, or its clock was set; the age of the map does not change",
                          view.pipeline->times_ahead())});
     }
 }
@@ -85,26 +86,26 @@ void add_other_hosts(const DaemonView& view, Problems& problems) {
 void add_clock(const DaemonView& view, Problems& problems) {
     const auto fault = view.pipeline->intake().host_clock().fault();
     if (!is_time_shared(view)) {
-        problems.push_back({"no time",
-                            fault == HostClockFault::no_exchange
-                                ? "the time is not known yet: no SYNC of ours came onto the bus, and no node "
-                                  "is heard"
-                                : "the time is not known: no node is heard that would share it",
-                            "time"});
+        problems.push_back(
+            {"no time",
+             fault == HostClockFault::no_exchange
+                 ? "the time is not known yet: no SYNC of this host reached the bus, and no node is active"
+                 : "the time is not known: no node is active that would share it",
+             "time"});
     } else if (fault == HostClockFault::no_exchange) {
         problems.push_back({"no time", why_no_exchange(view), "time"});
     } else if (fault == HostClockFault::stamps_jumped) {
         problems.push_back({"time jumped",
-                            "the time is in doubt: the stamps of what was received went back, or ahead by "
-                            "over 0.14 s: the bus was silent, or this machine's clock was set. The next "
-                            "SYNC with its FOLLOW_UP settles it",
+                            "the time is in doubt: the time stamps of received frames went back, or ahead by "
+                            "over 0.14 s: the bus was silent, or this machine's clock was set. The next SYNC "
+                            "with its FOLLOW_UP resolves it",
                             "time"});
     } else if (fault == HostClockFault::exchanges_disagree) {
-        problems.push_back({"time disagrees",
-                            "the time is in doubt: the newest SYNC with its FOLLOW_UP tells another than "
-                            "those before, by over 20 ms: a clock was set, or a frame was stamped late. Two "
-                            "in a row that agree settle it",
-                            "time"});
+        problems.push_back(
+            {"time disagrees",
+             "the time is in doubt: the newest SYNC with its FOLLOW_UP differs from the earlier ones by over "
+             "20 ms: a clock was set, or a frame got a late time stamp. Two in a row that agree resolve it",
+             "time"});
     }
 }
 

@@ -11,7 +11,7 @@
 namespace octoskin {
 namespace {
 
-/// For two seconds and still: a machine that is busy for a moment is not worth a word.
+/// Images were left out for over two seconds and still are: a short overload is not reported.
 bool is_left_behind(const DaemonView& view) {
     constexpr Nanoseconds kLong{2'000'000'000};
     constexpr Nanoseconds kStill{1'000'000'000};
@@ -26,12 +26,11 @@ bool is_left_behind(const DaemonView& view) {
 
 std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz, HostTime now) {
     constexpr Nanoseconds kFirstFrame{5'000'000'000};
-    // Before "not open": one that is opened again and again for nothing is both, by turns.
+    // Before "not open": a camera that is opened again and again in vain alternates between both.
     if (!camera.newest && now - camera.begun > kFirstFrame) {
         const std::string since =
-            camera.frames > 0
-                ? fmt::format("{} frames came, none with a time that could be told", camera.frames)
-                : "no frame has ever come";
+            camera.frames > 0 ? fmt::format("{} frames came, none with a known capture time", camera.frames)
+                              : "no frame has come yet";
         return Problem{"camera never",
                        "camera: " + since + (camera.is_open ? ", and it is open" : ": " + camera.why)};
     }
@@ -41,29 +40,29 @@ std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz
     const auto is_near = [&](const std::optional<HostTime>& at) { return at && now - *at <= 3 * period; };
     const bool is_silent = camera.newest && !is_near(camera.newest);
     if (is_silent && is_near(camera.newest_untimed)) {
-        return Problem{
-            "camera untimed",
-            "camera: frames come, none for three periods with a time that could be told: they come "
-            "late; is this machine too busy?"};
+        return Problem{"camera untimed",
+                       "camera: frames come, but none for three periods with a known capture time: they come "
+                       "late; is this machine too busy?"};
     }
     if ((is_silent || camera.repeats_often) && is_near(camera.newest_repeated)) {
-        return Problem{
-            "camera repeats",
-            "camera: its images equal earlier ones to the last bit (repeated) and are not used: it "
-            "hangs, or its lens is covered"};
+        return Problem{"camera repeats",
+                       "camera: its images equal earlier ones bit by bit (repeated) and are not used: it "
+                       "hangs, or its lens is covered"};
     }
     if (is_silent) return Problem{"camera silent", "camera: no frame for three periods"};
     return std::nullopt;
 }
 
 std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double rate_hz) {
-    constexpr double kAbout = 1.5;  // 30 Hz where 25 are wanted is nothing to write of
+    constexpr double kAbout = 1.5;  // 30 Hz instead of 25 Hz is not reported
     const bool is_other = camera.rate_hz > kAbout * rate_hz || camera.rate_hz * kAbout < rate_hz;
     if (camera.rate_hz <= 0.0 || !is_other) return std::nullopt;
-    return Problem{"camera rate",
-                   fmt::format("camera: its mode of the rig's size has {} frames a second, the rig {}: "
-                               "`octoskin cameras` lists its modes, camera.rate_hz of the rig is to be one's",
-                               camera.rate_hz, rate_hz)};
+    return Problem{
+        "camera rate",
+        fmt::format(
+            "camera: its mode of the rig's size has {} frames a second, the rig {}: set camera.rate_hz of "
+            "the rig to the rate of one of its modes (`octoskin cameras` lists them)",
+            camera.rate_hz, rate_hz)};
 }
 
 void add_pose_fault(const DaemonView& view, Problems& problems) {
@@ -85,34 +84,32 @@ void add_camera(const DaemonView& view, Problems& problems) {
         problems.push_back(std::move(*problem));
     } else if (frames.in() > 0 && !is_used && view.inputs->has_bus_fallen_silent(view.now)) {
         problems.push_back({"depth beside silent bus",
-                            "camera: its frames are not used, because the bus is silent: no node tells "
-                            "where the robot is (joints_missing)"});
+                            "camera: its frames are not used, because the bus is silent: no node sends joint "
+                            "states for the robot's pose (joints_missing)"});
     } else if (view.is_listen_only && !view.inputs->foreign_clock().ahead(view.now)) {
         problems.push_back({"camera untimed",
                             "camera: its frames have no time: the clock of the host that sends SYNC is not "
-                            "known, or in doubt "
-                            "(three FOLLOW_UPs must agree)"});
+                            "known, or in doubt (three FOLLOW_UPs must agree)"});
     } else if (frames.in() > 0 && frames.rejected(DepthReason::wrong_size) == frames.in()) {
         const CameraIntrinsics& wanted = view.rig->camera->intrinsics;
-        problems.push_back(
-            {"depth of another size",
-             fmt::format("camera: none of its images is {} x {}, as the rig has them (wrong_size): "
-                         "`octoskin cameras` lists its modes, camera.width_px and camera.height_px of "
-                         "the rig must be one's",
-                         wanted.width, wanted.height)});
+        problems.push_back({"depth of another size",
+                            fmt::format("camera: none of its images is {} x {}, as the rig has it "
+                                        "(wrong_size): set camera.width_px and camera.height_px of the rig "
+                                        "to those of one of its modes (`octoskin cameras` lists them)",
+                                        wanted.width, wanted.height)});
     } else if (frames.in() > 0 && !view.used.depth_frame) {
         problems.push_back(
             {"depth unused", "no depth frame could be used yet: " + see_counters("depth frames", frames)});
     } else if (has_stopped(view.used.depth_frame, view.now)) {
-        problems.push_back({"depth stopped", "depth frames come onto the map no more: " +
-                                                 see_counters("depth frames", frames)});
+        problems.push_back({"depth stopped",
+                            "depth frames no longer reach the map: " + see_counters("depth frames", frames)});
     }
     if (problems.size() > others) problems.back().subject = "camera";
     if (is_left_behind(view)) {
         problems.push_back(
             {"depth left out",
-             "camera: its images come quicker than this machine can work on them, and some are left out "
-             "(queue_overflow): a coarser resolution_m, or a mode with a lower rate or fewer pixels",
+             "camera: its images come faster than this machine can process them, and some are left out "
+             "(queue_overflow): use a coarser resolution_m, or a mode with a lower rate or fewer pixels",
              "camera"});
     }
     if (auto problem = camera_rate_problem(*view.camera, rate_hz)) problems.push_back(std::move(*problem));

@@ -30,20 +30,20 @@ std::string why_no_joints(const DaemonView& view) {
     }
     if (const std::string refused = refused_lines(*socket); !refused.empty())
         return fmt::format(
-            "no joint states: what comes through the socket is refused ({}, the newest of {}); "
-            "wanted: {}",
+            "no joint states: the lines that come through the socket are refused ({}, the newest of {}); "
+            "expected: {}",
             refused, describe(socket->newest_refused().value()), kJointTextWanted);
     if (view.inputs->joints_of_several() > 0) {
         return fmt::format(
-            "no joint states: those that come through the socket are of more than one program "
-            "(second_sender, {})",
+            "no joint states: several programs send them through the socket (second_sender, {}); let only "
+            "one send",
             view.inputs->joints_of_several());
     }
     if (view.pipeline->accounts().frames.rejected(FrameReason::joint_no_host_time) > 0) {
-        return "no joint states: those that come through the socket have no time on the bus's clock "
-               "(joint_no_host_time): nobody sends SYNC and FOLLOW_UP on it";
+        return "no joint states: those that come through the socket have no time on the bus clock "
+               "(joint_no_host_time): no host sends SYNC and FOLLOW_UP on the bus";
     }
-    return "no joint states: none comes through the socket (`octoskin joints`)";
+    return "no joint states: none comes through the socket; send them with `octoskin joints`";
 }
 
 /// "process 4711 (python3, user 1000) and process 4712 (octoskin, user 1000)".
@@ -55,7 +55,7 @@ std::string names_of_senders(const std::vector<JointSenders::Heard>& senders) {
 }
 
 bool is_recent(const std::optional<HostTime>& at, HostTime now) {
-    constexpr Nanoseconds kTold{3'000'000'000};  // longer than a person's look, or a script's, takes
+    constexpr Nanoseconds kTold{3'000'000'000};  // longer than a person or a script waits between looks
     return at && now - *at < kTold;
 }
 
@@ -64,15 +64,15 @@ void add_joint_jump(const DaemonView& view, Problems& problems) {
     if (!jumped || !is_recent(view.used.joint_jump, view.now)) return;
     problems.push_back(
         {"joint jump",
-         fmt::format("joint states jump: {} went from {:.3f} to {:.3f} in {:.0f} ms, where the robot "
-                     "description lets it move by {:.3f} at most (joint_jump, {}): another program tells "
-                     "joint states too, or the velocity of its <limit> is too low",
+         fmt::format("joint states jump: {} went from {:.3f} to {:.3f} in {:.0f} ms, but the robot "
+                     "description allows at most {:.3f} (joint_jump, {}): another program sends joint states "
+                     "too, or the velocity of its <limit> is too low",
                      view.rig->joints.joints.at(jumped->joint), jumped->from, jumped->to,
                      1e3 * seconds_of(jumped->passed), jumped->step_max,
                      view.pipeline->accounts().joint_samples.rejected(JointReason::joint_jump))});
 }
 
-/// Whose word does not count while another's is heard, by what tells the two apart.
+/// Senders that are not used while another one is active, by the means that distinguishes the two.
 void add_joint_senders(const DaemonView& view, Problems& problems) {
     add_joint_jump(view, problems);
     const JointSocket* const socket = view.inputs->joints();
@@ -80,7 +80,7 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
         problems.push_back(
             {"joint senders",
              fmt::format("joint states come through the socket from more than one program, and none is used "
-                         "until all but one were silent for a second (second_sender, {}): {}",
+                         "until all but one have been silent for a second (second_sender, {}): {}",
                          view.inputs->joints_of_several(),
                          names_of_senders(socket->senders().newest_several()))});
         return;
@@ -92,11 +92,10 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
         {"joint senders",
          socket != nullptr
              ? fmt::format(
-                   "joint states come through the socket that jump to and fro, as those of two arms do or "
-                   "of late samples without TIME, and none is used until that was over for a second "
-                   "(second_sender, {})",
+                   "joint states through the socket jump to and fro, as those of two arms or of late samples "
+                   "without TIME; none is used until this has not happened for a second (second_sender, {})",
                    withheld)
-             : fmt::format("two senders tell joint states under node {}, and neither is used until they have "
+             : fmt::format("two senders send joint states under node {}, and neither is used until they have "
                            "not contradicted each other for a second (second_sender, {}): the joint node and "
                            "another board of that id, or `octoskin joints --can` beside it",
                            view.rig->joints.node_id, withheld)});
@@ -108,7 +107,7 @@ void add_joints_beyond(const DaemonView& view, Problems& problems) {
     problems.push_back({"joints beyond limits", beyond_text(*beyond, view.rig->joints.joints)});
 }
 
-/// Readings between samples that are too far apart have no pose.
+/// Readings between two samples that are too far apart have no pose.
 void add_joint_gap(const DaemonView& view, Problems& problems) {
     const auto& gap = view.pipeline->builder().newest_joint_gap();
     constexpr std::uint64_t kSlow = 3;  // fewer are an interruption
@@ -133,7 +132,7 @@ bool are_joints_above_rate(const DaemonView& view) {
 }
 
 void add_joints(const DaemonView& view, Problems& problems) {
-    constexpr std::uint64_t kFirstSamples = 5;  // of a source: nothing is known of it yet
+    constexpr std::uint64_t kFirstSamples = 5;  // of a source: its rate is not known yet
     const auto& joints = view.pipeline->accounts().joint_samples;
     add_joint_senders(view, problems);
     add_joints_beyond(view, problems);
@@ -151,17 +150,17 @@ void add_joints(const DaemonView& view, Problems& problems) {
         problems.push_back(
             {"joints flood",
              fmt::format(
-                 "joint states come, or came, through the socket quicker than they can be taken: {} gave "
-                 "way to newer ones (displaced), {} were more than one program may send, or of more than {} "
-                 "programs (surplus); the rig has {} Hz, more is of no use",
+                 "joint states come, or came, through the socket faster than they can be taken: {} were "
+                 "displaced by newer ones (displaced), {} were more than one program may send, or came from "
+                 "more than {} programs (surplus); the rig has {} Hz, and a higher rate is of no use",
                  view.inputs->joints_displaced(), view.inputs->joints()->surplus(), SenderShares::kSendersMax,
                  view.rig->joints.rate_hz)});
     }
     if (joints.rejected(JointReason::too_frequent) > kFirstSamples) {
         problems.push_back(
             {"joints too frequent",
-             fmt::format("joint states come, or came, quicker than the {} Hz of the rig, and were refused "
-                         "(too_frequent, {}): put the true rate into joints.rate_hz",
+             fmt::format("joint states come, or came, faster than the {} Hz of the rig, and were refused "
+                         "(too_frequent, {}): set joints.rate_hz to the true rate",
                          view.rig->joints.rate_hz, joints.rejected(JointReason::too_frequent))});
     }
 }

@@ -11,10 +11,9 @@ void add_log(const DaemonView& view, Problems& problems) {
     if (!log.stuck_since || view.now - *log.stuck_since < kStuck) return;
     problems.push_back(
         {"log stuck",
-         fmt::format(
-             "the log takes no line since {:.0f} s: what reads it (a pager, a terminal with Ctrl-S, a "
-             "pipe, the journal) has stopped; {} lines wait, {} were dropped; mapping goes on",
-             seconds_of(view.now - *log.stuck_since), log.waiting, log.dropped)});
+         fmt::format("the log has taken no line for {:.0f} s: its reader (a pager, a terminal with Ctrl-S, a "
+                     "pipe, the journal) has stopped; {} lines wait, {} were dropped; mapping continues",
+                     seconds_of(view.now - *log.stuck_since), log.waiting, log.dropped)});
 }
 
 }  // namespace octoskin

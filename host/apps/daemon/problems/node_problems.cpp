@@ -15,7 +15,7 @@
 namespace octoskin {
 namespace {
 
-/// Two senders under one sensor's name: what was counted of them, and what becomes of its readings.
+/// Two senders under one sensor's name: their counters, and what happens to the readings.
 void add_senders(const DaemonView& view, const HostNode& node, std::size_t index, Problems& problems) {
     const SenderWatch& senders =
         view.pipeline->intake().ranges().senders(node.node_id, static_cast<std::uint8_t>(index));
@@ -24,54 +24,52 @@ void add_senders(const DaemonView& view, const HostNode& node, std::size_t index
     const bool is_disputed = senders.is_disputed(*view.bus_now);
     problems.push_back(
         {who + " senders",
-         fmt::format("{}: another sender's readings come under its name (contradictions {}, strays {}): {}. "
-                     "Which board has the node id twice, or who forges it?",
+         fmt::format("{}: readings of another sender arrive under its name (contradictions {}, strays {}): "
+                     "{}. Look for a second board with its node id, or a program that forges it",
                      who, senders.contradictions(), senders.strays(),
                      is_disputed ? "its readings stay out of the map until a second after the last of them"
-                                 : "they are told from its own and refused"),
+                                 : "they are distinguished from its own and refused"),
          {},
          node_subject(node.node_id)});
 }
 
-/// "joints_missing. Send joint states ...": what is to be done about it.
+/// "joints_missing. Send joint states ...": the counter's name and its remedy.
 std::string with_remedy(ReadingReason reason) {
     const char* const name = names_of(ReadingReason{})[static_cast<std::size_t>(reason)];
     return fmt::format("{}.{}", name, remedy_sentence("readings", name));
 }
 
-/// Who answers SYNC in its name: its clock is what that says.
+/// Answers to SYNC under the node's id define its clock.
 void add_answers(const DaemonView& view, const HostNode& node, Problems& problems) {
     const AnswerCheck& answers = view.pipeline->intake().answers(node.node_id);
     if (!view.bus_now || !answers.hears_two(*view.bus_now)) return;
     const std::string on = node_subject(node.node_id);
     problems.push_back(
         {on + " answers",
-         fmt::format(
-             "{} '{}': two answers to one SYNC come under its id (sync_contradicted, {}), and only one "
-             "that goes on where its clock was is used. Which board has the node id twice, or which "
-             "program forges it?",
-             on, node.name, answers.contradictions()),
+         fmt::format("{} '{}': two answers to one SYNC arrive under its id (sync_contradicted, {}), and only "
+                     "the one that continues its clock is used. Look for a second board with the node id, or "
+                     "a program that forges it",
+                     on, node.name, answers.contradictions()),
          {},
          on});
 }
 
-/// What decides whether its readings count.
+/// The reports that decide whether its readings are used.
 void add_self_reports(const DaemonView& view, const HostNode& node, Problems& problems) {
     const SelfReportCheck& check = view.pipeline->intake().self_reports(node.node_id);
     if (!view.bus_now || !check.hears_two(*view.bus_now)) return;
     const std::string on = node_subject(node.node_id);
-    problems.push_back(
-        {on + " reports",
-         fmt::format(
-             "{} '{}' reports one thing and the contrary by turns within a second ({}): of its clock, its "
-             "node_hash, its build or a sensor's capture_bound. Which board has the node id twice, or which "
-             "program forges it?",
-             on, node.name, check.contradictions()),
-         {},
-         on});
+    problems.push_back({on + " reports",
+                        fmt::format("{} '{}' alternates between contrary reports within a second ({}): of "
+                                    "its clock, its node_hash, its build or a sensor's capture_bound. Look "
+                                    "for a second board with the node id, or a program that forges it",
+                                    on, node.name, check.contradictions()),
+                        {},
+                        on});
 }
 
-/// Nothing of it is used until its clock is known anew: where it starts again and again, never.
+/// After a restart nothing of the node is used until its clock is known again: if it restarts all the time,
+/// never.
 void add_restarts(const DaemonView& view, const HostNode& node, Problems& problems) {
     constexpr Nanoseconds kTold{3'000'000'000};
     const NodeRecord& record = view.pipeline->intake().nodes().records().at(node.node_id);
@@ -79,18 +77,16 @@ void add_restarts(const DaemonView& view, const HostNode& node, Problems& proble
         view.bus_now && record.restarted && std::chrono::abs(*view.bus_now - *record.restarted) < kTold;
     if (!is_new) return;
     const std::string on = node_subject(node.node_id);
-    problems.push_back(
-        {on + " restarts",
-         fmt::format(
-             "{} '{}' started anew (restarts, {}): nothing of it is used until its clock is known. If it "
-             "does so again and again, look at its supply and at what it was reset by, or for another "
-             "sender under its id",
-             on, node.name, record.restarts),
-         {},
-         on});
+    problems.push_back({on + " restarts",
+                        fmt::format("{} '{}' restarted (restarts, {}): nothing of it is used until its clock "
+                                    "is known. If it restarts again and again, check its supply and the "
+                                    "cause of its resets, and look for another sender under its id",
+                                    on, node.name, record.restarts),
+                        {},
+                        on});
 }
 
-/// What it loses is not its sensors' fault.
+/// Losses of the node, which are no fault of its sensors.
 void add_losses(const DaemonView& view, const HostNode& node, Problems& problems) {
     if (!view.bus_now) return;
     const auto loss = view.pipeline->intake().losses(node.node_id, *view.bus_now);
@@ -104,7 +100,7 @@ void add_losses(const DaemonView& view, const HostNode& node, Problems& problems
          on});
 }
 
-/// Which register the sensor is withheld for, and how to have it left out; empty if its node named none.
+/// The register for which the sensor is withheld, and how to leave it out; empty if its node reported none.
 std::string register_text(const DaemonView& view, const HostNode& node, std::size_t index) {
     const auto sensor = static_cast<std::uint8_t>(index);
     const auto& health = view.pipeline->intake().ranges().record(node.node_id, sensor).health;
@@ -162,7 +158,7 @@ void add_nodes(const DaemonView& view, Problems& problems) {
     }
 }
 
-/// What is wrong with who sends the joint states of the bus, where that is none of those that have sensors.
+/// Problems of the node that sends the joint states of the bus, if it is not one of those with sensors.
 void add_joint_node(const DaemonView& view, Problems& problems) {
     const wire::NodeId source = view.rig->joints.node_id;
     const NodeRegistry& nodes = view.pipeline->intake().nodes();
@@ -183,7 +179,7 @@ void add_readings(const DaemonView& view, Problems& problems) {
                             "readings"});
     } else if (has_stopped(view.used.reading, view.now)) {
         problems.push_back({"readings stopped",
-                            "readings come onto the map no more: " + see_counters("readings", readings),
+                            "readings no longer reach the map: " + see_counters("readings", readings),
                             "readings"});
     }
 }

@@ -15,31 +15,32 @@ const SensorRecord& record_of(const DaemonView& view, const HostNode& node, std:
     return view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
 }
 
-/// Where the readings of a node are lost: they come in frames of one kind, all else in classical ones.
+/// Where the readings of a node are lost: they come in frames of one type, all other data in classical
+/// frames.
 std::string lost_where(const DaemonView& view, const HostNode& node) {
     bool is_classical = false;
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {
         const auto& newest = record_of(view, node, i).newest;
         is_classical = is_classical || (newest && newest->capture.span_us == wire::kClassicalTimeSpanUs);
     }
-    return is_classical
-               ? "RANGE frames are lost: look for a gateway or a filter between that leaves them out"
-               : "RANGE_FD frames are lost where classical ones pass: look at the FD setting and the "
-                 "data bit rate of the adapter, and for a gateway, a filter or a part between that "
-                 "passes no FD frames";
+    return is_classical ? "RANGE frames are lost: look for a gateway or a filter in between that drops them"
+                        : "RANGE_FD frames are lost where classical ones pass: check the FD setting and the "
+                          "data bit rate of the adapter, and look for a gateway, a filter or a part in "
+                          "between that passes no FD frames";
 }
 
 constexpr const char* kLossRemedy =
-    "look for a line that is disturbed (wrong_crc, can.error_frames), a bus that is full (can.busy_s), and a "
-    "gateway or an adapter between that leaves frames out";
+    "look for a disturbed line (wrong_crc, can.error_frames), a full bus (can.busy_s), and a gateway or an "
+    "adapter in between that drops frames";
 
-/// "39 of the 45 readings that its node sent within the last 3 s did not come (lost, 120)".
+/// "39 of the 45 readings that its node sent within the last 3 s did not arrive (lost, 120)".
 std::string lost_text(const SentCount::Loss& loss, const char* sender, std::uint64_t lost_ever) {
-    return fmt::format("{} of the {} readings that {} sent within the last {:.0f} s did not come (lost, {})",
-                       loss.lost, loss.sent, sender, seconds_of(loss.within), lost_ever);
+    return fmt::format(
+        "{} of the {} readings that {} sent within the last {:.0f} s did not arrive (lost, {})", loss.lost,
+        loss.sent, sender, seconds_of(loss.within), lost_ever);
 }
 
-/// What was lost of all sensors together.
+/// The losses of all sensors of the node together.
 std::string lost_of_node(const DaemonView& view, const HostNode& node) {
     SentCount::Loss all;
     std::uint64_t lost_ever = 0;
@@ -54,33 +55,31 @@ std::string lost_of_node(const DaemonView& view, const HostNode& node) {
     return lost_text(all, "it", lost_ever);
 }
 
-/// A node that is not at work says nothing of its sensors.
+/// A node that is not working reports nothing about its sensors.
 std::string unheard_remedy(const DaemonView& view, const HostNode& node) {
     const auto& heartbeat = view.pipeline->intake().nodes().records().at(node.node_id).heartbeat;
     if (heartbeat && heartbeat->state == wire::NodeState::safe)
-        return "its state is safe: it was reset again and again, and `octoskin command NODE start` or a "
-               "minute lets it try again";
-    return "look for a gateway, a filter or a program between that leaves them out, for a bus so full that "
-           "only what is more urgent passes (can.busy_s), and at the node itself";
+        return "its state is safe, after repeated resets: `octoskin command NODE start`, or a minute's wait, "
+               "lets it try again";
+    return "look for a gateway, a filter or a program in between that drops them, for a bus so full that "
+           "only frames of higher priority pass (can.busy_s), and check the node itself";
 }
 
 void add_of_node(const DaemonView& view, const HostNode& node, SensorSilence what, Problems& problems) {
     const std::string on = node_subject(node.node_id);
     if (what == SensorSilence::unheard) {
-        problems.push_back(
-            {on + " unheard",
-             fmt::format("{} '{}': neither readings nor SENSOR_HEALTH of its sensors come, and its "
-                         "heartbeats do: {}",
-                         on, node.name, unheard_remedy(view, node)),
-             on});
+        problems.push_back({on + " unheard",
+                            fmt::format("{} '{}': neither readings nor SENSOR_HEALTH of its sensors arrive, "
+                                        "but its heartbeats do: {}",
+                                        on, node.name, unheard_remedy(view, node)),
+                            on});
     } else if (what == SensorSilence::no_readings) {
-        problems.push_back(
-            {on + " silence",
-             fmt::format("{} '{}': none of its readings comes, though it sends them (lost), and "
-                         "what else it sends does: {}",
-                         on, node.name, lost_where(view, node)),
-             {},
-             on});
+        problems.push_back({on + " silence",
+                            fmt::format("{} '{}': none of its readings arrives, though it sends them (lost), "
+                                        "but its other frames do: {}",
+                                        on, node.name, lost_where(view, node)),
+                            {},
+                            on});
     } else if (what == SensorSilence::mostly_lost) {
         problems.push_back(
             {on + " silence",
@@ -96,16 +95,16 @@ void add_of_sensor(const DaemonView& view, const HostNode& node, const NodeSilen
     const std::string sensor = sensor_text(node, silent.index);
     const SentCount& sent = record_of(view, node, silent.index).sent;
     if (silent.what == SensorSilence::unheard) {
-        problems.push_back({sensor + " unheard",
-                            fmt::format("{}: neither readings nor SENSOR_HEALTH of it come, and what else "
-                                        "its node sends does: look for a gateway or a program between that "
-                                        "leaves them out",
-                                        sensor),
-                            sensor, on});
+        problems.push_back(
+            {sensor + " unheard",
+             fmt::format("{}: neither its readings nor its SENSOR_HEALTH arrive, but the other frames of its "
+                         "node do: look for a gateway or a program in between that drops them",
+                         sensor),
+             sensor, on});
     } else if (const auto loss = sent.newest_loss(*view.bus_now);
                loss && silent.what == SensorSilence::mostly_lost) {
         problems.push_back({sensor + " silence",
-                            fmt::format("{}: {}, and those of others of the node do: {}", sensor,
+                            fmt::format("{}: {}, but those of other sensors of the node do: {}", sensor,
                                         lost_text(*loss, "its node", sent.lost()), kLossRemedy),
                             {},
                             on});
@@ -113,8 +112,8 @@ void add_of_sensor(const DaemonView& view, const HostNode& node, const NodeSilen
         problems.push_back(
             {sensor + " silence",
              fmt::format(
-                 "{}: none of its readings comes, though its node sends them (lost, {}), and those of "
-                 "others of the node do: look for a gateway or a program between that leaves them out",
+                 "{}: none of its readings arrives, though its node sends them (lost, {}), but those of "
+                 "other sensors of the node do: look for a gateway or a program in between that drops them",
                  sensor, sent.lost()),
              {},
              on});

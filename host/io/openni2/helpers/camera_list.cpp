@@ -16,11 +16,11 @@ std::string mode_line(const openni::VideoMode& mode, bool is_first) {
     std::string line = "  " + std::to_string(mode.getResolutionX()) + " x " +
                        std::to_string(mode.getResolutionY()) + " at " + std::to_string(mode.getFps()) + " Hz";
     if (mode.getPixelFormat() != openni::PIXEL_FORMAT_DEPTH_1_MM)
-        line += ", not in millimetres: octoskin does not read it";
-    return line + (is_first ? "  <- begins with it\n" : "\n");
+        line += ", not in millimetres: octoskin cannot read it";
+    return line + (is_first ? "  <- initial mode\n" : "\n");
 }
 
-/// The first line of OpenNI2's own words.
+/// The first line of OpenNI2's error text.
 std::string own_words() {
     const std::string words = openni::OpenNI::getExtendedError();
     return words.substr(0, words.find('\n'));
@@ -29,7 +29,7 @@ std::string own_words() {
 std::string modes_of(const char* uri) {
     openni::Device device;
     if (device.open(uri) != openni::STATUS_OK)
-        return "  cannot be opened: " + own_words() + " (has a running octoskin it, may you use it?)\n";
+        return "  cannot be opened: " + own_words() + " (does a running octoskin use it, may you use it?)\n";
     const openni::SensorInfo* const sensor = device.getSensorInfo(openni::SENSOR_DEPTH);
     openni::VideoStream stream;
     if (sensor == nullptr || stream.create(device, openni::SENSOR_DEPTH) != openni::STATUS_OK)

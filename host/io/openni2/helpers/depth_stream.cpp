@@ -16,7 +16,7 @@
 namespace octoskin::openni2 {
 namespace {
 
-constexpr int kFrameTimeoutMs = 2'000;  // the end of a file shows only as silence
+constexpr int kFrameTimeoutMs = 2'000;  // the end of a file appears only as missing frames
 
 }  // namespace
 
@@ -78,11 +78,11 @@ bool DepthStream::start(const std::optional<CameraMode>& wanted) {
         return refuse("it has no depth stream");
     if (wanted && !device_.isFile()) choose(*wanted);
     const auto size = depth_size(stream_);
-    if (!size) return refuse("a video mode that octoskin does not read");
+    if (!size) return refuse("a video mode that octoskin cannot read");
     size_ = *size;
     if (!device_.isFile()) rate_mhz_ = 1000U * static_cast<std::uint32_t>(stream_.getVideoMode().getFps());
-    // OpenNI2's drivers of real cameras mirror unless told not to. A file holds what was recorded, whatever
-    // it is told.
+    // OpenNI2's drivers for cameras mirror the image by default. A file contains what was recorded; the
+    // setting has no effect on it.
     if (!device_.isFile()) (void)stream_.setMirroringEnabled(false);
     is_mirrored_ = stream_.getMirroringEnabled();
     return stream_.start() == openni::STATUS_OK || refuse("cannot start the stream");

@@ -1,6 +1,7 @@
-// octoskin-camera --list: which cameras there are (camera_list.hpp). octoskin-camera URI [MODE]: the depth
-// frames of a camera to standard output (frame_pipe.hpp), each with the time of its capture on the host's
-// monotonic clock. An .oni file as URI is a camera too, which octoskin-film plays in this program's place.
+// octoskin-camera --list: lists the cameras (camera_list.hpp).
+// octoskin-camera URI [MODE]: writes the depth frames of a camera to standard output (frame_pipe.hpp), each
+// with its capture time on the host's monotonic clock. An .oni file as URI is a camera, too; octoskin-film
+// then replaces this program and plays it.
 #include <unistd.h>
 
 #include <cerrno>
@@ -30,11 +31,12 @@ int watch(DepthStream& depth, const char* uri, const std::optional<CameraMode>& 
         depth, descriptor, [&](std::int64_t arrived_us) -> Result<std::int64_t, std::string> {
             const auto stamp_us = static_cast<std::int64_t>(depth.frame().getTimestamp());
             if (const auto captured_us = clock.captured_us(stamp_us, arrived_us)) return *captured_us;
-            return unexpected(std::string(clock.is_lost() ? "its frames came over 0.5 s late for 5 s" : ""));
+            return unexpected(
+                std::string(clock.is_lost() ? "its frames arrived over 0.5 s late for 5 s" : ""));
         });
 }
 
-/// Returns only if that is not there.
+/// Returns only if octoskin-film cannot be started.
 int become_film_player(const std::filesystem::path& film) {
     const auto player = find_helper("octoskin-film");
     if (player) ::execl(player->c_str(), player->c_str(), film.c_str(), nullptr);
@@ -63,12 +65,12 @@ int main(int argc, char** argv) {
             stderr);
         return 2;
     }
-    std::error_code error;  // what cannot be looked at is no file, but a camera's address
+    std::error_code error;  // a name that cannot be examined is not a file but a camera's URI
     const std::string uri = argv[1];
     if (std::filesystem::is_regular_file(uri, error))
         return become_film_player(std::filesystem::absolute(uri));
     if (std::filesystem::exists(uri, error)) {
-        std::fprintf(stderr, "%s: is no ordinary file\n", kProgram);
+        std::fprintf(stderr, "%s: is not a regular file\n", kProgram);
         return 1;
     }
     const auto output = begin_helper(kProgram);

@@ -11,10 +11,11 @@
 namespace octoskin::openni2 {
 namespace {
 
-/// The player counts them from its file header, and calls itself for each stream within another.
+/// The player takes the number of streams from its file header, and its recursion depth grows with the
+/// streams.
 constexpr std::uint32_t kStreamNumbersMax = 32;
 
-/// Or what is wrong with it.
+/// Returns the header, or its fault.
 Result<OniStreams::Header, std::string> header_of(std::ifstream& file) {
     constexpr std::array<char, 12> kBegin{'N', 'I', '1', '0', 1, 0, 1, 0, 0, 0, 0, 0};  // 1.0.1.0
     std::array<char, kOniFileHeaderSize> header{};
@@ -22,7 +23,7 @@ Result<OniStreams::Header, std::string> header_of(std::ifstream& file) {
     file.seekg(0);
     if (!file.read(header.data(), header.size()) ||
         std::memcmp(header.data(), kBegin.data(), kBegin.size()) != 0)
-        return unexpected(std::string("not the begin of a recording of OpenNI 2 (NI10, version 1.0.1.0)"));
+        return unexpected(std::string("not the beginning of an OpenNI 2 recording (NI10, version 1.0.1.0)"));
     std::uint64_t timestamp_max = 0;
     std::uint32_t last = 0;
     std::memcpy(&timestamp_max, header.data() + kBegin.size(), sizeof(timestamp_max));
@@ -35,7 +36,7 @@ Result<OniStreams::Header, std::string> header_of(std::ifstream& file) {
 
 class Reading {
   public:
-    /// Fields and payload; false if they are more than the player has room for, or cannot be read.
+    /// Reads fields and payload; false if they exceed the player's buffers, or cannot be read.
     bool read(std::ifstream& file, const OniRecord& record) {
         if (!record.fits()) return false;
         fields_ = record.fields_size - kOniRecordHeaderSize;
@@ -64,15 +65,15 @@ std::optional<OniFault> fault_of(const std::filesystem::path& oni, const std::fu
     while (const auto record = records.next()) {
         if (is_alive) is_alive();
         if (!reading.read(records.file(), *record))
-            return OniFault{record->position, "a record that is larger than OpenNI2 has room for"};
+            return OniFault{record->position, "a record that exceeds OpenNI2's buffers"};
         const bool is_end = record->type == OniRecordType::end;
-        // Whatever is behind the end, the player does not come to it.
+        // The player does not read beyond the end record.
         const auto verdict =
             is_end ? streams.at_end() : streams.take(*record, reading.fields(), reading.payload());
         if (!verdict) return OniFault{record->position, verdict.error()};
         if (is_end) return std::nullopt;
     }
-    return OniFault{records.position(), "no whole record, and no end before"};
+    return OniFault{records.position(), "no complete record, and no end record before it"};
 }
 
 }  // namespace octoskin::openni2

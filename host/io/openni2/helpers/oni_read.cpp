@@ -1,5 +1,6 @@
-// octoskin-oni-read FILE.oni [NAME]: the depth frames of a recording to standard output (frame_pipe.hpp).
-// OpenNI2 may crash or hang on a damaged file: that is why this is a process of its own, with limits.
+// octoskin-oni-read FILE.oni [NAME]: writes the depth frames of a recording to standard output
+// (frame_pipe.hpp). OpenNI2 may crash or hang on a damaged file: that is why this is a separate process with
+// limits.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -17,10 +18,10 @@
 namespace octoskin::openni2 {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{600'000};  // the reader may think as long as it likes
+constexpr std::chrono::milliseconds kPatience{600'000};  // the reading program may pause as long as it wants
 constexpr const char* kProgram = "octoskin-oni-read";
 
-/// Far more than it takes to check and to play it: what has taken the process over does not go on for ever.
+/// Far more than checking and playing need: a limit in case the file takes over this process.
 std::uintmax_t processor_seconds_for(std::uintmax_t bytes) {
     return 600 + bytes / 1'000'000;
 }
@@ -34,7 +35,7 @@ int stream_frames(DepthStream& depth, bool is_salvaged, int descriptor) {
             std::fprintf(stderr, "%s: only %d of %d frames\n", kProgram, read, frame_count);
             return 1;
         }
-        // A frame in the wrong place would be a frame at the wrong time.
+        // A frame in the wrong place would have the wrong time.
         if (depth.frame().getFrameIndex() != read + 1)
             return depth.complain("a frame is missing or out of place");
         const auto pixels = depth.pixels();
@@ -44,7 +45,7 @@ int stream_frames(DepthStream& depth, bool is_salvaged, int descriptor) {
     return output.write_end() ? 0 : 1;
 }
 
-/// What OpenNI2 is to open: the recording, or a copy of its whole frames if it has no end.
+/// The file that OpenNI2 opens: the recording, or a copy of its complete frames if it has no end.
 struct Input {
     std::string path;
     bool is_salvaged = false;
@@ -55,31 +56,32 @@ Input input_of(const std::filesystem::path& file, const char* shown) {
     if (outline.length || outline.frames == 0) return {file.string()};
     std::error_code error;
     const auto folder = std::filesystem::temp_directory_path(error);
-    // Without a name, so that it goes when this process does; left open until then.
+    // A file without a name disappears with this process; it stays open until then.
     const int copy = error ? -1 : ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     const std::string path = "/proc/self/fd/" + std::to_string(copy);
-    limit_file_size(kSalvageMax + (std::uintmax_t{64} << 20U));  // and the tables
+    limit_file_size(kSalvageMax + (std::uintmax_t{64} << 20U));  // and the seek tables
     if (copy >= 0 && salvage(file, path)) return {path, true};
     std::fprintf(stderr,
-                 "%s: %s: cut off, and there is no copying its %u whole frames to %s (%ju MiB at most)\n",
+                 "%s: %s: cut off, and its %u complete frames cannot be copied to %s (%ju MiB at most)\n",
                  kProgram, printable(shown).c_str(), outline.frames, folder.c_str(), kSalvageMax >> 20U);
     return {file.string()};
 }
 
-/// `shown`: what messages call the file.
+/// `shown`: the file's name in messages.
 int read_recording(DepthStream& depth, const std::filesystem::path& file, const char* shown, int descriptor) {
     const Input input = input_of(file, shown);
-    (void)confine_this_process(kProgram, NewThreads::allowed);  // the copy, if there is one, is written
+    (void)confine_this_process(kProgram,
+                               NewThreads::allowed);  // a copy, if needed, is complete at this point
     if (!depth.is_sound(input.path, shown)) return kUnsound;
     if (!depth.open(input.path.c_str()) || !depth.is_file()) {
-        std::fprintf(stderr, "%s: %s: not an .oni recording, or a damaged or cut off one\n", kProgram,
+        std::fprintf(stderr, "%s: %s: not an .oni recording, or one that is damaged or cut off\n", kProgram,
                      printable(shown).c_str());
         return 1;
     }
     openni::PlaybackControl* const playback = depth.playback();
     if (playback == nullptr) return depth.complain("it cannot be played");
     playback->setRepeatEnabled(false);
-    playback->setSpeed(-1.0F);  // as fast as they are taken, and none dropped
+    playback->setSpeed(-1.0F);  // as fast as the reader accepts them, without dropping any
     return depth.start() ? stream_frames(depth, input.is_salvaged, descriptor) : 1;
 }
 

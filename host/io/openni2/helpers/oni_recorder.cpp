@@ -10,21 +10,21 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kFps = 30;  // OpenNI2 wants a rate; the time stamps carry the true one
+constexpr int kFps = 30;  // OpenNI2 requires a rate; the time stamps contain the true one
 constexpr std::chrono::milliseconds kPatience = 10s;
 constexpr int kStartsMax = 5;
 
 constexpr const char* kVanished =
-    "the file was removed while it was recorded; record again, and leave it alone until then";
+    "the file was removed during recording; record again, and leave it in place until the end";
 
-/// 0 for a file that is not there: somebody may remove it at any time.
+/// 0 for a missing file: it may be removed at any time.
 std::uintmax_t size_of(const std::filesystem::path& file) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     return error ? 0 : size;
 }
 
-/// Under any name: a file that is open is there without one, too.
+/// Under any name: an open file can exist without one.
 bool is_there(const std::filesystem::path& file) {
     std::error_code error;
     const std::uintmax_t names = std::filesystem::hard_link_count(file, error);
@@ -53,7 +53,7 @@ std::string OniRecorder::open() {
     const std::string uri = std::string(kVirtualUriPrefix) + std::to_string(size_.width) + "x" +
                             std::to_string(size_.height) + "@" + std::to_string(kFps);
     if (device_.open(uri.c_str()) != openni::STATUS_OK)
-        return with_reason("the virtual camera's driver is not where OpenNI2 looks for it");
+        return with_reason("OpenNI2 does not find the driver of the virtual camera where it searches");
     if (stream_.create(device_, openni::SENSOR_DEPTH) != openni::STATUS_OK ||
         stream_.start() != openni::STATUS_OK)
         return with_reason("the virtual camera does not start");
@@ -67,21 +67,21 @@ std::string OniRecorder::start() {
         return with_reason("the recorder does not start");
     if (!wait_for([&] { return outline_of(file_).has_begun; }, kPatience))
         return "the recorder does not begin the file; is the disk full?";
-    // From that record on the recorder's thread has one assignment to do until it takes frames.
+    // After that record the recorder's thread has one more assignment to execute before it accepts frames.
     std::this_thread::sleep_for(5ms);
     return "";
 }
 
 std::string OniRecorder::begin(const PipedFrame* first) {
     if (first == nullptr) return start();
-    // Should the thread have been held up in those 5 ms, the frame is not in the file and a new start loses
+    // If the thread was delayed beyond those 5 ms, the frame is missing in the file, and a restart loses
     // nothing.
     for (int starts = 0; starts < kStartsMax; ++starts) {
         if (std::string what = start(); !what.empty()) return what;
         if (push(*first, 2s)) return "";
         recorder_.reset();
     }
-    return "the recorder takes no frames; is the disk full?";
+    return "the recorder accepts no frames; is the disk full?";
 }
 
 bool OniRecorder::push(const PipedFrame& frame, std::chrono::milliseconds patience) {
@@ -110,7 +110,8 @@ std::string OniRecorder::finish() {
         return "the file holds " + std::to_string(outline.frames) + " of " + std::to_string(frames_) +
                " frames" + (outline.length ? "" : " and no end") + "; is the disk full?";
     }
-    // The recorder truncates at the sum of two positions: a hole as long as the recording follows its end.
+    // The recorder truncates at the sum of two positions, which leaves a hole as long as the recording after
+    // its end.
     std::error_code error;
     std::filesystem::resize_file(file_, *outline.length, error);
     return error ? "cannot cut the file to its length: " + error.message() : "";

@@ -54,15 +54,15 @@ OniVerdict fault_of_codec(std::uint32_t codec, bool is_depth) {
 OniVerdict OniStreams::take(const OniRecord& record, OniBytes fields, OniBytes payload) {
     const bool has_payload =
         record.type == OniRecordType::new_data || record.type == OniRecordType::seek_table;
-    // Elsewhere the player would take the payload for the next records.
-    if (!has_payload && !payload.empty()) return fault("a payload where there is none");
-    // A table with more fields is one that the player may not skip.
+    // For other records the player would interpret the payload as the next records.
+    if (!has_payload && !payload.empty()) return fault("a payload in a record that has none");
+    // The player may fail to skip a table with more fields.
     if (record.type == OniRecordType::seek_table && !fields.empty()) return fault("a seek table with fields");
     if (record.node >= header_.streams)
         return fault("stream " + text_of(record.node) + " of " + text_of(header_.streams) + " numbers");
-    // What the player refuses of a stream before, it does not open. Later it plays on without the stream, and
-    // takes the payloads of the stream's frames for records.
-    // A stream that plays may be changed (gain, mirroring): the player goes on, whatever it makes of it.
+    // The player does not open a file if it refuses a stream before the data begin. Later it continues
+    // without that stream, and interprets the payloads of its frames as records. Changes of a stream during
+    // playback (gain, mirroring) are safe: the player continues in any case.
     if (record.type == OniRecordType::node_added)
         return has_begun_ ? fault("a stream that is added after the data begin") : add(record, fields);
     const auto found = streams_.find(record.node);
@@ -100,11 +100,11 @@ OniVerdict OniStreams::add(const OniRecord& record, OniBytes bytes) {
     const auto times = fields.take_bytes(16);
     const auto table = fields.take<std::uint64_t>();
     if (!name || !type || !codec || !frames || !times || !table || !fields.are_at_end())
-        return fault("a stream whose fields are not whole");
+        return fault("a stream with incomplete fields");
     if (name->empty() || name->size() > kNameMax) return fault("a stream's name without 1 to 79 characters");
     if (*type != kTypeDepth && *type != kTypeImage && *type != kTypeInfrared)
         return fault("a stream of type " + text_of(*type) + ", not depth, colour or infrared");
-    // The player finds streams by their names, and never forgets one.
+    // The player finds streams by their names and never removes one.
     for (const auto& [node, other] : streams_) {
         if (node == record.node || other.name == *name)
             return fault("a second stream of one number or of one name");
@@ -126,11 +126,11 @@ OniVerdict OniStreams::set(Stream& stream, const OniRecord& record, OniBytes byt
     const auto name = fields.take_text();
     const auto size = fields.take<std::uint32_t>();
     const auto value = size ? fields.take_bytes(*size) : std::nullopt;
-    if (!name || !value || !fields.are_at_end()) return fault("a property whose fields are not whole");
+    if (!name || !value || !fields.are_at_end()) return fault("a property with incomplete fields");
     const std::string named(*name);
     const bool is_number =
         record.type == OniRecordType::int_property || record.type == OniRecordType::real_property;
-    if (is_number && value->size() != 8) return fault("a number of other than 8 bytes");
+    if (is_number && value->size() != 8) return fault("a number that does not have 8 bytes");
     if (record.type == OniRecordType::string_property && (value->empty() || value->back() != 0))
         return fault("a text without an end");
     if (record.type == OniRecordType::int_property)
@@ -141,8 +141,8 @@ OniVerdict OniStreams::set(Stream& stream, const OniRecord& record, OniBytes byt
 
 OniVerdict OniStreams::set_number(Stream& stream, const std::string& name, std::uint64_t value) {
     if (name == "oniPixelFormat" || name == "xnPixelFormat") {
-        // Until then the player has no mode to put it into, and takes one that nothing has set.
-        if (!stream.size) return fault("a pixel format before the size of the pictures");
+        // Before that the player has no mode to change, and uses an uninitialised one.
+        if (!stream.size) return fault("a pixel format before the size of the images");
         if (stream.is_depth && name == "oniPixelFormat" && value != kFormatDepthMm)
             return fault("depth that is not in millimetres (pixel format " + text_of(value) + ")");
     }
@@ -155,31 +155,30 @@ OniVerdict OniStreams::set_number(Stream& stream, const std::string& name, std::
 }
 
 OniVerdict OniStreams::set_bytes(Stream& stream, const std::string& name, OniBytes bytes) {
-    if (name == "xnFOV" && bytes.size() != 16) return fault("a field of view of other than 16 bytes");
-    if (name == "xnCropping" && bytes.size() != 12) return fault("a cropping of other than 12 bytes");
+    if (name == "xnFOV" && bytes.size() != 16) return fault("a field of view that does not have 16 bytes");
+    if (name == "xnCropping" && bytes.size() != 12) return fault("a cropping that does not have 12 bytes");
     if (name == "xnCropping" && stream.is_depth && *OniFields(bytes).take<std::uint32_t>() != 0)
         return fault("a cropped depth stream");
     if (name != "xnMapOutputMode") return Done{};
-    if (bytes.size() != 12) return fault("a mode of other than 12 bytes");
+    if (bytes.size() != 12) return fault("a mode that does not have 12 bytes");
     const auto size = *OniFields(bytes).take<std::array<std::uint32_t, 2>>();
     const auto [width, height] = size;
     if (width == 0 || height == 0 || width > kSideMax || height > kSideMax ||
         FrameSize{width, height}.pixels() > kPixelsMax)
-        return fault("pictures of " + text_of(width) + " x " + text_of(height) + " pixels");
+        return fault("images of " + text_of(width) + " x " + text_of(height) + " pixels");
     if (stream.size.value_or(size) != size)
-        return fault("pictures that change their size to " + text_of(width) + " x " + text_of(height));
+        return fault("images that change their size to " + text_of(width) + " x " + text_of(height));
     stream.size = size;
     return Done{};
 }
 
 OniVerdict OniStreams::make_ready(Stream& stream) {
-    if (stream.state != State::added) return fault("a stream that gets ready twice");
-    if (!stream.size) return fault("a stream without the size of its pictures");
+    if (stream.state != State::added) return fault("a stream that becomes ready twice");
+    if (!stream.size) return fault("a stream without the size of its images");
     const std::uint64_t needed = FrameSize{(*stream.size)[0], (*stream.size)[1]}.pixels() * 2;
-    // 0: the player takes what the pictures need.
+    // 0: the player uses the size that the images need.
     if (stream.is_depth && stream.frame_bytes.value_or(0) != 0 && *stream.frame_bytes < needed)
-        return fault("frames of " + text_of(*stream.frame_bytes) + " bytes for pictures of " +
-                     text_of(needed));
+        return fault("frames of " + text_of(*stream.frame_bytes) + " bytes for images of " + text_of(needed));
     stream.state = State::ready;
     return Done{};
 }
@@ -199,7 +198,8 @@ OniVerdict OniStreams::take_frame(Stream& stream, const OniRecord& record, OniBy
         if (other.state == State::added) return fault("a frame before stream " + text_of(node) + " is ready");
     }
     if (record.fields_size != kOniFrameFieldsSize) return fault("a frame with other fields");
-    // The player refuses such a frame before it skips the payload, and takes that for the next records.
+    // The player refuses such a frame before it skips the payload, and then interprets the payload as
+    // records.
     OniFields fields(bytes);
     const std::uint64_t timestamp = *fields.take<std::uint64_t>();
     const std::uint32_t number = *fields.take<std::uint32_t>();
@@ -217,24 +217,25 @@ OniVerdict OniStreams::take_frame(Stream& stream, const OniRecord& record, OniBy
                                                               : DepthPacking::plain) == pixels;
     };
     return is_whole() ? OniVerdict(Done{})
-                      : fault("a frame that does not hold its " + text_of(pixels) + " pixels");
+                      : fault("a frame that does not contain its " + text_of(pixels) + " pixels");
 }
 
 OniVerdict OniStreams::take_table(Stream& stream, const OniRecord& record, OniBytes payload) {
     constexpr std::uint64_t kEntrySize = 20;
-    // The last of them: of each the player reads that which the stream's first record points to.
+    // Exactly one, after the stream's end: the player reads the one to which the stream's first record
+    // points.
     if (stream.state != State::removed || stream.table != 0)
-        return fault("a seek table that is not behind its stream's end");
+        return fault("a seek table that does not follow its stream's end");
     if (payload.size() != (std::uint64_t{stream.frames_announced} + 1) * kEntrySize)
         return fault("a seek table that is not for " + text_of(stream.frames_announced) + " frames");
     stream.table = record.position;
     OniFields entries(payload);
-    (void)entries.take_bytes(kEntrySize);  // of no frame: they are counted from 1
+    (void)entries.take_bytes(kEntrySize);  // entry 0: frames are numbered from 1
     while (!entries.are_at_end()) {
         (void)entries.take_bytes(kEntrySize - 8);
         const auto place = entries.take<std::uint64_t>();
         if (!place || !std::binary_search(stream.frames.begin(), stream.frames.end(), *place))
-            return fault("a seek table with a place where there is no frame");
+            return fault("a seek table with a position without a frame");
     }
     return Done{};
 }

@@ -1,4 +1,4 @@
-// Whether I2C is set up so that its bus can work: pins, clock and what the bus's specification asks of it.
+// Checks the set-up of I2C: pins, clock and timing by the specification of the bus.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void I2c::check_start() {
         env_.log.report(Rule::start_while_busy, fmt::format("{}: START in the middle of a transfer", name()));
     } else if (phase_ == Phase::idle && is_bus_busy()) {
         env_.log.report(Rule::start_while_busy,
-                        fmt::format("{}: START while a line is low: it waits in silence", name()));
+                        fmt::format("{}: START while a line is low: it waits without an event", name()));
     }
     if (is_checked_) return;
     is_checked_ = true;

@@ -29,7 +29,7 @@ void Syscfg::write(std::uint32_t offset, std::uint32_t value) {
     if (offset < kExticr1 || offset > kExticr4) return;
     for (std::uint32_t line = (offset - kExticr1); line < offset - kExticr1 + 4; ++line) {
         if (port_of(line) == kNoPort)
-            env_.log.report(Rule::wrong_state, fmt::format("SYSCFG: line {} is given to no port", line));
+            env_.log.report(Rule::wrong_state, fmt::format("SYSCFG: line {} is assigned to no port", line));
     }
     after_change_();
 }

@@ -23,10 +23,10 @@ namespace {
 
 using ignition::math::eigen3::convert;
 
-/// Models within models deeper than this are refused, so that reading is bounded whatever the file says.
+/// Limit of nested models, so that reading is bounded for every file.
 constexpr int kNestingMax = 16;
 
-/// Up to here double precision has a tenth of a millimetre to spare.
+/// Up to here double precision resolves better than 0.1 mm.
 constexpr double kCoordinateMax_m = 1e9;
 constexpr const char* kCoordinateMax = "1e9 m";
 
@@ -34,8 +34,8 @@ bool is_near_enough(const Eigen::Vector3d& vertex) {
     return vertex.cwiseAbs().maxCoeff() <= kCoordinateMax_m;
 }
 
-/// The text of a file's line, so that a message shows the value that the parser does not tell. All of a file
-/// may be one line.
+/// The text of a file's line for a message, because the parser does not report the value. It is cut: the
+/// whole file may be one line.
 std::string line_of(const std::filesystem::path& file, int number) {
     std::ifstream input(file);
     std::string line;
@@ -64,8 +64,8 @@ bool is_unknown_element(const sdf::Error& error) {
            error.Message().find("not defined in SDF") != std::string::npos;
 }
 
-/// What is unknown in the shape of something that is seen may decide what it looks like. Below <geometry>
-/// itself it is a shape that cannot be drawn, which add_solid() names.
+/// An unknown element in the shape of a visual may change the shape. Directly below <geometry> it is an
+/// unsupported shape, which add_solid() reports.
 bool is_in_seen_shape(const sdf::Error& error) {
     constexpr std::string_view kShapes[] = {"box",       "cylinder", "sphere", "capsule",
                                             "ellipsoid", "plane",    "mesh"};
@@ -73,7 +73,7 @@ bool is_in_seen_shape(const sdf::Error& error) {
     return is_seen && std::ranges::find(kShapes, name_in_path(error, 1)) != std::end(kShapes);
 }
 
-/// One character more, less or other.
+/// Whether they differ in one character: added, missing or changed.
 bool is_alike(std::string_view a, std::string_view b) {
     if (a.size() > b.size()) std::swap(a, b);
     if (b.size() - a.size() > 1) return false;
@@ -84,8 +84,8 @@ bool is_alike(std::string_view a, std::string_view b) {
     return a.substr(from_a + skipped) == b.substr(std::min(from_b + 1, b.size()));
 }
 
-/// What decides where something is or how it looks, in a slip of the pen: "poze". Passed over it would give
-/// another world.
+/// A misspelt element that determines place or shape, such as "poze". If it were skipped, the world would
+/// differ.
 bool is_misspelt(const sdf::Error& error) {
     constexpr std::string_view kThatCount[] = {"model", "link",    "visual", "geometry",
                                                "pose",  "include", "frame"};
@@ -95,17 +95,17 @@ bool is_misspelt(const sdf::Error& error) {
            std::ranges::any_of(kThatCount, [&](std::string_view known) { return is_alike(name, known); });
 }
 
-/// That something round an error could not be loaded: the error itself is there, too.
+/// A follow-up error, that an enclosing element could not be loaded: the original error is reported, too.
 bool is_echo(const sdf::Error& error) {
     return error.Message().starts_with("Failed to load a ");
 }
 
-/// Of a type that a later sdformat knows.
+/// A sensor type that only a later sdformat knows.
 bool is_unknown_sensor(const sdf::Error& error) {
     return error.Message().starts_with("Attempting to load a Sensor");
 }
 
-/// Whether there is no world because of it.
+/// Whether the error makes the world unusable.
 bool is_refusing(const sdf::Error& error) {
     if (is_unknown_element(error)) return is_in_seen_shape(error) || is_misspelt(error);
     return error.Code() != sdf::ErrorCode::LINK_INERTIA_INVALID && !is_unknown_sensor(error) &&
@@ -114,7 +114,7 @@ bool is_refusing(const sdf::Error& error) {
 
 /// "<density> in <inertial>".
 std::string element_of(const sdf::Error& error) {
-    std::string text = "<";  // GCC 12 warns of "<" + ... for nothing
+    std::string text = "<";  // GCC 12 has a false warning for "<" + ...
     text += name_in_path(error, 0);
     text += "> in <";
     text += name_in_path(error, 1);
@@ -143,9 +143,9 @@ std::string text_of(const sdf::Error& error, const std::filesystem::path& file) 
     return place_of(error, file) + ": " + text + ", at '" + line_of(at, *error.LineNumber()) + "'";
 }
 
-/// Silences the libraries while it lives: what they print comes back as errors, and when sdformat cannot read
-/// a file it tries it as a robot description and prints why it is none. Before it can be silenced it
-/// prints that it has no home for its log.
+/// Suppresses the libraries' output during its lifetime: errors are returned anyway, and for a file that
+/// sdformat cannot read it tries to read a robot description and prints why that fails. Before that, sdformat
+/// prints that it has no home directory for its log.
 class Silence {
   public:
     Silence() : shown_(std::cerr.rdbuf(nullptr)) {
@@ -163,7 +163,7 @@ class Silence {
     std::streambuf* shown_;
 };
 
-/// Walks one file; the first error stops it.
+/// Reads one file; stops at the first error.
 class Reader {
   public:
     explicit Reader(const SdfInput& input) : input_(input), file_(input.file) {}
@@ -177,7 +177,7 @@ class Reader {
                     read_.meshes.push_back(read_.written_out.empty() ? uri : element->Get<std::string>());
                 return std::move(read_);
             }
-            fail("", "no visual with a shape in it: there is nothing to see");
+            fail("", "no visual with a shape: the world is empty");
         }
         return unexpected(*error_);
     }
@@ -187,7 +187,7 @@ class Reader {
         const Silence silence;
         sdf::ParserConfig config;
         config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::ERR);
-        // Only where a world may include others: who may not refer to any file is refused an <include>
+        // Only for a world that may include others: for a world in a recording an <include> was refused
         // before.
         config.SetFindCallback([directory = file_.parent_path()](const std::string& uri) {
             const auto beside = directory / uri;
@@ -208,7 +208,7 @@ class Reader {
         }
     }
 
-    /// Of each kind of element once, with how many there are.
+    /// One warning for each kind of element, with its count.
     void warn_of(const sdf::Errors& errors) {
         std::map<std::string, std::pair<std::string, int>> unknown;
         for (const sdf::Error& error : errors) {
@@ -217,10 +217,10 @@ class Reader {
             if (count++ == 0) first = place_of(error, input_.path) + ", " + error.XmlPath().value_or("");
         }
         if (std::ranges::any_of(errors, is_unknown_sensor))
-            read_.warnings.emplace_back("a sensor of no or of unknown type is passed over");
+            read_.warnings.emplace_back("a sensor without a type or of unknown type is ignored");
         for (const auto& [element, found] : unknown) {
             read_.warnings.push_back(found.first + ": " + element +
-                                     " is not known to the installed sdformat, and is passed over (" +
+                                     " is not known to the installed sdformat, and is ignored (" +
                                      std::to_string(found.second) + " in all)");
         }
     }
@@ -248,7 +248,7 @@ class Reader {
         if (depth > kNestingMax) {
             return fail(element, "models nested deeper than " + std::to_string(kNestingMax));
         }
-        // A model that is the whole file has no frame to be relative to: its pose is taken as written.
+        // A model that is the whole file has no parent frame: its pose is used as written.
         const auto T_parent_model = resolve(element, model.SemanticPose());
         if (!T_parent_model) {
             return false;
@@ -269,9 +269,9 @@ class Reader {
 
     bool add_link(const sdf::Link& link, const Eigen::Isometry3d& T_world_model, const std::string& model) {
         const std::string element = "model '" + model + "', link '" + link.Name() + "'";
-        // Rays need no inertia.
+        // The simulation does not use inertias.
         if (!link.Inertial().MassMatrix().IsValid())
-            read_.warnings.push_back(element + ": its inertia is not a real body's, and is passed over");
+            read_.warnings.push_back(element + ": its inertia is not physically valid, and is ignored");
         const auto T_model_link = resolve(element, link.SemanticPose());
         for (std::uint64_t i = 0; T_model_link && i < link.VisualCount(); ++i) {
             const sdf::Visual& visual = *link.VisualByIndex(i);
@@ -333,7 +333,7 @@ class Reader {
     const SdfInput& input_;
     std::filesystem::path file_;
     SolidsOfFile read_;
-    std::vector<std::pair<std::string, sdf::ElementPtr>> meshes_;  ///< the uri as it was, and where it is
+    std::vector<std::pair<std::string, sdf::ElementPtr>> meshes_;  ///< the original uri, and its element
     std::optional<WorldError> error_;
 };
 

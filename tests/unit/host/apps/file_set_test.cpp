@@ -155,7 +155,7 @@ TEST(FileSetTest, a_directory_in_the_way_is_named_and_changes_nothing) {
         const std::string before = told(folder.path());
         const auto committed = replace_by_new(folder.path());
         ASSERT_FALSE(committed) << in_the_way;
-        EXPECT_THAT(committed.error().message, HasSubstr((folder / in_the_way).string() + ": is no file"));
+        EXPECT_THAT(committed.error().message, HasSubstr((folder / in_the_way).string() + ": is not a file"));
         EXPECT_EQ(told(folder.path()), before);
     }
 }
@@ -217,7 +217,7 @@ TEST(FileSetTest, an_error_while_it_moves_takes_all_of_it_back_until_it_can_be_d
         const auto settled = settle(folder.path());
         ASSERT_FALSE(settled) << obstacle;
         EXPECT_THAT(settled.error().message,
-                    testing::AllOf(HasSubstr((folder / obstacle).string() + ": is no file"),
+                    testing::AllOf(HasSubstr((folder / obstacle).string() + ": is not a file"),
                                    HasSubstr("wait in " + (folder / ".octoskin-ready").string())));
         EXPECT_EQ(told(folder.path()), expected);
         fs::remove(folder / obstacle);
@@ -233,7 +233,7 @@ TEST(FileSetTest, what_cannot_be_finished_is_left_as_it_lies_and_said_once) {
     fs::create_directory(folder / "can.log");
     const auto refused = settle(folder.path());
     ASSERT_FALSE(refused);
-    const std::string what = "can.log: is no file";
+    const std::string what = "can.log: is not a file";
     const auto first = refused.error().message.find(what);
     EXPECT_NE(first, std::string::npos);
     EXPECT_EQ(refused.error().message.find(what, first + 1), std::string::npos) << refused.error().message;

@@ -152,7 +152,7 @@ TEST(RecordingDraftTest, two_at_once_and_one_that_is_read_are_refused) {
     ASSERT_TRUE(one && two);
     const auto writer = RecordingDraft::create(folder.path(), true);
     ASSERT_FALSE(writer);
-    EXPECT_THAT(writer.error().message, HasSubstr("another octoskin reads this recording"));
+    EXPECT_THAT(writer.error().message, HasSubstr("another octoskin is reading this recording"));
     EXPECT_EQ(folder.entries(), 2);
 }
 
@@ -166,7 +166,7 @@ TEST(RecordingDraftTest, a_directory_in_the_way_leaves_the_former_recording_whol
     std::filesystem::create_directory(folder / "robot.urdf");
     const auto committed = draft->commit();
     ASSERT_FALSE(committed);
-    EXPECT_THAT(committed.error().message, HasSubstr("robot.urdf: is no file"));
+    EXPECT_THAT(committed.error().message, HasSubstr("robot.urdf: is not a file"));
     EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "old");
     EXPECT_TRUE(std::filesystem::exists(folder / "meta.yaml"));
 }
@@ -185,7 +185,7 @@ TEST(RecordingDraftTest, is_not_begun_where_it_could_not_come_into_its_place) {
             }();
             ASSERT_FALSE(refused) << place;
             EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
-            EXPECT_THAT(refused.error().message, HasSubstr((folder / place).string() + ": is no file"));
+            EXPECT_THAT(refused.error().message, HasSubstr((folder / place).string() + ": is not a file"));
         }
         EXPECT_EQ(folder.entries(), 2) << "nothing is left of it";
     }

@@ -35,7 +35,7 @@ TEST(TextFile, says_why_not_and_what_to_do) {
     EXPECT_EQ(failure("/dev/full"),
               ": cannot be written (No space left on device): make room there, or write elsewhere");
     EXPECT_EQ(failure(folder / "no/such"),
-              ": cannot be written (No such file or directory): its folder is not there: make it, or write "
+              ": cannot be written (No such file or directory): its folder does not exist: make it, or write "
               "elsewhere");
     EXPECT_EQ(failure(folder.path()),
               ": cannot be written (Is a directory): it is a folder: name a file, or move the folder away");
@@ -88,7 +88,7 @@ TEST(TextFile, that_fails_leaves_what_was_there_and_nothing_beside_it) {
     const auto refused = write_text(file, "new");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message,
-              (folder / ".out.octoskin-part").string() + ": is there already; move it away");
+              (folder / ".out.octoskin-part").string() + ": exists already; move it away");
     EXPECT_FALSE(check_text_place(file));
     EXPECT_EQ(ScratchFolder::read(file), "precious");
     std::filesystem::remove(folder / ".out.octoskin-part");

@@ -1,5 +1,5 @@
-// docs/bring-up.md shows the board's pins as a table, which must be the board's file, and has a remedy for
-// every name of a fault.
+// docs/hardware/wiring.md shows the board's pins as a table, which must equal the board's file;
+// docs/hardware/fault-table.md has a remedy for every name of a fault.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ std::string expected_table() {
     return text;
 }
 
-std::string document() {
-    std::ifstream stream(OCTOSKIN_SOURCE_DIR "/docs/bring-up.md");
+std::string document(const std::string& name) {
+    std::ifstream stream(OCTOSKIN_SOURCE_DIR "/docs/hardware/" + name);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
@@ -39,10 +39,10 @@ void expect_names(const std::string& part, const Table& table, const std::set<st
     }
 }
 
-TEST(BringUpDocument, has_a_remedy_for_every_fault_by_its_name_on_the_wire) {
-    const std::string text = document();
-    const auto from = text.find("## When something is missing");
-    const auto to = text.find("## Bench procedures");
+TEST(FaultTableDocument, has_a_remedy_for_every_fault_by_its_name_on_the_wire) {
+    const std::string text = document("fault-table.md");
+    const auto from = text.find("## Node and bus");
+    const auto to = text.find("## Registers that read back differently");
     ASSERT_LT(from, to);
     ASSERT_NE(to, std::string::npos);
     const std::string remedies = text.substr(from, to - from);
@@ -52,8 +52,8 @@ TEST(BringUpDocument, has_a_remedy_for_every_fault_by_its_name_on_the_wire) {
     expect_names(remedies, wire::tables::kSensorFault, {"none"});
 }
 
-TEST(BringUpDocument, has_the_wiring_table_of_the_boards_file) {
-    const std::string text = document();
+TEST(WiringDocument, has_the_wiring_table_of_the_boards_file) {
+    const std::string text = document("wiring.md");
     const std::string begin = "<!-- wiring table: begin -->";
     const auto from = text.find(begin);
     const auto to = text.find("<!-- wiring table: end -->");

@@ -87,12 +87,13 @@ INSTANTIATE_TEST_SUITE_P(
         Defect{"without an FPU", [](ElfBuilder& b) { b.set_attribute(10, 0); }, "not compiled for FPv4-D16"},
         Defect{"in double precision", [](ElfBuilder& b) { b.set_attribute(27, 3); }, "single precision"},
         Defect{"of the layout before", [](ElfBuilder& b) { b.set_layout(kNodeConfigLayout - 1); },
-               "it reads configuration blocks of layout 4, and this octoskin writes layout 5"},
+               "it reads configuration blocks of layout 4, but this octoskin writes layout 5"},
         Defect{"of the next layout", [](ElfBuilder& b) { b.set_layout(kNodeConfigLayout + 1); },
                "of layout 6"},
-        Defect{"without a layout", [](ElfBuilder& b) { b.set_layout(0); }, "does not say which layout"},
+        Defect{"without a layout", [](ElfBuilder& b) { b.set_layout(0); },
+               "its layout of configuration block is unknown"},
         Defect{"with a damaged layout", [](ElfBuilder& b) { b.segments[0].bytes.back() ^= 1U; },
-               "does not say which layout"},
+               "its layout of configuration block is unknown"},
         Defect{"with soft arguments", [](ElfBuilder& b) { b.set_attribute(28, 0); },
                "not compiled with arguments in floating-point registers"}));
 

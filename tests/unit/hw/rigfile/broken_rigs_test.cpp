@@ -37,7 +37,7 @@ const Broken kBroken[] = {
     {"tag.yaml", 2, "", "tags are not used here: remove '!text'"},
     {"nested-too-deep.yaml", 2, "", "nested deeper than 16"},
     {"list-as-key.yaml", 2, "", "expected a key, found a list"},
-    {"extends-itself.yaml", 0, "extends", "is it a circle?"},
+    {"extends-itself.yaml", 0, "extends", "is there a circle?"},
     {"extends-absent.yaml", 2, "extends", "no-such-rig.yaml"},
     // Keys.
     {"unknown-key.yaml", 2, "cammera", "did you mean camera?"},

@@ -34,7 +34,7 @@ TEST(Reflex, limit_beyond_what_the_mode_measures_is_warned_of) {
     EXPECT_EQ(reflex_warnings(rig_of({0, 1'360}, DistanceMode::short_range)), Lines());
     EXPECT_EQ(reflex_warnings(rig_of({0, 1'361}, DistanceMode::short_range)),
               Lines{"node 'ring' sensor 'b': reflex_below_m 1.361 is more than mode short can measure, about "
-                    "1.36 m: what is farther sends no REFLEX"});
+                    "1.36 m: an object farther away sends no REFLEX"});
     EXPECT_EQ(reflex_warnings(rig_of({2'900}, DistanceMode::medium_range)), Lines());
     EXPECT_EQ(reflex_warnings(rig_of({2'901}, DistanceMode::medium_range)).size(), 1U);
     EXPECT_EQ(reflex_warnings(rig_of({3'600})), Lines());

@@ -133,7 +133,7 @@ TEST_F(UrdfEdges, what_is_before_the_xml_declaration_is_named) {
     const auto document = read("<!-- made by hand -->\n<?xml version=\"1.0\"?>\n" + arm(""));
     ASSERT_FALSE(document);
     EXPECT_EQ(document.error().line, 2);
-    EXPECT_THAT(document.error().message(), HasSubstr("remove what is before it"));
+    EXPECT_THAT(document.error().message(), HasSubstr("remove the text before it"));
     EXPECT_TRUE(read("<?xml version=\"1.0\"?>\n<!-- made by hand -->\n" + arm("")));
 }
 
@@ -156,10 +156,10 @@ TEST_F(UrdfEdges, every_link_whose_body_cannot_be_taken_is_in_one_message) {
     EXPECT_EQ(refused.error().key, "link z");
     EXPECT_THAT(refused.error().what,
                 AllOf(HasSubstr("is a mesh"),
-                      HasSubstr("2 more cannot be taken: link y (line 4, box), link a (line 5, mesh)")));
+                      HasSubstr("2 more refused: link y (line 4, box), link a (line 5, mesh)")));
     const auto fitted = read_capsules(file, {}, BoxRule::fitted);
     ASSERT_FALSE(fitted);
-    EXPECT_THAT(fitted.error().what, HasSubstr("1 more cannot be taken: link a (line 5, mesh)"));
+    EXPECT_THAT(fitted.error().what, HasSubstr("1 more refused: link a (line 5, mesh)"));
 }
 
 TEST_F(UrdfEdges, of_many_links_whose_body_cannot_be_taken_the_first_are_named_and_all_are_counted) {
@@ -170,7 +170,7 @@ TEST_F(UrdfEdges, of_many_links_whose_body_cannot_be_taken_the_first_are_named_a
     const auto refused =
         read_capsules(folder_.write("arm.urdf", "<robot name=\"r\">\n" + links + "</robot>"), {});
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().what, HasSubstr("999 more cannot be taken: "));
+    EXPECT_THAT(refused.error().what, HasSubstr("999 more refused: "));
     EXPECT_THAT(refused.error().what, HasSubstr(", and 979 further ones"));
     EXPECT_LT(refused.error().what.size(), 10'000U);
 }
@@ -217,7 +217,7 @@ TEST_F(UrdfEdges, every_shape_that_is_none_is_in_one_message_with_its_line) {
     EXPECT_EQ(refused.error().line, 3);
     EXPECT_EQ(refused.error().key, "link z");
     EXPECT_THAT(refused.error().what,
-                HasSubstr("2 more cannot be taken: link y (line 5, capsule), link x (line 7, plane)"));
+                HasSubstr("2 more refused: link y (line 5, capsule), link x (line 7, plane)"));
 }
 
 TEST_F(UrdfEdges, an_axis_of_length_1_to_three_digits_is_made_exact) {

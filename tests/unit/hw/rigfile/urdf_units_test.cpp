@@ -61,14 +61,12 @@ TEST_F(UrdfUnits, wrong_ones_of_several_joints_are_in_one_message) {
     const std::string second =
         "\n<link name=\"c\"/><joint name=\"k\" type=\"fixed\"><parent link=\"b\"/>"
         "<child link=\"c\"/>\n<origin ";
-    EXPECT_THAT(
-        error_of(joint("revolute", "0 0 450", "-1", "1") + second + "xyz=\"0 500 0\"/></joint>"),
-        testing::AllOf(HasSubstr(":3: joint j"), HasSubstr("1 more cannot be taken: joint k (line 4")));
-    EXPECT_THAT(
-        error_of("<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>"
-                 "<origin rpy=\"0 90 0\"/></joint>" +
-                 second + "rpy=\"0 0 90\"/></joint>"),
-        testing::AllOf(HasSubstr(":3: joint j"), HasSubstr("1 more cannot be taken: joint k (line 5")));
+    EXPECT_THAT(error_of(joint("revolute", "0 0 450", "-1", "1") + second + "xyz=\"0 500 0\"/></joint>"),
+                testing::AllOf(HasSubstr(":3: joint j"), HasSubstr("1 more refused: joint k (line 4")));
+    EXPECT_THAT(error_of("<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>"
+                         "<origin rpy=\"0 90 0\"/></joint>" +
+                         second + "rpy=\"0 0 90\"/></joint>"),
+                testing::AllOf(HasSubstr(":3: joint j"), HasSubstr("1 more refused: joint k (line 5")));
 }
 
 TEST_F(UrdfUnits, millimetres_in_a_sliding_limit_are_refused) {

@@ -116,10 +116,10 @@ TEST_F(LinuxNodeConfiguration, is_refused_if_it_is_not_there_or_not_whole) {
 
 TEST_F(LinuxNodeConfiguration, is_not_waited_for_at_a_pipe) {
     ASSERT_EQ(::mkfifo(arguments_.config.c_str(), 0600), 0);
-    expect_refused(ExitCode::no_input, "no ordinary file");
+    expect_refused(ExitCode::no_input, "not an ordinary file");
     std::filesystem::remove(arguments_.config);
     std::filesystem::create_directory(arguments_.config);
-    expect_refused(ExitCode::no_input, "no ordinary file");
+    expect_refused(ExitCode::no_input, "not an ordinary file");
 }
 
 TEST_F(LinuxNodeConfiguration, is_refused_for_another_type_of_board) {
@@ -131,13 +131,13 @@ TEST_F(LinuxNodeConfiguration, is_refused_for_another_type_of_board) {
 TEST_F(LinuxNodeConfiguration, is_refused_if_the_command_line_lacks_a_device) {
     write();
     arguments_.i2c.pop_back();
-    expect_refused(ExitCode::bad_config, "sensor 1 is on bus 1, and --i2c names 1");
+    expect_refused(ExitCode::bad_config, "sensor 1 is on bus 1, but --i2c names 1");
     arguments_.i2c.emplace_back("/dev/i2c-3");
     arguments_.xshut.pop_back();
-    expect_refused(ExitCode::bad_config, "sensor 1 is on xshut_line 2, and --xshut names 2");
+    expect_refused(ExitCode::bad_config, "sensor 1 is on xshut_line 2, but --xshut names 2");
     arguments_.xshut.push_back({"gpiochip0", 3});
     arguments_.data_ready.pop_back();
-    expect_refused(ExitCode::bad_config, "bus 1 has a data-ready line, and --data-ready names 1");
+    expect_refused(ExitCode::bad_config, "bus 1 has a data-ready line, but --data-ready names 1");
 }
 
 }  // namespace

@@ -103,18 +103,19 @@ TEST_F(Commanding, reset_is_believed_only_of_a_run_that_began_anew) {
     EXPECT_THAT(perform(CommandCode::reset), HasSubstr("reset: ")) << "in its first seconds, too";
     EXPECT_GT(bus_.heard().size(), heard);
     bus_.ignore_resets();
-    EXPECT_THAT(perform(CommandCode::reset),
-                testing::StartsWith("1 node 5 'ring': it did not refuse reset, and 5 s later: ranging"));
+    EXPECT_THAT(
+        perform(CommandCode::reset),
+        testing::StartsWith("1 node 5 'ring': it did not refuse reset, but 5 s later its state is: ranging"));
 }
 
 TEST_F(Commanding, send_info_prints_every_page) {
     const std::string text = perform(CommandCode::send_info);
     EXPECT_THAT(text,
                 AllOf(HasSubstr("ranging; 4 sensors: 4 ranging\n"), HasSubstr("unique id "),
-                      HasSubstr(", the rig's; up "), HasSubstr("0 I2C errors"), HasSubstr("fault none")));
+                      HasSubstr(", as in the rig; up "), HasSubstr("0 I2C errors"), HasSubstr("fault none")));
     Order other = order(CommandCode::send_info);
     other.known->node_hash ^= 0x1'0000U;
-    EXPECT_THAT(perform(other), HasSubstr(", not the rig's;")) << "the upper half counts here";
+    EXPECT_THAT(perform(other), HasSubstr(", not as in the rig;")) << "the upper half counts here";
 }
 
 TEST_F(Commanding, send_black_box_is_told_once_the_first_of_it_comes) {
@@ -139,7 +140,7 @@ TEST_F(Commanding, safe_mode_refuses_what_it_must_and_start_ends_it) {
 TEST_F(Commanding, no_heartbeat_and_no_answer_are_two_things) {
     bus_.cut_way_in();
     EXPECT_THAT(perform(CommandCode::stop),
-                testing::StartsWith("69 node 5 'ring': its heartbeats come, and no answer"));
+                testing::StartsWith("69 node 5 'ring': its heartbeats arrive, but no answer"));
     EXPECT_GT(readings_in_a_second(0), 20U);
     bus_.cut_way_out();
     EXPECT_THAT(perform(CommandCode::stop), testing::StartsWith("69 node 5 'ring': no heartbeat for 2 s"));
@@ -169,11 +170,13 @@ TEST_F(Commanding, a_sensors_name_counts_only_with_the_rigs_configuration) {
     Order by_name = order(CommandCode::stop, 0, 1);
     by_name.known->node_hash ^= 1U;
     by_name.is_sensor_by_name = true;
-    EXPECT_THAT(perform(by_name), testing::StartsWith("78 node 5 'ring': it has another configuration"));
+    EXPECT_THAT(perform(by_name),
+                testing::StartsWith("78 node 5 'ring': its configuration is not that of the rig"));
     EXPECT_TRUE(bus_.heard().empty());
     Order by_number = order(CommandCode::stop, 0, 1);
     by_number.known->node_hash ^= 1U;
-    EXPECT_THAT(perform(by_number), AllOf(HasSubstr("1 stopped"), HasSubstr("it has another configuration")));
+    EXPECT_THAT(perform(by_number),
+                AllOf(HasSubstr("1 stopped"), HasSubstr("its configuration is not that of the rig")));
 }
 
 TEST_F(Commanding, refusals_of_before_are_not_this_commands) {
@@ -308,11 +311,11 @@ TEST(CommandDialogue, a_refusal_is_the_counts_growth_and_a_full_count_tells_noth
     ScriptedNode refused(CommandCode::identify);
     refused.go_to_asking_after(7);
     refused.give_pages(8);
-    EXPECT_EQ(refused.failure(), "node 9: it refuses identify: it has no light that could blink");
+    EXPECT_EQ(refused.failure(), "node 9: it refuses identify: it has no light to blink");
     ScriptedNode full(CommandCode::identify);
     full.go_to_asking_after(255);
     full.give_pages(255);
-    EXPECT_THAT(full.failure(), HasSubstr("cannot be told"));
+    EXPECT_THAT(full.failure(), HasSubstr("is unknown: its counter"));
     ScriptedNode unconfigured(CommandCode::stop);
     unconfigured.go_to_asking_after(0, wire::NodeState::bad_config);
     unconfigured.give_pages(1);
@@ -328,7 +331,7 @@ TEST(CommandDialogue, a_start_that_changes_nothing_says_what_stands_against_it) 
     node.pass_ms(4'899);
     EXPECT_FALSE(node.dialogue().outcome());
     node.pass_ms(1);
-    EXPECT_THAT(node.failure(), AllOf(HasSubstr("did not refuse start"), HasSubstr("take one of the two")));
+    EXPECT_THAT(node.failure(), AllOf(HasSubstr("did not refuse start"), HasSubstr("remove one of the two")));
 }
 
 // Whatever is said or not: 2 s for a heartbeat, 3 x 0.3 s twice, 0.1 s, 5 s; of a reset some seconds more.

@@ -99,7 +99,7 @@ TEST(CommandOrder, takes_of_each_option_only_what_the_code_has) {
         EXPECT_EQ(orders_of(nullptr, with_sensor, 0).has_value(), !is_calibration && !is_of_the_node) << name;
     }
     EXPECT_EQ(orders_of(nullptr, wish("1", "identify"), 0)->front().command.argument, 10);
-    EXPECT_NE(refusal_of(nullptr, wish("1", "halt")).find("there are start, stop, set_rate"),
+    EXPECT_NE(refusal_of(nullptr, wish("1", "halt")).find("the commands are start, stop, set_rate"),
               std::string::npos);
 }
 

@@ -40,7 +40,7 @@ TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_lets_nobody_in) {
     EXPECT_GE(Clock::now() - begun, 190ms);
     EXPECT_LE(Clock::now() - begun, 1s);
     EXPECT_EQ(answer.error().code, ExitCode::io_failed);
-    EXPECT_NE(answer.error().message.find("lets nobody in (is it stopped?)"), std::string::npos)
+    EXPECT_NE(answer.error().message.find("accepts no connection (is it stopped?)"), std::string::npos)
         << answer.error().message;
 }
 
@@ -71,7 +71,7 @@ TEST(AskDaemon, waits_no_longer_for_a_sign_of_life_however_long_the_answer_may_t
         EXPECT_NE(answer.error().message.find(says), std::string::npos) << answer.error().message;
     };
     std::thread beside([&] { expect_bounded("silent", "did not answer in time"); });  // both wait for 5 s
-    expect_bounded("full", "lets nobody in (is it stopped?)");
+    expect_bounded("full", "accepts no connection (is it stopped?)");
     beside.join();
 }
 

@@ -26,18 +26,18 @@ CameraRecord looked_for() {
 TEST(CameraProblem, is_that_it_was_never_opened) {
     const CameraRecord camera = looked_for();
     EXPECT_EQ(told(camera, kSecond), "camera: not opened yet");
-    EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has ever come: not opened yet");
+    EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has come yet: not opened yet");
 }
 
 TEST(CameraProblem, is_that_it_opens_and_never_shows_anything_however_often) {
     CameraRecord camera = looked_for();
     camera.is_open = true;
     EXPECT_EQ(told(camera, 4 * kSecond), "") << "it may just need time";
-    EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has ever come, and it is open");
+    EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has come yet, and it is open");
     const auto open = camera_problem(camera, kRateHz, kBegun + 6 * kSecond);
     camera.is_open = false;
     camera.why = "no data in time";
-    EXPECT_EQ(told(camera, 7 * kSecond), "camera: no frame has ever come: no data in time");
+    EXPECT_EQ(told(camera, 7 * kSecond), "camera: no frame has come yet: no data in time");
     EXPECT_EQ(camera_problem(camera, kRateHz, kBegun + 7 * kSecond)->about, open->about)
         << "the same problem";
 }
@@ -47,7 +47,7 @@ TEST(CameraProblem, is_that_no_frame_has_a_time) {
     camera.is_open = true;
     camera.frames = camera.untimed = 90;
     EXPECT_EQ(told(camera, 6 * kSecond),
-              "camera: 90 frames came, none with a time that could be told, and it is open");
+              "camera: 90 frames came, none with a known capture time, and it is open");
 }
 
 TEST(CameraProblem, is_that_frames_have_no_time_any_more_while_they_come) {
@@ -56,7 +56,7 @@ TEST(CameraProblem, is_that_frames_have_no_time_any_more_while_they_come) {
     camera.newest = kBegun + 6 * kSecond;
     camera.newest_untimed = kBegun + 9 * kSecond;
     EXPECT_THAT(told(camera, 9 * kSecond + 3 * kPeriod),
-                testing::StartsWith("camera: frames come, none for three"));
+                testing::StartsWith("camera: frames come, but none for three"));
     EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}), "camera: no frame for three periods");
     camera.newest = kBegun + 9 * kSecond;
     EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");

@@ -53,8 +53,8 @@ TEST_F(JointProblemsTest, have_joint_states_without_a_time_where_nobody_tells_it
     const auto with_socket = inputs_with_joint_socket();
     view_.inputs = with_socket.get();
     EXPECT_EQ(told("no joints"),
-              "no joint states: those that come through the socket have no time on the bus's clock "
-              "(joint_no_host_time): nobody sends SYNC and FOLLOW_UP on it");
+              "no joint states: those that come through the socket have no time on the bus clock "
+              "(joint_no_host_time): no host sends SYNC and FOLLOW_UP on the bus");
 }
 
 TEST_F(JointProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
@@ -62,15 +62,16 @@ TEST_F(JointProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
     EXPECT_EQ(told("no joints"), "no joint states: none from node 10 on the bus (and no --joints)");
     const auto with_socket = inputs_with_joint_socket();
     view_.inputs = with_socket.get();
-    EXPECT_EQ(told("no joints"), "no joint states: none comes through the socket (`octoskin joints`)");
+    EXPECT_EQ(told("no joints"),
+              "no joint states: none comes through the socket; send them with `octoskin joints`");
     send_joints("half a turn");
     send_joints("1 2 3 4");
     with_socket->catch_up();
     EXPECT_EQ(told("no joints"),
-              "no joint states: what comes through the socket is refused (not_a_number 1, wrong_count 1, the "
-              "newest of " +
+              "no joint states: the lines that come through the socket are refused (not_a_number 1, "
+              "wrong_count 1, the newest of " +
                   describe(JointSender{::getpid(), ::getuid(), {}}) +
-                  "); wanted: [TIME] Q1 ... QN, radians (metres for a prismatic joint) in the rig's order; "
+                  "); expected: [TIME] Q1 ... QN, radians (metres for a prismatic joint) in the rig's order; "
                   "TIME is CLOCK_MONOTONIC in seconds, within 1 s of now");
     Scene scene = daemon_scene();
     scene.bus = ScriptedBus{};
@@ -79,11 +80,10 @@ TEST_F(JointProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
     for (int k = 0; k < 100; ++k) scene.bus.joints(3.0 + 0.01 * k, kJoints, {&position, 1});
     play(scene, 4.05);
     EXPECT_EQ(told("no joints"), "");
-    EXPECT_EQ(
-        told("joints unused"),
-        "no joint state could be used: joint samples: 89 of 89 are not used, most as clock_not_ready "
-        "(89): fewer than two SYNC exchanges with the node yet: usual in its first seconds. Give it some "
-        "seconds, with the SYNC of a host on the bus.");
+    EXPECT_EQ(told("joints unused"),
+              "no joint state could be used: joint samples: 89 of 89 are not used, most as clock_not_ready "
+              "(89): fewer than two SYNC exchanges with the node yet: usual in its first seconds. Wait some "
+              "seconds, with the SYNC of a host on the bus.");
     EXPECT_EQ(told("joints stopped"), "");
 }
 
@@ -138,8 +138,8 @@ TEST_F(JointProblemsTest, have_joint_states_that_come_quicker_than_the_rig_says)
     EXPECT_EQ(at_rate_of_rig(100.0), "");
     EXPECT_THAT(
         at_rate_of_rig(55.0),
-        testing::MatchesRegex("joint states come, or came, quicker than the 55 Hz of the rig, and were "
-                              "refused \\(too_frequent, [0-9]+\\): put the true rate into joints.rate_hz"));
+        testing::MatchesRegex("joint states come, or came, faster than the 55 Hz of the rig, and were "
+                              "refused \\(too_frequent, [0-9]+\\): set joints.rate_hz to the true rate"));
 }
 
 /// From `begin_s` to `end_s` every second sample once more, 6 ms before, with the first joint `off` the
@@ -163,7 +163,7 @@ TEST_F(JointProblemsTest, have_two_senders_under_the_joint_node_from_the_first_c
     EXPECT_EQ(with_second(4.9, 4.29), "");
     EXPECT_THAT(with_second(4.9, 4.4),
                 testing::MatchesRegex(
-                    "two senders tell joint states under node 10, and neither is used until they have not "
+                    "two senders send joint states under node 10, and neither is used until they have not "
                     "contradicted each other for a second \\(second_sender, [0-9]+\\): the joint node and "
                     "another board of that id, or `octoskin joints --can` beside it"));
     EXPECT_EQ(problems(view_).front().about, "joint senders");
@@ -181,9 +181,9 @@ TEST_F(JointProblemsTest, have_a_joint_that_jumps_and_by_how_much) {
         },
         9.3);
     EXPECT_EQ(told("joint jump"),
-              "joint states jump: shoulder went from 2.371 to 0.000 in 50 ms, where the robot description "
-              "lets it move by 0.850 at most (joint_jump, 1): another program tells joint states too, or the "
-              "velocity of its <limit> is too low");
+              "joint states jump: shoulder went from 2.371 to 0.000 in 50 ms, but the robot description "
+              "allows at most 0.850 (joint_jump, 1): another program sends joint states too, or the velocity "
+              "of its <limit> is too low");
     EXPECT_EQ(told("joint senders"), "") << "one alone is nobody";
 }
 
@@ -203,11 +203,11 @@ TEST_F(JointProblemsTest, have_every_program_that_sends_to_the_socket_where_ther
     with_socket->catch_up();
     view_.now = monotonic_now();
     EXPECT_THAT(told("joint senders"),
-                testing::MatchesRegex(fmt::format(
-                    "joint states come through the socket from more than one program, and none is used until "
-                    "all but one were silent for a second \\(second_sender, 1\\): process {} \\(.*, user "
-                    "{}\\) and process {} \\(.*user {}\\)",
-                    ::getpid(), ::getuid(), child, ::getuid())));
+                testing::MatchesRegex(
+                    fmt::format("joint states come through the socket from more than one program, and none "
+                                "is used until all but one have been silent for a second \\(second_sender, "
+                                "1\\): process {} \\(.*, user {}\\) and process {} \\(.*user {}\\)",
+                                ::getpid(), ::getuid(), child, ::getuid())));
     EXPECT_TRUE(are_joints_withheld(view_));
     view_.now = view_.now + Nanoseconds{1'000'000'000};
     EXPECT_FALSE(are_joints_withheld(view_));
@@ -226,7 +226,7 @@ TEST_F(CameraProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) 
     };
     EXPECT_EQ(look_after(Nanoseconds{800'000'000}), "");
     EXPECT_EQ(look_after(Nanoseconds{800'000'001}),
-              "depth frames come onto the map no more: see the counters of depth frames");
+              "depth frames no longer reach the map: see the counters of depth frames");
     view_.camera->newest = view_.now - kSecond;
     EXPECT_EQ(told("depth stopped"), "") << "its own fault is told first";
     EXPECT_EQ(told("camera silent"), "camera: no frame for three periods");
@@ -237,15 +237,14 @@ TEST_F(CameraProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) 
     view_.camera->newest = view_.now;
     EXPECT_EQ(told("depth unused"),
               "no depth frame could be used yet: depth frames: 6 of 6 are lost, most as outside_map (6): the "
-              "camera is beyond the octree, or its pose is no number. Correct the camera's pose.");
+              "camera is outside the octree, or its pose is not a number. Correct the camera's pose.");
     EXPECT_EQ(told("depth of another size"), "");
     play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
     view_.camera->newest = view_.now;
-    EXPECT_EQ(
-        told("depth of another size"),
-        "camera: none of its images is 17 x " + std::to_string(scene_.rig.camera->intrinsics.height) +
-            ", as the rig has them (wrong_size): `octoskin cameras` lists its modes, camera.width_px and "
-            "camera.height_px of the rig must be one's");
+    EXPECT_EQ(told("depth of another size"),
+              "camera: none of its images is 17 x " + std::to_string(scene_.rig.camera->intrinsics.height) +
+                  ", as the rig has it (wrong_size): set camera.width_px and camera.height_px of the rig to "
+                  "those of one of its modes (`octoskin cameras` lists them)");
     EXPECT_EQ(told("depth unused"), "");
 }
 
@@ -256,7 +255,7 @@ TEST_F(CameraProblemsTest, have_images_that_there_is_no_time_for_once_that_has_l
         return !told("depth left out").empty();
     };
     EXPECT_TRUE(is_told(2 * kSecond + kNs, kSecond - kNs));
-    EXPECT_NE(told("depth left out").find("(queue_overflow): a coarser resolution_m"), std::string::npos);
+    EXPECT_NE(told("depth left out").find("(queue_overflow): use a coarser resolution_m"), std::string::npos);
     EXPECT_FALSE(is_told(2 * kSecond, kSecond - kNs)) << "a busy moment";
     EXPECT_FALSE(is_told(2 * kSecond + kNs, kSecond)) << "it keeps up again";
     view_.used.depth_left_out.reset();
@@ -306,8 +305,8 @@ TEST_F(CameraProblemsTest, have_a_camera_beside_a_bus_that_fell_silent) {
     view_.now = monotonic_now() + kSecond;
     view_.camera->newest = view_.now;
     EXPECT_EQ(told("depth beside silent bus"),
-              "camera: its frames are not used, because the bus is silent: no node tells where the robot is "
-              "(joints_missing)");
+              "camera: its frames are not used, because the bus is silent: no node sends joint states for "
+              "the robot's pose (joints_missing)");
     EXPECT_EQ(told("depth of another size"), "");
     view_.now = monotonic_now();
     view_.camera->newest = view_.now;

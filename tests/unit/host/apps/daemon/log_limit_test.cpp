@@ -40,8 +40,8 @@ TEST_F(LogLimitTest, passes_sixty_at_once_and_one_in_two_seconds_and_tells_how_m
     now_ = now_ + Nanoseconds{1};
     log_.warn("next");
     EXPECT_EQ(text_.str(),
-              "warning 941 lines are left out here, as there were too many; `octoskin status` says what is "
-              "wrong\nwarning next\n");
+              "warning 941 lines are left out here, because there were too many; `octoskin status` lists the "
+              "problems\nwarning next\n");
     text_.str({});
     now_ = now_ + 3 * LogLimit::kPeriod;
     for (int i = 0; i < 10; ++i) log_.warn("{}", i);

@@ -273,7 +273,7 @@ TEST(MapKeeper, goes_on_with_log_odds_alone_where_the_snapshot_is_not_the_maps) 
     testing_support::ScratchFolder damaged;
     folder_with(damaged);
     damaged.write("fused.snapshot", snapshot.substr(0, snapshot.size() - 1));
-    expect_alone(damaged, kMapping, "no whole and undamaged block");
+    expect_alone(damaged, kMapping, "no complete and undamaged block");
     std::filesystem::remove(damaged / "fused.snapshot");
     expect_alone(damaged, kMapping, "");
 }
@@ -288,10 +288,11 @@ TEST(MapKeeper, refuses_a_damaged_map_and_one_of_another_resolution_by_name) {
     folder.write("fused.ot", encode_ot(some_map(10)));
     const auto other = keeper.load(mapping_of(MapConfig{.resolution_m = 0.02}));
     ASSERT_FALSE(other);
-    EXPECT_EQ(other.error().message, (folder / "fused.ot").string() +
-                                         ": its voxels are 0.040000 m, the mapping's are 0.020000 m: "
-                                         "say map.resolution_m as it was. To begin with an empty map, "
-                                         "move fused.ot, fused.bt and fused.snapshot away");
+    EXPECT_EQ(
+        other.error().message,
+        (folder / "fused.ot").string() +
+            ": its voxels are 0.040000 m, the mapping's are 0.020000 m: set map.resolution_m to its former "
+            "value. To begin with an empty map, move fused.ot, fused.bt and fused.snapshot away");
 }
 
 // Who begins from the map of another program has it as a .bt, and who moved a damaged fused.ot away has no
@@ -328,7 +329,7 @@ TEST(MapKeeper, refuses_what_its_next_save_would_destroy) {
         {ot, octomaps, "fused.bt: is another map than fused.ot"},
         {ot, "not a map at all", "fused.bt: is another map than fused.ot"},
         {ot, octomaps.substr(0, octomaps.size() - 1), "fused.bt: is another map than fused.ot"},
-        {"", "not a map at all", "fused.bt: the first line is not"},
+        {"", "not a map at all", "fused.bt: the first line is neither"},
         {"", octomaps.substr(0, octomaps.size() - 1), "fused.bt: byte "},
         {coloured, "", "fused.ot: its voxels have colours"},
     };

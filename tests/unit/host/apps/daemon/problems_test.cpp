@@ -150,7 +150,7 @@ TEST_F(ProblemsTest, come_the_most_fundamental_first) {
     EXPECT_THAT(
         all_told(),
         ElementsAre(HasSubstr("CAN absent: can7: closed: No such device"),
-                    "the time is not known yet: no SYNC of ours came onto the bus, and no node is heard",
+                    "the time is not known yet: no SYNC of this host reached the bus, and no node is active",
                     "node 1 'node 1': absent",
                     "no joint states: none from node 10 on the bus (and no --joints)",
                     "camera: no such device", "the map is not saved: the disk is full"));
@@ -164,8 +164,8 @@ TEST_F(ProblemsTest, have_the_adapters_word_until_traffic_proves_it_wrong) {
     say({.can_id = 5});
     EXPECT_THAT(all_told(), IsEmpty());
     say_error(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE);
-    EXPECT_THAT(all_told(), ElementsAre("CAN error_passive: the adapter is error-passive: nobody "
-                                        "acknowledges, other bit rates, or a disturbed line"));
+    EXPECT_THAT(all_told(), ElementsAre("CAN error_passive: the adapter is error-passive: no node "
+                                        "acknowledges, the bit rates differ, or the line is disturbed"));
     say({.can_id = 5});
     EXPECT_THAT(all_told(), IsEmpty());
 }
@@ -184,10 +184,9 @@ TEST_F(ProblemsTest, have_another_host_for_three_seconds_after_its_sync_unless_t
 
 TEST_F(ProblemsTest, have_a_bus_whose_time_went_back_for_a_minute) {
     view_.used.time_back = view_.now - 60 * kSecond + kNs;
-    EXPECT_EQ(
-        told("time back"),
-        "the bus's time went back (times_back, 0) within the last minute: the host that sends SYNC began "
-        "anew, or there are two; joint states and readings go on from there");
+    EXPECT_EQ(told("time back"),
+              "the bus time went back (times_back, 0) within the last minute: the host that sends SYNC "
+              "restarted, or there are two; joint states and readings continue from there");
     view_.used.time_back = view_.now - 60 * kSecond;
     EXPECT_EQ(told("time back"), "");
 }
@@ -195,8 +194,8 @@ TEST_F(ProblemsTest, have_a_bus_whose_time_went_back_for_a_minute) {
 TEST_F(ProblemsTest, have_a_bus_whose_time_leapt_ahead_for_a_minute) {
     view_.used.time_ahead = view_.now - 60 * kSecond + kNs;
     EXPECT_EQ(told("time ahead"),
-              "the bus's time leapt ahead (times_ahead, 0) within the last minute: another host sends SYNC, "
-              "or its clock was set; the map stays as old as it was");
+              "the bus time jumped ahead (times_ahead, 0) within the last minute: another host sends SYNC, "
+              "or its clock was set; the age of the map does not change");
     view_.used.time_ahead = view_.now - 60 * kSecond;
     EXPECT_EQ(told("time ahead"), "");
 }
@@ -204,11 +203,12 @@ TEST_F(ProblemsTest, have_a_bus_whose_time_leapt_ahead_for_a_minute) {
 TEST_F(ProblemsTest, have_a_time_that_nobody_tells_until_somebody_does) {
     play(daemon_scene(), 0.09);
     EXPECT_EQ(told("no time"),
-              "the time is not known yet: nodes are heard, but no SYNC of ours came onto the bus "
+              "the time is not known yet: nodes are active, but no SYNC of this host reached the bus "
               "(can.not_sent, 0)");
     view_.is_listen_only = true;
-    EXPECT_EQ(told("no time"),
-              "the time is not known: nobody on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)");
+    EXPECT_EQ(
+        told("no time"),
+        "the time is not known: no host on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)");
     play(daemon_scene(), 0.2);
     EXPECT_EQ(told("no time"), "");
 }
@@ -219,7 +219,7 @@ TEST_F(ProblemsTest, have_no_time_from_our_own_sync_alone) {
     scene.rig.joints.node_id = 45;
     play(scene, 0.2);
     ASSERT_TRUE(pipeline_->now());
-    EXPECT_EQ(told("no time"), "the time is not known: no node is heard that would share it");
+    EXPECT_EQ(told("no time"), "the time is not known: no node is active that would share it");
     view_.is_listen_only = true;
     EXPECT_EQ(told("no time"), "");
 }
@@ -244,7 +244,7 @@ TEST_F(ProblemsTest, have_a_time_in_doubt_with_what_made_it_so) {
     ScriptedBus told_otherwise;
     exchange(told_otherwise, 21, 5.7, 5.73);
     play_on(told_otherwise.frames(), 5.75);
-    EXPECT_THAT(told("time disagrees"), HasSubstr("tells another than those before, by over 20 ms"));
+    EXPECT_THAT(told("time disagrees"), HasSubstr("differs from the earlier ones by over 20 ms"));
     EXPECT_EQ(told("no time") + told("time jumped"), "");
     view_.is_listen_only = true;
     EXPECT_THAT(told("time disagrees"), HasSubstr("a clock was set")) << "whoever sends SYNC";
@@ -313,7 +313,7 @@ TEST_F(ProblemsTest, have_a_sensor_whose_readings_are_nearly_all_rejected_until_
     };
     const std::string expected =
         "node 1 'node 1' sensor 5 'good': (nearly) all of its last 32 readings were rejected, most as "
-        "status_fault. Look at the sensor, its cover and its light: bring-up.md.";
+        "status_fault. Look at the sensor, its cover and its light: docs/hardware/fault-table.md.";
     EXPECT_EQ(with_readings(31, 0), "");
     EXPECT_EQ(with_readings(32, 0), expected);
     EXPECT_EQ(with_readings(32, 1), expected);
@@ -336,9 +336,9 @@ TEST_F(ProblemsTest, have_two_senders_under_one_sensor_s_name_until_a_second_aft
     };
     EXPECT_EQ(with_forged(1, 4.2), "") << "one may be a damaged frame";
     EXPECT_EQ(with_forged(2, 4.2),
-              "node 1 'node 1' sensor 5 'good': another sender's readings come under its name "
+              "node 1 'node 1' sensor 5 'good': readings of another sender arrive under its name "
               "(contradictions 2, strays 0): its readings stay out of the map until a second after the last "
-              "of them. Which board has the node id twice, or who forges it?");
+              "of them. Look for a second board with its node id, or a program that forges it");
     EXPECT_NE(with_forged(2, 5.04), "");
     EXPECT_EQ(with_forged(2, 5.06), "");
 }
@@ -354,11 +354,10 @@ TEST_F(ProblemsTest, have_two_answers_to_one_sync_for_two_and_a_half_seconds_of_
         return told("node " + std::to_string(int{node}) + " answers");
     };
     EXPECT_EQ(with_answer(kLeft, 4.1016), "") << "one alone";
-    EXPECT_EQ(
-        with_answer(kLeft, 4.2),
-        "node 1 'node 1': two answers to one SYNC come under its id (sync_contradicted, 1), and only one "
-        "that goes on where its clock was is used. Which board has the node id twice, or which program "
-        "forges it?");
+    EXPECT_EQ(with_answer(kLeft, 4.2),
+              "node 1 'node 1': two answers to one SYNC arrive under its id (sync_contradicted, 1), and only "
+              "the one that continues its clock is used. Look for a second board with the node id, or a "
+              "program that forges it");
     EXPECT_EQ(status_json(view_)["nodes"][0]["clock_contradictions"], 1);
     EXPECT_NE(with_answer(kJoints, 4.2), "");
     EXPECT_NE(with_answer(kLeft, 4.5), "");
@@ -380,11 +379,10 @@ TEST_F(ProblemsTest, have_a_node_that_started_anew_for_three_seconds) {
         return told("node " + std::to_string(int{node}) + " restarts");
     };
     EXPECT_EQ(with_start(kLeft, 4.24), "");
-    EXPECT_EQ(
-        with_start(kLeft, 4.26),
-        "node 1 'node 1' started anew (restarts, 1): nothing of it is used until its clock is known. If "
-        "it does so again and again, look at its supply and at what it was reset by, or for another "
-        "sender under its id");
+    EXPECT_EQ(with_start(kLeft, 4.26),
+              "node 1 'node 1' restarted (restarts, 1): nothing of it is used until its clock is known. If "
+              "it restarts again and again, check its supply and the cause of its resets, and look for "
+              "another sender under its id");
     EXPECT_EQ(status_json(view_)["nodes"][0]["restarts"], 1);
     set_now(7.26);
     EXPECT_EQ(told("node 1 restarts"), "");
@@ -424,7 +422,7 @@ TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is
     EXPECT_THAT(all_told(),
                 ElementsAre(testing::AllOf(
                     testing::StartsWith("node 1 'node 1' sensor 0 'good': contradicts the camera: "),
-                    HasSubstr(" of its ranges end where the camera sees through, 0 behind a surface"))));
+                    HasSubstr(" of its ranges end where the camera sees free space, 0 behind a surface"))));
     // Without the robot taken out of its images the camera says nothing of any sensor.
     Scene scene = daemon_scene();
     scene.mapping.removes_robot_from_depth = false;
@@ -453,15 +451,15 @@ TEST_F(ProblemsTest, tell_of_a_sensor_that_contradicts_the_camera_nothing_that_a
         .agreed = 400, .fault = SensorFault::ranges_too_long, .compared = 412, .fitted = 380};
     EXPECT_EQ(describe(evidence),
               "contradicts the camera: its ranges are some centimetres too long: set its offset "
-              "(docs/bring-up.md, \"A sensor with a wrong offset\")");
+              "(docs/hardware/calibration.md)");
     evidence.in_free_space = 7;
     evidence.behind_surface = 2;
     for (const SensorFault fault : {SensorFault::ranges_too_short, SensorFault::often_short,
                                     SensorFault::turned, SensorFault::exchanged}) {
         evidence.fault = fault;
         EXPECT_THAT(describe(evidence),
-                    HasSubstr(" (7 of its ranges end where the camera sees through, 2 behind "
-                              "a surface that it sees)"));
+                    HasSubstr(" (7 of its ranges end where the camera sees free space, 2 behind "
+                              "a surface)"));
         for (const char* acquits : {"400", "412", "380", "agree"})
             EXPECT_THAT(describe(evidence), testing::Not(HasSubstr(acquits)));
     }
@@ -472,15 +470,14 @@ TEST_F(ProblemsTest, have_readings_that_are_of_no_use_or_stopped) {
     view_.now = *view_.used.reading + Nanoseconds{800'000'000};
     EXPECT_EQ(told("readings stopped"), "");
     view_.now = view_.now + kNs;
-    EXPECT_EQ(told("readings stopped"), "readings come onto the map no more: see the counters of readings");
+    EXPECT_EQ(told("readings stopped"), "readings no longer reach the map: see the counters of readings");
     play(daemon_scene(), 3.5);
     EXPECT_EQ(told("readings unused") + told("readings stopped"), "") << "none has come";
     view_.used = {};
     play_changed([](Scene& scene) { scene.rig.range_limits.max_m = 0.1; });
     EXPECT_EQ(told("readings unused"),
               "no reading could be used yet: readings: 10 of 10 are not used, most as above_range_max (10): "
-              "further "
-              "than range_limits.max_m.");
+              "above range_limits.max_m of the rig.");
 }
 
 TEST_F(ProblemsTest, have_a_map_without_room) {
@@ -500,10 +497,11 @@ TEST_F(ProblemsTest, have_a_save_and_a_reload_that_failed_until_the_next_goes_we
     view_.reload_error = "rig.yaml:3: what is that";
     EXPECT_THAT(
         all_told(),
-        ElementsAre("the map is not saved: maps/fused.ot: no space",
-                    "the newest reload was refused, and the old settings hold: rig.yaml:3: what is that"));
+        ElementsAre(
+            "the map is not saved: maps/fused.ot: no space",
+            "the newest reload was refused, and the old settings stay in force: rig.yaml:3: what is that"));
     view_.recording_refusal = "no memory";
-    EXPECT_EQ(told("recording refused"), "the newest recording did not begin: no memory");
+    EXPECT_EQ(told("recording refused"), "the newest recording did not start: no memory");
     view_.recording_refusal.clear();
     view_.saves.error.clear();
     view_.reload_error.clear();
@@ -528,9 +526,9 @@ TEST_F(ProblemsTest, have_a_recording_that_is_not_complete) {
     recorder.on_depth(flat_frame(4.5, 39'000), {});  // more than a recording can hold
     EXPECT_THAT(
         all_told(),
-        ElementsAre("the recording lacks something, and its replay gives another map: "
-                    "recording.lost_commits and lost_depth (the disk was too slow, there was no memory, "
-                    "or depth lay beyond 32.767 m)"));
+        ElementsAre(
+            "the recording is incomplete, and its replay gives another map: see recording.lost_commits and "
+            "lost_depth (the disk was too slow, there was no memory, or depth was beyond 32.767 m)"));
 }
 
 }  // namespace

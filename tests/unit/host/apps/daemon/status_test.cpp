@@ -42,7 +42,7 @@ TEST_F(StatusTest, has_who_it_is_how_long_it_runs_and_what_is_wrong) {
     view_.reload_error = "no rig";
     EXPECT_EQ(status()["problems"],
               Json({"the map is not saved: no room",
-                    "the newest reload was refused, and the old settings hold: no rig"}));
+                    "the newest reload was refused, and the old settings stay in force: no rig"}));
 }
 
 TEST_F(StatusTest, names_links_without_a_body_and_is_content_with_those_that_the_rig_lists) {

@@ -94,7 +94,7 @@ TEST(UnixSocket, refuses_at_once_the_place_of_one_that_lets_nobody_in) {
     const auto second = bind_unix_socket(folder / "control", SOCK_STREAM);
     ASSERT_FALSE(second);
     EXPECT_LE(std::chrono::steady_clock::now() - begun, 2s);
-    EXPECT_NE(second.error().message.find("(it lets nobody in: is it stopped?) has this socket"),
+    EXPECT_NE(second.error().message.find("(it accepts no connection: is it stopped?) has this socket"),
               std::string::npos)
         << second.error().message;
 }

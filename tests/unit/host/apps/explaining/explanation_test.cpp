@@ -199,9 +199,9 @@ TEST(Explanation, concludes_in_one_sentence) {
     EXPECT_EQ(conclusion_of(explanation_of(freed, Occupancy::free)),
               "free, mainly by the camera at 4.700 s, 1 miss");
     EXPECT_EQ(conclusion_of(explanation_of(VoxelWitness(key, MapConfig{}, kKept), Occupancy::unknown)),
-              "unknown: no reading and no depth frame ever touched it");
+              "unknown: no reading and no depth frame ever reached it");
     EXPECT_EQ(conclusion_of(explanation_of(witness_from(key, 1.0F), Occupancy::occupied)),
-              "occupied, as the map had it at the begin of the recording; the camera never saw it");
+              "occupied, unchanged since the beginning of the recording; the camera never saw it");
 }
 
 TEST(Explanation, weighs_what_was_there_before_as_a_line_of_its_own_and_the_sum_agrees) {
@@ -215,11 +215,11 @@ TEST(Explanation, weighs_what_was_there_before_as_a_line_of_its_own_and_the_sum_
     EXPECT_EQ(text.substr(0, text.find("the newest")),
               "voxel about 0.020 0.500 0.020 m, edge 0.04 m: occupied, log-odds 2.2500\n"
               "  source                     hits  misses  log-odds    first s    last s\n"
-              "  what was there before         -       -   +2.0000\n"
+              "  before the recording          -       -   +2.0000\n"
               "  forearm_3                     1       0   +0.7500      4.100     4.100\n"
               "  camera                        0       1   -0.5000      4.200     4.200\n");
     EXPECT_EQ(conclusion_of(explanation_of(witness, Occupancy::occupied)),
-              "occupied, mainly by what was there before the recording; the camera saw it free in 1 frame, "
+              "occupied, mainly from the map before the recording; the camera saw it free in 1 frame, "
               "and never occupied");
     VoxelWitness weaker = witness_from(key, 0.5F);
     weaker.on_reading(reading_at(4.1), Beam{}, hit);
@@ -313,7 +313,7 @@ TEST(Explanation, tells_that_a_voxel_was_forgotten_and_not_what_marked_it_before
     EXPECT_EQ(json["forgotten"]["change"], -2.75);
     EXPECT_EQ(json["forgotten"]["last_s"], 9.25);
     EXPECT_EQ(json["sources"][0]["change"], 0.75);
-    EXPECT_NE(json["conclusion"].get<std::string>().find("unknown, forgotten at 9.250 s"), std::string::npos);
+    EXPECT_NE(json["conclusion"].get<std::string>().find("unknown, expired at 9.250 s"), std::string::npos);
     EXPECT_NE(to_text(explanation_of(witness, Occupancy::unknown)).find("  -2.7500                9.250\n"),
               std::string::npos);
     witness.on_depth({time_at(10.5), 0, 0, {}}, terms_of({{key, 0.5F}}));
@@ -325,7 +325,7 @@ TEST(Explanation, says_that_a_full_map_had_no_room) {
     Explanation explanation = explanation_of(VoxelWitness({1, 2, 3}, MapConfig{}, kKept), Occupancy::unknown);
     explanation.no_room = 12;
     EXPECT_EQ(conclusion_of(explanation),
-              "unknown: the map was full, and had no room for 12 contributions to it; raise "
+              "unknown: the map was full and had no room for 12 contributions to it; raise "
               "map.memory_max_mib in the mapping file");
     EXPECT_EQ(to_json(explanation)["contributions_without_room"], 12);
 }

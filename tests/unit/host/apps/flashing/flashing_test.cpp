@@ -61,8 +61,9 @@ TEST_F(FlashingTest, what_is_missing_or_in_the_way_has_its_own_code) {
     Order absent = order();
     absent.elf = folder_ / "nowhere.elf";
     EXPECT_EQ(prepare(absent).error().code, ExitCode::no_input);
-    EXPECT_THAT(prepare(absent).error().message,
-                HasSubstr("`firmware/flash` of octoskin's sources builds it; --elf names one that is built"));
+    EXPECT_THAT(
+        prepare(absent).error().message,
+        HasSubstr("build it with `firmware/flash` of octoskin's sources, or give a built image with --elf"));
     Order blocked = order();
     blocked.folder = blocked.elf / "below";
     EXPECT_EQ(prepare(blocked).error().code, ExitCode::cannot_create);

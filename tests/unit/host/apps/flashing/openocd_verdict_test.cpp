@@ -82,12 +82,12 @@ INSTANTIATE_TEST_SUITE_P(
              ExitCode::unavailable, "in use by another program"},
         Case{"unplugged",
              kBanner + kProbe + kDevice + kOptions + "Error: jtag_libusb: LIBUSB_ERROR_NO_DEVICE\n",
-             ExitCode::io_failed, "went away"},
+             ExitCode::io_failed, "disconnected"},
         Case{"no supply",
              kBanner + kProbe +
                  "Info : Target voltage: 0.002\nError: target voltage may be too low for reliable debugging\n"
                  "Error: init mode failed (unable to connect to the target)\n",
-             ExitCode::unavailable, "no supply at the chip"},
+             ExitCode::unavailable, "no supply voltage at the chip"},
         Case{"no answer",
              kBanner + kProbe +
                  "Info : Target voltage: 3.23\nError: init mode failed (unable to connect to the target)\n",
@@ -107,16 +107,17 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"verification",
              kBanner + kProbe + kDevice + kOptions + kProgrammed +
                  "Error: checksum mismatch - attempting binary compare\n",
-             ExitCode::io_failed, "not what was written (checksum mismatch"},
+             ExitCode::io_failed, "differs from what was written (checksum mismatch"},
         Case{"start", kBanner + kProbe + kDevice + kOptions + kProgrammed + kVerified, ExitCode::io_failed,
-             "verified, but not started (exit code 1, and last it said: octoskin: verified): press"},
+             "verified, but not started (exit code 1, last line of its output: octoskin: verified): press"},
         Case{"no such board", kBanner + "Can't find board/st_nucleo_g4.cfg\n", ExitCode::unavailable,
              "no script for the board"},
         Case{"anything else", kBanner + "Error: \nError: the moon is full\nError: later\n",
              ExitCode::io_failed, "OpenOCD failed before anything was written (the moon is full): try again"},
         Case{"no error line", kBanner + "invalid command name \"frob\"\n\n \t\n", ExitCode::io_failed,
-             "(exit code 1, and last it said: invalid command name \"frob\"): try again"},
-        Case{"not a word", "", ExitCode::io_failed, "(exit code 1, and last it said: nothing): try again"}));
+             "(exit code 1, last line of its output: invalid command name \"frob\"): try again"},
+        Case{"not a word", "", ExitCode::io_failed,
+             "(exit code 1, last line of its output: nothing): try again"}));
 
 TEST(OpenocdVerdict, a_serial_number_that_nobody_has_is_named) {
     const auto programmed =

@@ -60,7 +60,7 @@ TEST(Monitor, shows_what_is_there_and_rates_of_what_grew) {
          {"rig 'arm'", "no problems", "450.0/s in", "node 1 'left' usable", "+12.3 ppm within 0.21 ms",
           "load 25.0 %", "0.532 m", "20.0/s", "elbow", "lost, no_answer", "not used: self_hit",
           "100.0/s used", "0.20 ms median", "map 1234 voxels", "saved 4.00 s ago", "no camera",
-          "0.5/s  the beam reaches the robot's own body"})
+          "0.5/s  the beam ends on the robot's own body"})
         EXPECT_TRUE(has(screen, words)) << words << "\n" << screen;
     for (const char* words : {"bus_off", "no_room", "steps_back"})
         EXPECT_FALSE(has(screen, words)) << "a counter of zero is not shown: " << words;
@@ -136,9 +136,9 @@ TEST(Monitor, says_why_nothing_is_in_the_map_and_problems_first) {
     now["problems"] = {"no joint states: none from node 3", "another"};
     const std::string screen = shown(status(), now, {80, 5});
     EXPECT_TRUE(has(screen, "! no joint states")) << screen;
-    EXPECT_TRUE(has(screen, "nothing is in the map: the first problem above is why")) << screen;
+    EXPECT_TRUE(has(screen, "the map is empty: the first problem above is the reason")) << screen;
     now["problems"] = Json::array();
-    EXPECT_TRUE(has(shown(status(), now), "nothing is in the map yet"));
+    EXPECT_TRUE(has(shown(status(), now), "the map is empty: no measurement"));
 }
 
 TEST(Monitor, takes_counters_that_began_anew_and_a_first_picture) {
@@ -293,74 +293,6 @@ TEST(Monitor, shows_the_recording_and_what_it_lost_as_bad) {
     now["recording"]["state"] = "failed";
     now["recording"]["error"] = "no room";
     EXPECT_EQ(title().text, "recording /tmp/bench: failed, 12 s: no room");
-}
-
-std::string row_of(const Meaning& meaning) {
-    return std::string(meaning.group).append(" ").append(meaning.name).append(": ").append(meaning.text);
-}
-/// As `row_of` has them, each row of the tables in a document of docs/, the group from the heading above;
-/// without marks of code and with a link's words alone, as a screen has them.
-std::set<std::string> documented(const std::string& file) {
-    std::ifstream stream(std::string(OCTOSKIN_SOURCE_DIR "/docs/") + file);
-    EXPECT_TRUE(stream) << file;
-    const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
-    std::set<std::string> rows;
-    std::string group;
-    for (std::string line; std::getline(stream, line);) {
-        const bool is_row = line.starts_with("| `") && line.ends_with(" |");
-        line = std::regex_replace(line, link, "$1");
-        std::erase(line, '`');
-        if (line.starts_with("## ")) group = line.substr(3);
-        if (!is_row) continue;
-        const auto bar = line.find(" | ", 2);
-        const std::string name = line.substr(2, bar - 2);
-        const std::string text = line.substr(bar + 3, line.size() - bar - 5);
-        EXPECT_TRUE(rows.insert(row_of({group, name, text})).second) << line;
-    }
-    return rows;
-}
-std::set<std::string> known(std::span<const Meaning> meanings) {
-    std::set<std::string> rows;
-    for (const Meaning& meaning : meanings) rows.insert(row_of(meaning));
-    return rows;
-}
-
-std::string word(Cause cause) {
-    switch (cause) {
-        case Cause::scene:
-            return "scene";
-        case Cause::outside:
-            return "outside";
-        case Cause::other_device:
-            return "others";
-        case Cause::mendable:
-            return "mendable";
-    }
-    return {};
-}
-
-TEST(Meanings, of_the_account_are_word_for_word_those_of_its_document) {
-    std::set<std::string> rows;
-    for (std::string row : documented("account.md")) {
-        // Headings begin with a capital; "CAN" is one all the same.
-        if (!row.starts_with("CAN ")) row[0] = static_cast<char>(std::tolower(row[0]));
-        rows.insert(row);
-    }
-    std::set<std::string> known_rows;
-    for (const CounterMeaning& meaning : counter_meanings()) {
-        known_rows.insert(row_of({meaning.unit, meaning.name, meaning.text}) + " | " + word(meaning.cause) +
-                          " | " + std::string(meaning.remedy));
-    }
-    EXPECT_EQ(rows, known_rows);
-}
-
-TEST(Meanings, of_the_status_are_word_for_word_those_of_its_document) {
-    std::set<std::string> rows;
-    for (const std::string& row : documented("status.md")) {
-        const std::string top = "At the top";
-        rows.insert(row.starts_with(top) ? row.substr(top.size()) : row);
-    }
-    EXPECT_EQ(rows, known(status_meanings()));
 }
 
 template <class Reason>

@@ -317,7 +317,7 @@ TEST_F(DataSetPlayback, an_image_that_cannot_be_read_makes_the_map_one_that_must
     ASSERT_TRUE(failure_of(*played));
     EXPECT_EQ(failure_of(*played)->code, ExitCode::bad_data);
     EXPECT_THAT(failure_of(*played)->message,
-                HasSubstr("depth.txt:5: depth/100.03.png: cannot be read whole"));
+                HasSubstr("depth.txt:5: depth/100.03.png: cannot be read completely"));
     EXPECT_TRUE(played->accounts.front().is_balanced);
 }
 
@@ -327,7 +327,7 @@ TEST_F(DataSetPlayback, an_image_of_another_size_than_the_cameras_is_counted_and
     const auto played = play_recording(request());
     ASSERT_TRUE(played) << played.error().message;
     EXPECT_EQ(played->pipeline.accounts().depth_frames.rejected(DepthReason::wrong_size), 1U);
-    EXPECT_THAT(failure_of(*played)->message, HasSubstr("nothing came into the map"));
+    EXPECT_THAT(failure_of(*played)->message, HasSubstr("no measurement entered the map"));
 }
 
 TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
@@ -344,7 +344,7 @@ TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
     unknown.camera = "freiburg4";
     EXPECT_THAT(refused(unknown),
                 HasSubstr("kinect, freiburg1, freiburg2, freiburg3, icl_nuim, seven_scenes"));
-    EXPECT_THAT(refused(request()), HasSubstr("depth.txt:4: depth/absent.png: is not there"));
+    EXPECT_THAT(refused(request()), HasSubstr("depth.txt:4: depth/absent.png: does not exist"));
 }
 
 TEST_F(DataSetPlayback, a_folder_with_a_log_of_the_bus_is_a_recording) {

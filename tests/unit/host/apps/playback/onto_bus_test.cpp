@@ -113,7 +113,7 @@ TEST_F(OntoBusTest, leaves_out_and_counts_what_is_no_frame_of_the_first_interfac
 TEST_F(OntoBusTest, says_that_the_other_end_is_gone_and_that_a_log_has_no_frame) {
     const auto empty = play({"nothing"});
     ASSERT_FALSE(empty);
-    EXPECT_NE(empty.error().message.find("can.log: no line is a frame as candump writes them: line 1"),
+    EXPECT_NE(empty.error().message.find("can.log: no line is a frame in candump's format: line 1"),
               std::string::npos);
     bus_.reset();
     const auto gone = play({"(1750000000.000000) can0 001#"});

@@ -62,10 +62,10 @@ TEST(ReadJointPath, has_a_configuration_a_line_and_knows_of_each_where_it_is) {
 
 TEST(ReadJointPath, names_the_line_and_what_is_wrong_there) {
     EXPECT_THAT(path_of("0,1\n# x\n0,nan\n").error().message,
-                HasSubstr("way.txt:3: 'nan' is no plain, finite number; expected a joint configuration"));
+                HasSubstr("way.txt:3: 'nan' is not a plain, finite number; expected a joint configuration"));
     EXPECT_THAT(path_of("0,1,\n").error().message,
                 HasSubstr("way.txt:1: a number is missing beside a comma"));
-    EXPECT_THAT(path_of(std::string("\x1b[0m\0", 5)).error().message, HasSubstr("'?[0m?' is no plain"));
+    EXPECT_THAT(path_of(std::string("\x1b[0m\0", 5)).error().message, HasSubstr("'?[0m?' is not a plain"));
     EXPECT_THAT(path_of("# nothing\n").error().message, HasSubstr("way.txt: no joint configuration in it"));
     EXPECT_EQ(path_of("x").error().code, ExitCode::bad_data);
     std::string many;

@@ -71,7 +71,7 @@ TEST_F(QueryAnswer, without_a_path_is_that_of_the_arm_as_it_stands) {
     EXPECT_FALSE(nobody.at("ok").get<bool>());
     EXPECT_EQ(nobody.at("code"), static_cast<int>(ExitCode::unavailable));
     EXPECT_THAT(nobody.at("error").get<std::string>(),
-                HasSubstr("nobody says how the arm stands: give the posture to ask about as --joints"));
+                HasSubstr("the arm's posture is unknown: give the posture to ask about as --joints"));
 }
 
 TEST_F(QueryAnswer, of_a_small_region_tells_how_much_is_unknown_in_litres_and_of_none_why) {
@@ -123,12 +123,12 @@ TEST_F(QueryAnswer, of_a_link_without_a_body_is_unknown_where_it_would_be_free) 
     EXPECT_EQ(answer.at("links_without_body"), Json({"upper"}));
     EXPECT_EQ(answer.at("links_unknown"), Json({"upper"}));
     EXPECT_THAT(query_text(answer), HasSubstr("   2  unknown: upper has no body\n"));
-    EXPECT_THAT(query_text(answer), HasSubstr("not asked about: upper: "));
+    EXPECT_THAT(query_text(answer), HasSubstr("not checked: upper: "));
     mark(map_, {0.42, 0.02, 0.30});
     const Json blocked = ask(path({{0.0, 0.0}}), map_);
     EXPECT_EQ(blocked.at("state"), "occupied");
     EXPECT_EQ(blocked.at("links_unknown"), Json({"upper"}));
-    EXPECT_THAT(query_text(blocked), HasSubstr("not asked about: upper: "));
+    EXPECT_THAT(query_text(blocked), HasSubstr("not checked: upper: "));
     EXPECT_THAT(query_text(ask(path({{0.5, 0.0}}), map_)), HasSubstr("nearest occupied voxel: at most 0."));
 }
 
@@ -152,7 +152,7 @@ TEST_F(QueryAnswer, of_a_link_that_the_rig_lists_as_without_a_body_may_be_free) 
     EXPECT_EQ(answer.at("state"), "free");
     EXPECT_EQ(answer.at("links_without_body"), Json({"upper"}));
     EXPECT_EQ(answer.at("links_unknown"), Json::array());
-    EXPECT_EQ(query_text(answer).rfind("free\nnot asked about: upper: ", 0), 0U) << query_text(answer);
+    EXPECT_EQ(query_text(answer).rfind("free\nnot checked: upper: ", 0), 0U) << query_text(answer);
 }
 
 TEST_F(QueryAnswer, tells_whose_body_stands_for_a_link_without_its_own) {
@@ -162,7 +162,7 @@ TEST_F(QueryAnswer, tells_whose_body_stands_for_a_link_without_its_own) {
     EXPECT_EQ(answer.at("state"), "free");
     EXPECT_EQ(answer.at("links_with_borrowed_body"), Json({{"mount", "hand"}}));
     EXPECT_THAT(query_text(answer),
-                HasSubstr("asked about with the body of hand, which is fixed to it: mount\n"));
+                HasSubstr("checked with the body of hand, to which it is fixed: mount\n"));
 }
 
 TEST_F(QueryAnswer, of_an_arm_none_of_whose_links_has_a_body_is_unknown) {
@@ -191,7 +191,7 @@ TEST_F(QueryAnswer, of_a_view_into_a_pocket_calls_neither_it_nor_its_way_free) {
     EXPECT_EQ(view().at("state"), "unknown");
     EXPECT_EQ(view().at("way"), "unknown");
     EXPECT_EQ(ask(request, holed).at("links_unknown"), Json({"upper"}));
-    EXPECT_THAT(query_text(ask(request, holed)), HasSubstr("not asked about: upper: "));
+    EXPECT_THAT(query_text(ask(request, holed)), HasSubstr("not checked: upper: "));
 }
 
 TEST_F(QueryAnswer, takes_the_arms_own_space_for_free_if_it_is_told_to) {
@@ -223,8 +223,8 @@ TEST_F(QueryAnswer, refuses_a_posture_in_which_the_arm_cannot_stand) {
         return answer.value("error", "none");
     };
     EXPECT_EQ(error({0.0, 0.1}), "none");
-    EXPECT_EQ(error({0.0}), "how the arm stands: 1 joint positions; the rig has 2 joints: turn, slide");
-    EXPECT_EQ(error({0.0, 0.3}), "how the arm stands: slide is 0.3; its limits are 0 to 0.2");
+    EXPECT_EQ(error({0.0}), "the present posture: 1 joint positions; the rig has 2 joints: turn, slide");
+    EXPECT_EQ(error({0.0, 0.3}), "the present posture: slide is 0.3; its limits are 0 to 0.2");
 }
 
 TEST_F(QueryAnswer, refuses_what_cannot_be_asked_and_says_why) {
@@ -242,7 +242,7 @@ TEST_F(QueryAnswer, refuses_what_cannot_be_asked_and_says_why) {
     QueryRequest endless = path({});
     endless.step = 0.005;
     for (int i = 0; i < 60; ++i) endless.path.push_back({i % 2 == 0 ? 3.0 : -3.0, 0.0});
-    EXPECT_THAT(error(endless), HasSubstr("at most 50000 can be asked about at once"));
+    EXPECT_THAT(error(endless), HasSubstr("at most 50000 are possible in one query"));
 }
 
 TEST_F(QueryAnswer, tells_how_old_the_weakest_evidence_is_and_by_what) {
@@ -254,7 +254,7 @@ TEST_F(QueryAnswer, tells_how_old_the_weakest_evidence_is_and_by_what) {
     const Json of_before = ask(path({{0.0, 0.0}}), map);
     EXPECT_EQ(of_before.at("state"), "stale");
     EXPECT_TRUE(of_before.at("legs").at(0).at("evidence").at("age_s").is_null());
-    EXPECT_THAT(query_text(of_before), HasSubstr("weakest evidence: nobody knows how old"));
+    EXPECT_THAT(query_text(of_before), HasSubstr("weakest evidence: of unknown age"));
     confirm_about_origin(map, HostTime{100'000'000'000});
     const auto hand = map.key_of({0.42, 0.02, 0.30}).value();
     go_on_to(105);
@@ -323,7 +323,7 @@ TEST_F(QueryAnswer, says_of_a_pocket_without_a_view_whether_any_was_tried) {
     EXPECT_THAT(told(ask(none, holed)), HasSubstr("\nno view was tried: no posture was to be tried\n"));
     request.path.clear();
     EXPECT_THAT(told(ask(request, holed)),
-                HasSubstr("\nno view was tried: nobody says how the arm stands: give it as --stands\n"));
+                HasSubstr("\nno view was tried: the arm's posture is unknown: give it as --stands\n"));
     HostRig blind = arm_.rig;
     for (HostNode& node : blind.nodes) node.sensors.clear();
     request.path = {{0.5, 0.0}};
@@ -363,7 +363,7 @@ TEST_F(QueryAnswer, of_a_daemon_that_does_not_know_how_the_arm_stands_takes_noth
     const Json answer =
         answer_query(request, {&arm_.rig, &arm_.robot, map_.copy(), {}, nullptr, true}, [] { return false; });
     EXPECT_FALSE(answer.at("ok").get<bool>());
-    EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("nobody knows how the arm stands"));
+    EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("the arm's posture is unknown"));
 }
 
 TEST_F(QueryAnswer, of_a_leg_that_never_ends_counts_no_more_postures_than_fit_a_number) {

@@ -61,10 +61,11 @@ TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
     };
     EXPECT_EQ(fault("query {}"), "taken");
     for (const char* bare : {"query", "query ", "query   "})
-        EXPECT_THAT(fault(bare), HasSubstr("query wants an object: query {} asks about the arm")) << bare;
-    EXPECT_THAT(fault("query {"), HasSubstr("no JSON from its byte 1 on (its end); expected: query {"));
+        EXPECT_THAT(fault(bare), HasSubstr("query expects an object: query {} is about the arm")) << bare;
+    EXPECT_THAT(fault("query {"), HasSubstr("invalid JSON from byte 1 (its end); expected: query {"));
     EXPECT_THAT(fault("query [1]"), HasSubstr("expected: query {"));
-    EXPECT_THAT(fault("query {\"paht\": []}"), HasSubstr("unknown key \"paht\"; there are path, padding_m,"));
+    EXPECT_THAT(fault("query {\"paht\": []}"),
+                HasSubstr("unknown key \"paht\"; the keys are path, padding_m,"));
     EXPECT_EQ(fault("query {\"path\": [0, 1]}"),
               "query: configuration 1 of path is 0; expected a list of joint configurations, each a list "
               "of finite numbers, "
@@ -78,7 +79,7 @@ TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
     EXPECT_THAT(fault("query {\"step\": 0}"), HasSubstr("step is 0"));
     for (const char* number : {"1e300", "-0.5", "2.7", "-1"}) {
         EXPECT_THAT(fault(std::string("query {\"pockets\": true, \"pockets_max\": ") + number + "}"),
-                    HasSubstr("; expected a whole number from 0 on"));
+                    HasSubstr("; expected a whole number, 0 or more"));
     }
     EXPECT_THAT(fault("query {\"own_space_m\": 2}"), HasSubstr("own_space_m is 2"));
     EXPECT_THAT(fault("query {\"pockets\": true, \"radius_m\": 50}"), HasSubstr("radius_m is 50"));
@@ -93,12 +94,13 @@ TEST(QueryRequest, with_what_would_not_be_looked_at_is_refused_by_name) {
     for (const std::string key : {"radius_m", "z_min_m", "pocket_min_m3", "pockets_max", "views_tried"}) {
         EXPECT_EQ(fault("{\"" + key + "\": 1}"),
                   "query: " + key +
-                      " says nothing without \"pockets\": true: give that, too, "
+                      " has no effect without \"pockets\": true: give that, too, "
                       "or leave it out");
         EXPECT_EQ(fault("{\"pockets\": true, \"" + key + "\": 1}"), "taken");
     }
-    EXPECT_THAT(fault(R"({"pockets": false, "radius_m": 1})"), HasSubstr("radius_m says nothing without"));
-    EXPECT_THAT(fault(R"({"pockets": true, "reach_m": 1})"), HasSubstr("reach_m says nothing of pockets"));
+    EXPECT_THAT(fault(R"({"pockets": false, "radius_m": 1})"), HasSubstr("radius_m has no effect without"));
+    EXPECT_THAT(fault(R"({"pockets": true, "reach_m": 1})"),
+                HasSubstr("reach_m has no effect in a query about pockets"));
     EXPECT_THAT(fault(R"({"pockets": true, "path": [[0], [1]]})"), HasSubstr("path has 2 configurations"));
     EXPECT_EQ(fault(R"({"pockets": true, "path": [[0]]})"), "taken");
     EXPECT_THAT(fault(R"({"path": []})"), HasSubstr("path is empty; leave it out"));
@@ -143,7 +145,7 @@ TEST(QueryRequest, with_a_number_that_is_none_is_refused_in_our_words) {
     };
     EXPECT_THAT(fault("null"), HasSubstr("number 1 of configuration 1 of path is null; expected a list of"));
     EXPECT_THAT(fault("0, 1], [2, 3], [4, null"), HasSubstr("number 2 of configuration 3 of path is null"));
-    EXPECT_THAT(fault("NaN"), HasSubstr("no JSON from its byte 11 on (\"NaN]]}\")"));
+    EXPECT_THAT(fault("NaN"), HasSubstr("invalid JSON from byte 11 (\"NaN]]}\")"));
     EXPECT_THAT(fault("-Infinity"), HasSubstr("JSON has no NaN and no Infinity"));
     EXPECT_THAT(fault("1e999"), HasSubstr("a number is too large"));
     for (const char* number : {"null", "NaN", "-Infinity", "1e999", "\"\xff\""})

@@ -212,8 +212,8 @@ TEST(NodeRegistry, refuses_a_node_that_babbles_until_a_second_after_it_kept_to_i
     for (int i = 0; i < 236; ++i) registry.on_frame(kNode, ms(7'000));
     EXPECT_EQ(speak(registry, 7'999, 8'000, 1), NodeVerdict::babbling) << "the 237th";
     EXPECT_EQ(registry.describe(kNode, ms(8'000)),
-              "node 7 'upper ring': babbling (over 236 frames within a second, twice what the rig has it "
-              "send: refused until a second after it keeps to that)");
+              "node 7 'upper ring': babbling (over 236 frames within a second, twice the rig's rate for "
+              "it: refused until a second after it stays below that)");
     EXPECT_FALSE(registry.on_info(kNode, pages()[0], ms(8'000)));
     EXPECT_EQ(speak(registry, 8'001, 8'999, 9), NodeVerdict::babbling);
     EXPECT_EQ(speak(registry, 8'999, 9'001, 9), NodeVerdict::usable) << "who it is was known before";
@@ -295,7 +295,7 @@ TEST(NodeRegistry, refuses_a_node_of_another_version_until_it_is_silent_for_a_se
     registry.on_other_version(kNode, 2, ms(100));
     EXPECT_EQ(registry.verdict(kNode, ms(100)), NodeVerdict::other_version);
     EXPECT_EQ(registry.describe(kNode, ms(100)),
-              "node 7 'upper ring': other_version (version 2, this host speaks 1)");
+              "node 7 'upper ring': other_version (version 2, this host uses 1)");
     (void)registry.on_heartbeat(kNode, heartbeat(), ms(1000));
     EXPECT_FALSE(registry.on_info(kNode, pages()[0], ms(1000)));
     EXPECT_EQ(registry.verdict(kNode, ms(1099)), NodeVerdict::other_version);

@@ -121,7 +121,7 @@ TEST(NodeSummary, is_a_table_of_one_line_a_node) {
                                   .readings = {},
                                   .clock_relocks = 0,
                                   .verdict = NodeVerdict::other_version,
-                                  .reason = NodeMismatch{"version", 2, 1, "this host speaks"},
+                                  .reason = NodeMismatch{"version", 2, 1, "this host uses"},
                                   .registers = {}},
                                  {.node_id = 63,
                                   .name = "untimed",
@@ -135,7 +135,7 @@ TEST(NodeSummary, is_a_table_of_one_line_a_node) {
               "node                  readings      lost      gaps  re-locks  verdict\n"
               "  1 rear_rings            2218        12         7         1  usable\n"
               " 62 joints                   -         -         -         0  other_version: version 2, this "
-              "host speaks 1\n"
+              "host uses 1\n"
               " 63 untimed                  -         -         -         0  no SYNC in the log\n");
 }
 

@@ -223,7 +223,7 @@ TEST_F(SensorWitnessTest, five_contradictions_are_not_enough_whatever_their_time
     EXPECT_FALSE(evidence().is_far_off);
     compare(1, 0.5, wall_at(2.0F));
     EXPECT_TRUE(evidence().is_far_off);
-    EXPECT_THAT(describe(evidence()), HasSubstr("6 of its ranges end where the camera sees through"));
+    EXPECT_THAT(describe(evidence()), HasSubstr("6 of its ranges end where the camera sees free space"));
 }
 
 TEST_F(SensorWitnessTest, what_contradicts_at_one_place_only_is_not_the_sensor) {

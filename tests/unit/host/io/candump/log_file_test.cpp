@@ -288,10 +288,9 @@ TEST(LogFile, of_another_program_is_what_it_was_behind_the_command_if_that_is_aw
 
 TEST(LogFile, of_which_no_line_is_a_frame_says_how_to_record_one) {
     const std::string seen = "  can0  141   [8]  01 02 03 04 05 06 07 08\n";  // what candump shows without -L
-    EXPECT_EQ(
-        foreign("\n" + seen + seen),
-        "no line is a frame as candump writes them: line 2 does not begin with a time in parentheses: '  "
-        "can0  141   [8]  01 02 03 04 05 06 07 08'; record with `candump -L can0 > can.log`");
+    EXPECT_EQ(foreign("\n" + seen + seen),
+              "no line is a frame in candump's format: line 2 does not begin with a time in parentheses: '  "
+              "can0  141   [8]  01 02 03 04 05 06 07 08'; record with `candump -L can0 > can.log`");
     EXPECT_EQ(foreign(seen + "(1436509053.850870) vcan0 044#2A\n"), "");
     EXPECT_EQ(foreign(""), "") << "an empty log is a log";
     EXPECT_EQ(foreign("\n\n"), "");

@@ -279,7 +279,7 @@ TEST(AtomicFile, says_which_step_failed_and_why) {
     EXPECT_EQ(missing.error().message(),
               (folder / "no/such/map.ot").string() +
                   ": creating a file beside it failed (No such file or directory); "
-                  "the old file, if any, is untouched");
+                  "the old file, if any, is unchanged");
     std::filesystem::create_directory(folder / "taken.ot");
     const auto taken = save_atomically(folder / "taken.ot", "x");
     ASSERT_FALSE(taken.has_value());

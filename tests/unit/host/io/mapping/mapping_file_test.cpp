@@ -1,15 +1,16 @@
 #include "host/io/mapping/mapping_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <map>
-#include <ostream>
-#include <regex>
+
 #include <sstream>
 #include <string>
 
+#include "host/io/mapping/mapping_keys.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -199,7 +200,7 @@ TEST(MappingFile, refuses_ages_at_which_nothing_could_be_stale) {
 
 TEST(MappingFile, refuses_sensors_only_where_they_are_reported) {
     EXPECT_THAT(error_of("reports_contradicting_sensors: false\nrefuses_contradicting_sensors: true\n"),
-                HasSubstr("my.yaml:2: refuses_contradicting_sensors: expected false where "));
+                HasSubstr("my.yaml:2: refuses_contradicting_sensors: expected false because "));
     EXPECT_EQ(error_of("refuses_contradicting_sensors: true\n"), "no error");
     EXPECT_EQ(error_of("reports_contradicting_sensors: false\n"), "no error");
     for (const MappingConfig& config : {paper_mapping(), robust_mapping(), fast_mapping()}) {
@@ -249,28 +250,6 @@ TEST(MappingFile, knows_a_number_in_quotes_one_with_a_comma_and_a_key_of_another
                 HasSubstr("did you mean proximity_hit.range_min_m or depth_hit.range_min_m?"));
 }
 
-struct KeyRow {
-    std::string expected;
-    std::string fallback;  ///< in `robust`, and in `paper` behind it in brackets, if that is another one
-
-    friend bool operator==(const KeyRow&, const KeyRow&) = default;
-    friend std::ostream& operator<<(std::ostream& out, const KeyRow& row) {
-        return out << row.expected << ", default " << row.fallback;
-    }
-};
-using KeyTable = std::map<std::string, KeyRow>;
-
-KeyTable documented_keys() {
-    std::ifstream stream(OCTOSKIN_SOURCE_DIR "/docs/mapping.md");
-    const std::regex row(R"(\| `([a-z_.]+)` \| [^|]*\| ([^|]+) \| ([^|]+) \| [^|]*\|)");
-    KeyTable keys;
-    for (std::string line; std::getline(stream, line);) {
-        std::smatch parts;
-        if (std::regex_match(line, parts, row)) keys[parts[1]] = {parts[2], parts[3]};
-    }
-    return keys;
-}
-
 /// "map.resolution_m" and its value, of text as `mapping_text` writes it.
 std::map<std::string, std::string> values_by_path(const std::string& text) {
     std::map<std::string, std::string> values;
@@ -301,16 +280,50 @@ std::string expected_of(const std::string& path) {
     return error.substr(from + begin.size(), error.find(", found") - from - begin.size());
 }
 
-TEST(MappingFile, has_each_key_with_its_range_and_default_in_its_document_and_no_other) {
-    const auto fast = values_by_path(mapping_text(fast_mapping()));
-    const auto paper = values_by_path(mapping_text(paper_mapping()));
-    KeyTable keys{{"base", {expected_of("base"), "fast"}}};
-    for (const auto& [path, value] : fast) {
-        const bool is_same = paper.at(path) == value;
-        keys[path] = {expected_of(path), is_same ? value : value + " (" + paper.at(path) + ")"};
+TEST(MappingFile, expects_of_each_key_what_the_table_of_keys_declares) {
+    for (const MappingKey& key : mapping_keys())
+        EXPECT_EQ(expected_of(std::string(key.path)), expected_text(key)) << key.path;
+    EXPECT_EQ(expected_of("base"), "paper or robust or fast");
+}
+
+TEST(MappingFile, writes_each_key_of_the_table_once_and_no_other) {
+    const auto values = values_by_path(mapping_text(fast_mapping()));
+    EXPECT_EQ(values.size(), 65U);
+    EXPECT_EQ(mapping_keys().size(), 65U);
+    for (const MappingKey& key : mapping_keys()) {
+        ASSERT_TRUE(values.contains(std::string(key.path))) << key.path;
+        EXPECT_EQ(values.at(std::string(key.path)), value_text(key, fast_mapping())) << key.path;
     }
-    EXPECT_EQ(keys.size(), 66U);
-    EXPECT_EQ(documented_keys(), keys);
+}
+
+/// Another value than `text` that the key takes.
+std::string other_value(const MappingKey& key, const std::string& text) {
+    if (text == "true") return "false";
+    if (text == "false") return "true";
+    if (key.path == "range_update") return text == "ray" ? "cone" : "ray";
+    if (key.path == "depth_update") return text == "robust" ? "fast" : "robust";
+    if (key.path == "depth_filter.window_px") return "3";
+    return fmt::format("{}", text == fmt::format("{}", key.range.max) ? key.range.min : key.range.max);
+}
+
+TEST(MappingFile, puts_the_value_of_each_key_into_the_place_that_is_written_under_it_and_no_other) {
+    const auto before = values_by_path(mapping_text(fast_mapping()));
+    std::size_t checked = 0;
+    for (const MappingKey& key : mapping_keys()) {
+        const std::string path(key.path);
+        const std::string value = other_value(key, before.at(path));
+        const auto dot = path.find('.');
+        const std::string text = dot == std::string::npos ? path + ": " + value + "\n"
+                                                          : path.substr(0, dot) + ": {" +
+                                                                path.substr(dot + 1) + ": " + value + "}\n";
+        const auto read = read_text(text);
+        if (!read) continue;  // a rule between keys
+        auto expected = before;
+        expected[path] = value;
+        EXPECT_EQ(values_by_path(mapping_text(*read)), expected) << path;
+        ++checked;
+    }
+    EXPECT_GE(checked, 50U);
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST_F(HelperProcessTest, that_is_not_there_is_an_error_with_its_name) {
     ASSERT_FALSE(nowhere);
     EXPECT_EQ(nowhere.error(),
               "octoskin-no-such-helper is neither beside this program nor in libexec: build "
-              "octoskin_programs, or install octoskin anew");
+              "octoskin_programs, or install octoskin again");
     EXPECT_EQ(find_helper("octoskin-no-such-helper", "another").value(), "another");
 }
 

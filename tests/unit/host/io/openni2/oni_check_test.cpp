@@ -269,7 +269,7 @@ TEST_F(OniCheckTest, what_the_player_trusts_is_a_fault_of_the_record_that_has_it
          [](File& f) { f.records[fov].fields = std::string(7U << 20U, '\0'); }},
         {"a payload larger than the buffer", first,
          [](File& f) { f.records[first].payload = std::string(7U << 20U, '\x66'); }},
-        {"a payload where there is none", fov, [](File& f) { f.records[fov].payload = "NIR"; }},
+        {"a payload in a record that has none", fov, [](File& f) { f.records[fov].payload = "NIR"; }},
         {"a node that the player has no room for", fov, [](File& f) { f.records[fov].node = 2; }},
         {"a node that was not added", fov, [](File& f) { f.records[fov].node = 0; }},
         {"an unknown type", fov, [](File& f) { f.records[fov].type = 0x0F; }},

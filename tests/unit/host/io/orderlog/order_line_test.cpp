@@ -158,7 +158,8 @@ TEST_F(OrderFile, of_a_daemon_that_was_killed_has_its_whole_lines) {
 
 TEST_F(OrderFile, with_a_mistake_is_named_with_its_line) {
     const std::string file = (folder_ / "order.log").string();
-    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nhello\n" + kEnd), file + ":3: no line of an order: 'hello'");
+    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nhello\n" + kEnd),
+              file + ":3: not a line of an order log: 'hello'");
     for (const char* reading : {"R 1 0 0 71 8.1 0.02\n", "R 1 0 0 71 1 1.1\n", "R 1 0 0 71 -1 0.02\n"}) {
         EXPECT_TRUE(
             read(std::string(kBegin) + reading + kEnd).starts_with(file + ":2: no sensor has that range"))
@@ -168,14 +169,14 @@ TEST_F(OrderFile, with_a_mistake_is_named_with_its_line) {
     EXPECT_EQ(read(std::string(kBegin) + "J 1 0\n" + kEnd),
               file + ":3: there were 2 commits, 0 of them not recorded, and 1 are in the file");
     EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nD 0 2\n" + kEnd + "J 3 0\n"),
-              file + ":5: a line behind the end");
-    EXPECT_TRUE(read("octoskin-order/9\n").starts_with(file + ":1: does not begin as an order"));
-    EXPECT_TRUE(read("").starts_with(file + ":1: does not begin as an order"));
-    EXPECT_TRUE(read(std::string(100'000, 'x')).starts_with(file + ":1: does not begin as an order"));
+              file + ":5: a line after the end");
+    EXPECT_TRUE(read("octoskin-order/9\n").starts_with(file + ":1: does not begin like an order"));
+    EXPECT_TRUE(read("").starts_with(file + ":1: does not begin like an order"));
+    EXPECT_TRUE(read(std::string(100'000, 'x')).starts_with(file + ":1: does not begin like an order"));
     std::filesystem::remove(file);
     EXPECT_EQ(OrderReader::open(file).error().what, file + ": No such file or directory");
     ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
-    EXPECT_EQ(OrderReader::open(file).error().what, file + ": is a named pipe, not an ordinary file");
+    EXPECT_EQ(OrderReader::open(file).error().what, file + ": is a named pipe, not a regular file");
 }
 
 }  // namespace

@@ -170,8 +170,8 @@ TEST(HostRigReader, warns_of_a_robot_without_a_body) {
     const auto bare = make_host_setup(rig);
     ASSERT_TRUE(bare) << bare.error().message();
     EXPECT_EQ(bare->warnings,
-              std::vector<std::string>{"no link at or below panda_link0 has a <collision>: nothing of the "
-                                       "robot is taken out of images and ranges"});
+              std::vector<std::string>{"no link at or below panda_link0 has a <collision>: the robot is "
+                                       "not removed from images and ranges"});
 }
 
 TEST(HostRigReader, warns_of_joint_states_so_rare_that_the_gap_of_a_lost_one_is_not_bridged) {

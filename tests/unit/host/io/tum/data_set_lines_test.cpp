@@ -74,8 +74,8 @@ TEST(DataSetLines, a_matrix_is_a_pose_row_by_row) {
              {"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0", "found 15"},
              {"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0", "found more"},
              {"1 0 0 0 0 1 0 0 0 0 1 x 0 0 0 1", "found 'x'"},
-             {"1 0 0 0 0 1 0 0 0 0 -1 0 0 0 0 1", "no rotation"},
-             {"1.1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "no rotation"},
+             {"1 0 0 0 0 1 0 0 0 0 -1 0 0 0 0 1", "not a rotation"},
+             {"1.1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "not a rotation"},
              {"1 0 0 2e6 0 1 0 0 0 0 1 0 0 0 0 1", "1000 km"},
              {"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2", "last row"}}) {
         const auto bad = parse_pose_matrix(text);

@@ -301,13 +301,13 @@ TEST_F(DataSetReaderTest, the_first_image_that_is_missing_is_named_whether_or_no
         const auto missing = open().missing_image();
         return missing ? missing->what.substr((written_.folder() / "depth.txt").string().size()) : "";
     };
-    EXPECT_EQ(what_is_missing(), ":5: depth/101.png: is a directory, not an ordinary file");
+    EXPECT_EQ(what_is_missing(), ":5: depth/101.png: is a directory, not a regular file");
     std::filesystem::remove(written_.image("101"));
     ASSERT_EQ(::mkfifo(written_.image("101").c_str(), 0600), 0);
-    EXPECT_EQ(what_is_missing(), ":5: depth/101.png: is a named pipe, not an ordinary file");
+    EXPECT_EQ(what_is_missing(), ":5: depth/101.png: is a named pipe, not a regular file");
     std::filesystem::remove(written_.image("101"));
     EXPECT_EQ(what_is_missing(),
-              ":5: depth/101.png: is not there: unpack the data set anew, or take out the line");
+              ":5: depth/101.png: does not exist: unpack the data set again, or remove the line");
 }
 
 TEST_F(DataSetReaderTest, images_of_another_kind_are_refused) {

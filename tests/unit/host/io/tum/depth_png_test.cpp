@@ -146,7 +146,7 @@ TEST_F(DepthPngTest, more_pixels_than_it_says_are_skipped_if_few_and_refused_if_
     EXPECT_TRUE(read_depth_png(scratch_.write("few.png", with_zeros_behind(one_pixel, 1'000'000))));
     const auto many = read_depth_png(scratch_.write("many.png", with_zeros_behind(one_pixel, 100'000'000)));
     ASSERT_FALSE(many);
-    EXPECT_THAT(many.error(), StartsWith("cannot be read whole"));
+    EXPECT_THAT(many.error(), StartsWith("cannot be read completely"));
 }
 
 }  // namespace

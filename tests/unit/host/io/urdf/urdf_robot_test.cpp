@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "axis of length 1, found <axis xyz=\"0 0 2\"> of length 2: scale it to \"0 0 1\"", 4},
         BrokenUrdf{"zero-axis.urdf", "joint elbow", "axis of length 1, found <axis xyz=\"0 0 0\">", 4},
         BrokenUrdf{"limit-without-upper.urdf", "joint elbow",
-                   "found no upper, for which URDF takes 0: write it", 4},
+                   "found no upper, which URDF treats as 0: write it", 4},
         BrokenUrdf{"unmoved-joint.urdf", "joint wrist", "gets no position", 11},
         BrokenUrdf{"no-such-joint.urdf", "joint elbow", "expected a moving joint", 0},
         BrokenUrdf{"base-missing.urdf", "link base", "expected this base link", 0},
@@ -170,10 +170,9 @@ TEST(UrdfRobot, every_joint_that_cannot_be_taken_is_in_one_message) {
     ASSERT_FALSE(model);
     EXPECT_EQ(model.error().key, "joint finger");
     EXPECT_EQ(model.error().line, 8);
-    EXPECT_THAT(
-        model.error().what,
-        HasSubstr("4 more cannot be taken: joint elbow (line 13, its axis), joint cart (line 17, planar), "
-                  "joint drone (line 20, floating), joint lift (line 23, no upper limit)"));
+    EXPECT_THAT(model.error().what,
+                HasSubstr("4 more refused: joint elbow (line 13, its axis), joint cart (line 17, planar), "
+                          "joint drone (line 20, floating), joint lift (line 23, no upper limit)"));
 }
 
 }  // namespace

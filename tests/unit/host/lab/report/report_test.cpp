@@ -116,8 +116,9 @@ TEST(Report, says_first_what_fusion_found) {
     const std::string html = report_html(two_seeds());
     EXPECT_THAT(
         html,
-        HasSubstr("its own map holds 0.0\u00a0%; with the range sensors on the arm, the\nfused map holds "
-                  "11.0\u00a0%."));
+        HasSubstr(
+            "its own map contains 0.0\u00a0%; with the range sensors on the arm, the\nfused map contains "
+            "11.0\u00a0%."));
     EXPECT_THAT(html, HasSubstr("2\u202f100 →</span> 1\u202f490"));
     EXPECT_THAT(html, HasSubstr("\u221229.0\u00a0%; \u2212610 ± 14, better in 2 of 2 seeds"));
 }
@@ -139,8 +140,7 @@ TEST(Report, shows_what_nobody_has_seen_and_where) {
     EXPECT_THAT(html, HasSubstr("At the end 0.75 m³ are unknown; the camera alone leaves 1.40 m³."));
     EXPECT_THAT(html, HasSubstr("<td>1</td><td>57.6</td><td>0.50</td><td>−0.30</td><td>0.40</td>"));
     EXPECT_THAT(html, HasSubstr("<b>Depth camera only</b>, at the end, seen from above"));
-    EXPECT_THAT(html,
-                HasSubstr("unknown, from nothing\n(no colour) to 0.9 m (full colour). The numbers are"));
+    EXPECT_THAT(html, HasSubstr("unknown, from 0 m\n(no colour) to 0.9 m (full colour). The numbers are"));
     // The column at the lower right: in a picture the second row's second pixel. Two thirds of the camera's.
     const auto picture = [](std::uint8_t red, std::uint8_t green, std::uint8_t blue, std::uint8_t opacity) {
         Image image{2, 2, {}};
@@ -157,7 +157,7 @@ TEST(Report, shows_what_nobody_has_seen_and_where) {
     for (auto& sample : input.results.unknown_space->samples) sample.depth_m3.reset();
     const std::string alone = report_html(input);
     EXPECT_THAT(alone, HasSubstr("At the end 0.75 m³ are unknown."));
-    EXPECT_THAT(alone, HasSubstr("unknown, from nothing\n(no colour) to 0.6 m (full colour)."));
+    EXPECT_THAT(alone, HasSubstr("unknown, from 0 m\n(no colour) to 0.6 m (full colour)."));
     EXPECT_THAT(alone, HasSubstr(picture(0x4b, 0x7f, 0x2b, 255)));
     EXPECT_THAT(alone,
                 Not(AllOf(HasSubstr("<b>Depth camera only</b>, at the end"), HasSubstr("The numbers are"))));
@@ -167,7 +167,7 @@ TEST(Report, shows_what_nobody_has_seen_and_where) {
 }
 
 TEST(Report, judges_timid_and_bold_by_the_side_of_one_half) {
-    EXPECT_THAT(report_html(two_seeds()), HasSubstr("for what it calls free, above is too bold"));
+    EXPECT_THAT(report_html(two_seeds()), HasSubstr("for free voxels, above is overconfident"));
 }
 
 TEST(Report, shows_the_papers_table_beside_ours) {

@@ -78,7 +78,7 @@ TEST(Idealisations, tell_sensors_of_both_kinds_apart_and_name_zones) {
                       Contains(HasSubstr("1 of the 3 range sensors see a cone of 20 degrees")),
                       Each(Not(HasSubstr("zone")))));
     rig.nodes[0].config.sensors[1].zones[0].width = 6;
-    EXPECT_THAT(idealisations_of(rig, kitchen()), Contains(HasSubstr("of which each zone gets its part")));
+    EXPECT_THAT(idealisations_of(rig, kitchen()), Contains(HasSubstr("shared between the zones")));
     rig.nodes[0].config.sensors[0].zone_count = 2;
     EXPECT_THAT(idealisations_of(rig, kitchen()),
                 Contains(HasSubstr("ray each, of a zone along its middle")));

@@ -58,7 +58,8 @@ TEST(ResultsFolder, is_ours_as_long_as_each_file_is_as_it_was_noted) {
                                    "recording/robot.urdf", "recording/meta.yaml"}) {
         const std::string ours = ScratchFolder::read(folder / name);
         folder.write(name, ours + "edited");
-        EXPECT_THAT(refusal(folder), HasSubstr(": has a " + name + " that no experiment left")) << name;
+        EXPECT_THAT(refusal(folder), HasSubstr(": has a " + name + " that is not an unchanged result"))
+            << name;
         folder.write(name, ours);
         EXPECT_EQ(refusal(folder), "") << name;
     }

@@ -154,7 +154,7 @@ TEST(ArmRead, refuses_joints_it_cannot_move_by_name_and_line) {
         read(R"(<link name="c"/><joint name="j" type="planar"><parent link="a"/><child link="b"/></joint>
                         <joint name="k" type="continuous"><parent link="b"/><child link="c"/></joint>)"),
         testing::AllOf(HasSubstr("joints.urdf:4: joint j"),
-                       HasSubstr("1 more cannot be taken: joint k (line 5, not named)")));
+                       HasSubstr("1 more refused: joint k (line 5, not named)")));
 }
 
 TEST(ArmForward, slides_a_prismatic_joint_along_its_axis) {

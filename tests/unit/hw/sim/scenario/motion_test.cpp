@@ -49,9 +49,9 @@ TEST_F(Motion, is_refused_with_file_line_and_reason) {
         EXPECT_THAT(error(std::string("[{at_s: ") + at_s + "}]"),
                     HasSubstr("at_s: expected a number from -600 to 600"));
     EXPECT_THAT(error("[{at_s: 2, offset: [0, 0, 0]}]"), HasSubstr("offset"));
-    EXPECT_THAT(error("[{at_s: 2, moves_on: true}]"), HasSubstr("a place to go to"));
+    EXPECT_THAT(error("[{at_s: 2, moves_on: true}]"), HasSubstr("needs a next place"));
     EXPECT_THAT(error("[{at_s: 2, moves_on: true}, {at_s: 3, is_there: false}]"),
-                HasSubstr("it is not there"));
+                HasSubstr("the model is not there"));
     EXPECT_THAT(error("[]"), HasSubstr("at least one place"));
     EXPECT_THAT(error("[{at_s: 2}]\n  - model: cat\n    places: [{at_s: 1}]"),
                 HasSubstr("the world has no model 'cat'"));

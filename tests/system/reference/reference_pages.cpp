@@ -1,0 +1,195 @@
+// Writes the tables of the reference pages from the declarations in the code, or checks that they are as
+// written.
+//
+//     reference_pages --write DOCS      renders each table anew
+//     reference_pages --check DOCS      exit code 1 if a table is stale, missing or unknown
+//
+// A page has the line `<!-- table: NAME -->`, the table, and the line `<!-- end of table -->`; all else on it
+// is written by hand. Each declared table is on its page exactly once.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/apps/command_line/exit_codes.hpp"
+#include "host/apps/monitor/status_meanings.hpp"
+#include "host/core/account/counter_meanings.hpp"
+#include "host/io/mapping/mapping_keys.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr std::string_view kBegin = "<!-- table: ";
+constexpr std::string_view kBeginEnd = " -->";
+constexpr std::string_view kEnd = "<!-- end of table -->";
+
+/// A cell of a table: identifiers and options as code, no bar and no tag.
+std::string cell(std::string_view text) {
+    static const std::regex code(
+        R"((^|[\s(;:])(--[a-z][a-z-]*|[a-z][a-z0-9]*(?:[._][a-z0-9]+)+|null)(?=$|[\s,;:.)]))");
+    std::string safe;
+    for (const char character : text) {
+        if (character == '|' || character == '<') safe += '\\';
+        safe += character;
+    }
+    return std::regex_replace(safe, code, "$1`$2`");
+}
+
+std::string_view word(Cause cause) {
+    switch (cause) {
+        case Cause::scene:
+            return "scene";
+        case Cause::outside:
+            return "outside";
+        case Cause::other_device:
+            return "others";
+        case Cause::mendable:
+            return "mendable";
+    }
+    return "";
+}
+
+using Tables = std::map<std::string, std::string, std::less<>>;
+
+/// The table with a further row; the first row brings the head.
+void add_row(Tables& tables, const std::string& name, std::string_view head, const std::string& row) {
+    auto [table, is_new] = tables.try_emplace(name);
+    if (is_new) table->second = fmt::format("{}\n", head);
+    table->second += row + '\n';
+}
+
+Tables exit_code_tables() {
+    Tables tables;
+    for (const app::ExitCodeMeaning& meaning : app::exit_code_meanings())
+        add_row(tables, "exit codes", "| Code | Meaning |\n|---|---|",
+                fmt::format("| {} | {} |", meaning.codes, cell(meaning.meaning)));
+    return tables;
+}
+Tables status_tables() {
+    Tables tables;
+    for (const Meaning& meaning : status_meanings()) {
+        const std::string_view group = meaning.group.empty() ? "top" : meaning.group;
+        add_row(tables, fmt::format("status of {}", group), "| Key | Meaning |\n|---|---|",
+                fmt::format("| `{}` | {} |", meaning.name, cell(meaning.text)));
+    }
+    return tables;
+}
+Tables counter_tables() {
+    Tables tables;
+    for (const CounterMeaning& meaning : counter_meanings())
+        add_row(tables, fmt::format("counters of {}", meaning.unit),
+                "| Counter | Rejected because | Cause | Remedy |\n|---|---|---|---|",
+                fmt::format("| `{}` | {} | {} | {} |", meaning.name, cell(meaning.text), word(meaning.cause),
+                            cell(meaning.remedy)));
+    return tables;
+}
+
+/// `cell` would take the paths of links and the code of this table's Markdown apart.
+Tables mapping_tables() {
+    Tables tables;
+    for (const MappingKey& key : mapping_keys()) {
+        const std::string fast = value_text(key, fast_mapping());
+        const std::string paper = value_text(key, paper_mapping());
+        add_row(tables, "mapping keys",
+                "| Key | Unit | Expected | Default | Meaning |\n|---|---|---|---|---|",
+                fmt::format("| `{}` | {} | {} | {} | {} |", key.path, key.unit, expected_text(key),
+                            fast == paper ? fast : fmt::format("{} ({})", fast, paper), key.meaning));
+    }
+    return tables;
+}
+
+struct Page {
+    std::string file;
+    Tables tables;
+};
+
+/// The page with its tables rendered; faults are reported with file and line.
+struct Rendered {
+    std::string text;
+    std::vector<std::string> faults;
+};
+Rendered render(const std::string& file, const std::string& page, Tables tables) {
+    Rendered rendered;
+    std::istringstream lines(page);
+    bool is_in_table = false;
+    int number = 0;
+    const auto fault = [&](std::string_view what) {
+        rendered.faults.push_back(fmt::format("{}:{}: {}", file, number, what));
+    };
+    for (std::string line; std::getline(lines, line);) {
+        ++number;
+        if (line == kEnd) {
+            if (!is_in_table) fault("the end of a table that has not begun");
+            is_in_table = false;
+        }
+        if (is_in_table) continue;
+        rendered.text += line + '\n';
+        if (!line.starts_with(kBegin) || !line.ends_with(kBeginEnd)) continue;
+        is_in_table = true;
+        const std::string name = line.substr(kBegin.size(), line.size() - kBegin.size() - kBeginEnd.size());
+        const auto table = tables.find(name);
+        if (table == tables.end()) {
+            fault(fmt::format("no table '{}' is declared, or it is on this page twice", name));
+            continue;
+        }
+        rendered.text += table->second;
+        tables.erase(table);
+    }
+    if (is_in_table) fault(fmt::format("a table without the line '{}'", kEnd));
+    for (const auto& table : tables)
+        rendered.faults.push_back(fmt::format("{}: the table '{}' is missing: add {}{}{} and {}", file,
+                                              table.first, kBegin, table.first, kBeginEnd, kEnd));
+    return rendered;
+}
+
+int run(std::string_view mode, const std::string& docs) {
+    const std::vector<Page> pages = {{"reference/command-line.md", exit_code_tables()},
+                                     {"status.md", status_tables()},
+                                     {"account.md", counter_tables()},
+                                     {"mapping.md", mapping_tables()}};
+    bool is_good = true;
+    for (const Page& page : pages) {
+        const std::string file = docs + "/" + page.file;
+        std::ostringstream old;
+        std::ifstream in(file);
+        if (!in) {
+            fmt::print(stderr, "{}: cannot read\n", file);
+            return 1;
+        }
+        old << in.rdbuf();
+        const Rendered now = render(file, old.str(), page.tables);
+        for (const std::string& fault : now.faults) fmt::print(stderr, "{}\n", fault);
+        is_good &= now.faults.empty();
+        if (now.text == old.str()) continue;
+        if (mode == "--write") {
+            std::ofstream out(file);
+            out << now.text;
+            out.close();
+            if (!out) fmt::print(stderr, "{}: cannot write\n", file);
+            is_good &= static_cast<bool>(out);
+        } else {
+            fmt::print(stderr, "{}: a table is stale: run toolchains/write_reference\n", file);
+            is_good = false;
+        }
+    }
+    return is_good ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace octoskin
+
+int main(int argc, char** argv) {
+    const std::string_view mode = argc == 3 ? argv[1] : "";
+    if (mode != "--write" && mode != "--check") {
+        std::fputs("usage: reference_pages --write|--check DOCS\n", stderr);
+        return 64;
+    }
+    return octoskin::run(mode, argv[2]);
+}
