@@ -1,16 +1,18 @@
 // The byte layout of every message, written once. A *walker* visits a message's fields in wire order. The
-// codec has one walker that writes and one that reads; the DBC (hw/dbc) has one that describes. So none can
-// differ from the others. The caller of a walker handles what every frame has: version first, CRC last.
+// codec has one walker that writes and one that reads; the DBC (hw/dbc) has one that describes. They cannot
+// differ from each other. The caller of a walker handles the fields that every frame has: the version, which
+// is first, and the CRC, which is last.
 //
 // Walker:   number(field, value)    unsigned or signed integer of `field.bits`, within `field.min..max`
 //           saturated(field, value) the same, but a larger value is sent as the largest
-//           rounded_up(field, quarter_mm)  quarter millimetres as whole ones, rounded up, saturated
+//           rounded_up(field, quarter_mm)  quarter millimetres as whole millimetres, rounded up, saturated
 //           residue(field, time)    the low bits of a clock, in steps of `field.unit`, rounded down
 //           choice(field, value)    an enumeration with a table in names.hpp
 //           flag(field, value)      one bit
-//           bytes(field, array)     the first byte lowest
-//           selector(field, value)  selects one of several layouts: a constant, or kept in the message; comes
-//                                   right after the version, and a reader has evaluated it before the walk
+//           bytes(field, array)     the first byte in the lowest bits
+//           selector(field, value)  selects one of several layouts. The value is a constant or a member of
+//                                   the message. It follows the version; a reader evaluates it before the
+//                                   walk
 //           zeros(bits)             padding
 //           entries_present(count)  how many readings follow
 #pragma once
@@ -61,7 +63,7 @@ struct Field {
     }
 };
 
-/// The steps of a residue's field in microseconds.
+/// The step of a residue's field in microseconds.
 [[nodiscard]] constexpr std::uint32_t step_us(Unit unit) noexcept {
     return unit == Unit::step_of_64_us ? kClassicalTimeStepUs : 1;
 }

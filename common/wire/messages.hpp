@@ -43,7 +43,7 @@ inline constexpr std::uint32_t kFdTimeSpanUs = 1U << 24;         ///< 24 bits of
     return {.value_us = time.us % kFdTimeSpanUs, .span_us = kFdTimeSpanUs};
 }
 
-/// One reading of one sensor, with all that acceptance needs.
+/// One reading of one sensor, with everything that the host needs to accept or reject it.
 struct RangeReading {
     std::uint8_t sensor = 0;             ///< local index on its node
     std::uint8_t zone = 0;               ///< ROI in force when the range began
@@ -131,7 +131,7 @@ struct Heartbeat {
     ResetCause reset_cause = ResetCause::unknown;
     bool is_rate_overridden = false;    ///< a volatile rate command is in force
     bool is_time_suspect = false;       ///< the node's clock source failed its check
-    std::uint8_t degraded_sensors = 0;  ///< not ranging as configured; saturates at 31
+    std::uint8_t degraded_sensors = 0;  ///< sensors not ranging as configured; saturates at 31
     std::uint16_t uid_crc = 0;          ///< CRC-16 of the 96-bit unique id
     std::uint16_t node_hash_low = 0;
     friend constexpr bool operator==(const Heartbeat&, const Heartbeat&) = default;
@@ -181,6 +181,7 @@ struct InfoTraffic {                 ///< since start, saturating
     std::uint8_t rx_rejected = 0;  ///< frames for this node that failed length, CRC or version
     friend constexpr bool operator==(const InfoTraffic&, const InfoTraffic&) = default;
 };
+/// A recorded fault has reset the node. A present fault exists now, and has caused no reset.
 enum class FaultKind : std::uint8_t {
     none = 0,
     assertion = 1,    ///< where: number of the assertion in the build's map
@@ -205,7 +206,7 @@ enum class FaultKind : std::uint8_t {
     /// Present fault, no reset: sensor `where` had not reported the end of its boot when it was given its
     /// address.
     boot_late = 12,
-    /// Present fault, no reset: a COMMAND was refused because the rig makes the node refuse them
+    /// Present fault, no reset: a COMMAND was refused, because the rig has the node refuse all of them
     /// (`refuses_commands`). where: the command's code.
     commands_refused = 13,
     unknown = 15,
@@ -229,11 +230,11 @@ struct RegisterReport {
     }
     friend constexpr bool operator==(const RegisterReport&, const RegisterReport&) = default;
 };
-/// One of the node's present faults. They take turns, and the last recorded fault takes part. If none is
-/// present: the recorded one; if there is none either: all zero.
+/// One fault: the node's present faults and the last recorded fault take turns. Without any fault, all fields
+/// are 0.
 struct InfoFault {
     FaultKind kind = FaultKind::none;
-    std::uint8_t count = 0;     ///< unexpected resets since the last ordered one; saturates at 15
+    std::uint8_t count = 0;     ///< unexpected resets since the last intended one; saturates at 15
     std::uint32_t where = 0;    ///< meaning depends on `kind`
     std::uint8_t uptime_s = 0;  ///< length of the run that the fault ended; saturates at 255
     friend constexpr bool operator==(const InfoFault&, const InfoFault&) = default;

@@ -1,5 +1,5 @@
 // Decides on each result of one sensor: is it new, when was it taken, in which zone? Only a result that
-// passes becomes a reading. The double read is the driver's task; the meaning of the status is the host's.
+// passes becomes a reading. The driver reads each result twice; the host interprets its status.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ namespace octoskin::node {
 /// A result as it was read, with its times.
 struct ResultSeen {
     vl53l1x::Measurement measurement;
-    NodeTime ready_seen;  ///< latest time of the answer that data is ready
-    NodeTime read_end;    ///< end of the read, interrupt cleared
+    NodeTime ready_seen;  ///< the data was ready no later than this
+    NodeTime read_end;    ///< end of the read, after the interrupt was cleared
 };
 
-enum class Verdict : std::uint8_t {
+enum class Admission : std::uint8_t {
     accepted,
-    refused,  ///< not new, by its stream count
+    refused,  ///< not new by its stream count or, after a start, by the polls
     undated,  ///< a good result whose time or zone is not known well enough
 };
 
@@ -36,40 +36,40 @@ class Acceptance {
     /// Ranging was started at `started`, with a period within `uncertainty_permille` of `period`.
     void restart(NodeTime started, Microseconds period, std::int32_t uncertainty_permille) noexcept;
 
-    /// A poll that began at `asked` or later found no data.
+    /// A poll found no data. `asked`: the earliest time at which the sensor can have answered it.
     void on_not_ready(NodeTime asked) noexcept;
     /// A result was there, but its two reads did not agree, or it was implausible.
     void on_unreadable() noexcept;
-    [[nodiscard]] Verdict judge(const ResultSeen& seen, const ZoneCycle& zones) noexcept;
+    [[nodiscard]] Admission judge(const ResultSeen& seen, const ZoneCycle& zones) noexcept;
 
     /// The last accepted reading.
     [[nodiscard]] const Reading& reading() const noexcept { return reading_; }
-    /// Whether a result was accepted since the start, so that the stream count shows whether the next one is
-    /// new.
+    /// Whether a result was judged new since the start. The stream count then shows whether the next one is.
     [[nodiscard]] bool has_accepted() const noexcept { return last_stream_.has_value(); }
-    /// Whether the last accepted result followed another one: proof that the sensor measures.
+    /// Whether the last accepted result followed another one, which proves that the sensor measures.
     [[nodiscard]] bool is_proven() const noexcept { return is_proven_; }
 
     /// When the next result should become ready; empty before the first one.
     [[nodiscard]] std::optional<TimeBracket> next_ready() const noexcept;
-    /// Whether data was recently seen not ready before its time: proof that the sensor is not ahead of its
-    /// rhythm. Always false where the stream count does not give the number of ranges.
+    /// Whether a recent poll found the data not ready shortly before it was due, which proves that the sensor
+    /// is not ahead of its rhythm. Always false where the stream count does not give the number of ranges.
     [[nodiscard]] bool is_rhythm_proven() const noexcept {
         return gate_ == StreamGate::advanced && unproven_readings_ < policy_.unproven_readings_max;
     }
-    /// Whether the last poll, which found nothing, should be repeated at once: alone it is not trusted, and
-    /// the poll before it was long ago.
+    /// Whether the last poll, which found no data, should be repeated at once. A single poll is not trusted,
+    /// and the one before it is too old to confirm it.
     [[nodiscard]] bool wants_poll_confirmed() const noexcept;
-    /// Whether a late poll would leave the next ready time less well known than it should be.
+    /// Whether the next poll must be punctual: a late one would leave the next ready time too uncertain.
     [[nodiscard]] bool must_poll_punctually() const noexcept;
-    /// Whether a poll that finds data needs a second one: for the first result of a run, and if polls found
-    /// none when it was due.
+    /// Whether a poll that finds data must be confirmed by a second one: for the first result of a run, while
+    /// the ready time is not well predicted, and for data that is overdue.
     [[nodiscard]] bool wants_ready_confirmed() const noexcept;
     /// The earliest time at which the range after the last result begins.
     [[nodiscard]] std::optional<NodeTime> next_range_begin() const noexcept;
-    /// Whether results came since the last accepted one, none of them usable.
+    /// Whether results were refused or unreadable since the last accepted one.
     [[nodiscard]] bool has_refused() const noexcept { return results_refused_ > 0; }
-    /// Whether data that becomes ready now cannot be left over from before the start: two polls found none.
+    /// Whether the next result is certainly new: two polls found no data, so it cannot be left over from
+    /// before the start.
     [[nodiscard]] bool is_next_new() const noexcept { return not_ready_polls_ >= 2; }
     /// Whether nothing was accepted for longer than the policy allows.
     [[nodiscard]] bool is_silent(NodeTime now) const noexcept;
@@ -84,7 +84,7 @@ class Acceptance {
     void on_stale() noexcept;
     [[nodiscard]] bool is_read_of(const TimeBracket& polled, const std::optional<TimeBracket>& predicted,
                                   NodeTime read_end, bool is_counted_next) const noexcept;
-    [[nodiscard]] bool is_lone_poll_believed(const std::optional<TimeBracket>& predicted) const noexcept;
+    [[nodiscard]] bool is_lone_poll_accepted(const std::optional<TimeBracket>& predicted) const noexcept;
     [[nodiscard]] bool is_count_in_doubt(std::optional<std::uint8_t> steps, NodeTime read_end) const noexcept;
     [[nodiscard]] Microseconds known_width(const TimeBracket& predicted) const noexcept;
     [[nodiscard]] bool has_seen_not_ready() const noexcept { return not_ready_polls_ > 0; }
@@ -105,8 +105,8 @@ class Acceptance {
     NodeTime not_ready_at_;               ///< the last poll without data, or the previous result
     NodeTime not_ready_before_;           ///< the poll before that one, or the previous result
     std::uint32_t not_ready_polls_ = 0;   ///< since the last result
-    bool was_stale_ = false;              ///< a result that came since the last accepted one was stale
-    std::uint8_t unproven_readings_ = 0;  ///< in a row, whose data was ready at the first poll
+    bool was_stale_ = false;              ///< a result since the last accepted one was stale
+    std::uint8_t unproven_readings_ = 0;  ///< in a row, with data ready at the first poll
     std::uint32_t results_refused_ = 0;   ///< since the last accepted one
     Reading reading_;
     bool is_proven_ = false;

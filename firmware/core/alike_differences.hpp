@@ -22,7 +22,7 @@ class AlikeDifferences {
     /// expected.
     static constexpr std::uint8_t kPartsMin = 3;
 
-    struct Told {
+    struct CommonDifference {
         vl53l1x::RegisterDifference difference;  ///< as the first of the parts shows it
         std::uint8_t parts = 0;                  ///< number of parts that had shown it when it was recognised
     };
@@ -36,7 +36,7 @@ class AlikeDifferences {
     /// O(parts * parts) with at most 16 differences of each. True if the verification overlooks more than
     /// before: the caller then notifies each sensor.
     [[nodiscard]] bool update() noexcept;
-    [[nodiscard]] std::span<const Told> learnt() const noexcept {
+    [[nodiscard]] std::span<const CommonDifference> learnt() const noexcept {
         return std::span(learnt_).first(learnt_count_);
     }
 
@@ -47,7 +47,7 @@ class AlikeDifferences {
     vl53l1x::Verification& verification_;
     std::span<const std::optional<Sensor>> sensors_;
     std::uint32_t seen_ = 0;  ///< lasting differences of all parts at the last look
-    std::array<Told, vl53l1x::Verification::kAlikeMax> learnt_{};
+    std::array<CommonDifference, vl53l1x::Verification::kAlikeMax> learnt_{};
     std::uint8_t learnt_count_ = 0;
 };
 

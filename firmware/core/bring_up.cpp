@@ -153,7 +153,7 @@ void BringUp::on_step_done(NodeTime now) {
         case Step::checking_own_address:
         case Step::checking_parked:
         case Step::confirming_silence:
-            on_somebody_answered(now);
+            on_any_answer(now);
             break;
         case Step::parking:
             start_step(parked_from_, now);
@@ -201,7 +201,7 @@ void BringUp::on_step_failed(vl53l1x::Error error, NodeTime now) {
         was_boot_late_ = true;
         start_step(Step::identifying, now);
     } else if (step_ == Step::identifying && error == vl53l1x::Error::no_answer) {
-        on_nobody_came();
+        on_no_answer();
     } else if (error == vl53l1x::Error::bus_error || !(is_watching() || step_ == Step::parking)) {
         fail(sensor_fault(error));
     } else if (error == vl53l1x::Error::no_answer && step_ != Step::parking) {
@@ -233,7 +233,7 @@ void BringUp::on_run_verified(NodeTime now) {
     }
 }
 
-void BringUp::on_somebody_answered(NodeTime now) {
+void BringUp::on_any_answer(NodeTime now) {
     if (step_ == Step::checking_parked) {
         start_step(Step::booting, now);
         return;
@@ -251,7 +251,7 @@ void BringUp::on_somebody_answered(NodeTime now) {
 }
 
 void BringUp::on_silence(NodeTime now) {
-    const bool is_to_be_sought = is_known_stuck_ || default_address_.is_somebody_parked();
+    const bool is_to_be_sought = is_known_stuck_ || default_address_.is_any_parked();
     switch (step_) {
         case Step::checking_silence:
             start_step(Step::checking_own_address, now);
@@ -286,8 +286,8 @@ void BringUp::on_silence(NodeTime now) {
 
 /// If the parked device is none of the sensors that came up since, it is this sensor: XSHUT has no effect on
 /// it.
-void BringUp::on_nobody_came() {
-    const bool is_suspect = default_address_.is_somebody_parked() && cleared_ != default_address_.parkings();
+void BringUp::on_no_answer() {
+    const bool is_suspect = default_address_.is_any_parked() && cleared_ != default_address_.parkings();
     fail(is_known_stuck_ || is_suspect ? wire::SensorFault::xshut_stuck : wire::SensorFault::no_answer);
 }
 

@@ -76,9 +76,9 @@ class BringUp {
 
     [[nodiscard]] vl53l1x::Device& active_device() noexcept;
     [[nodiscard]] bool is_watching() const noexcept;
-    void on_somebody_answered(NodeTime now);
+    void on_any_answer(NodeTime now);
     void on_silence(NodeTime now);
-    void on_nobody_came();
+    void on_no_answer();
     void start_step(Step step, NodeTime now);
     void on_step_done(NodeTime now);
     void on_step_failed(vl53l1x::Error error, NodeTime now);

@@ -78,17 +78,17 @@ void BusWorker::take_turns(NodeTime now) {
     Sensor* const longest = longest_due(now, punctual != nullptr);
     if (longest != nullptr && (punctual == nullptr || waits_long(*longest->due()))) {
         begin_turn(longest, true);
-    } else if (punctual != nullptr && is_reached(*punctual->punctual_due(), now)) {
+    } else if (punctual != nullptr && is_reached(*punctual->deadline_due(), now)) {
         begin_turn(punctual, true);
     } else {
         awaited_ = punctual;
     }
 }
 
-void BusWorker::begin_turn(Sensor* sensor, bool may_be_interrupted) noexcept {
+void BusWorker::begin_turn(Sensor* sensor, bool is_preemptible) noexcept {
     owner_ = sensor;
     is_owner_under_way_ = false;
-    may_be_interrupted_ = may_be_interrupted;
+    is_preemptible_ = is_preemptible;
 }
 
 bool BusWorker::is_interrupted(const Sensor* sensor) const noexcept {
@@ -106,7 +106,7 @@ Sensor* BusWorker::longest_interrupted() noexcept {
 /// The owner ends its transfer and begins the next, unless another sensor must be punctual.
 void BusWorker::advance_owner(NodeTime now) {
     Sensor& sensor = *owner_;
-    const bool is_held = is_owner_under_way_ && may_be_interrupted_ && sensor.may_be_interrupted() &&
+    const bool is_held = is_owner_under_way_ && is_preemptible_ && sensor.is_preemptible() &&
                          first_punctual(now + longest_read_) != nullptr;
     is_owner_under_way_ = true;
     shared_bus_.hold(is_held);
@@ -131,7 +131,7 @@ void BusWorker::advance_owner(NodeTime now) {
 Sensor* BusWorker::first_punctual(NodeTime by) const {
     Sensor* first = nullptr;
     for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
-        const auto due = sensor->punctual_due();
+        const auto due = sensor->deadline_due();
         if (!due || sensor == owner_) continue;
         const NodeTime needed = sensor->awaits_start() ? *due - longest_poll_ : *due;
         if (!is_reached(needed, by)) continue;
@@ -141,14 +141,14 @@ Sensor* BusWorker::first_punctual(NodeTime by) const {
     return first;
 }
 
-Sensor* BusWorker::longest_due(NodeTime now, bool is_somebody_punctual) const {
+Sensor* BusWorker::longest_due(NodeTime now, bool is_any_due) const {
     Sensor* longest = nullptr;
     NodeTime longest_since = now;
     for (Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
         const auto due = sensor->due();
         if (!due || !is_reached(*due, now) || is_interrupted(sensor)) continue;
         if (longest != nullptr && is_reached(longest_since, *due)) continue;
-        if (is_somebody_punctual && sensor->can_wait(now)) continue;
+        if (is_any_due && sensor->is_deferrable(now)) continue;
         longest = sensor;
         longest_since = *due;
     }
@@ -174,7 +174,7 @@ void BusWorker::free_bus(NodeTime now) {
 std::optional<NodeTime> BusWorker::wake_time() const {
     if (is_faulty_) return retry_at_;
     if (bus_.is_busy()) return std::nullopt;
-    if (awaited_ != nullptr) return awaited_->punctual_due();
+    if (awaited_ != nullptr) return awaited_->deadline_due();
     std::optional<NodeTime> earliest;
     for (const Sensor* sensor : std::span(sensors_).first(sensor_count_)) {
         const auto due = sensor->due();

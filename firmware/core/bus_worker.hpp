@@ -30,7 +30,7 @@ class BusWorker {
     void add(Sensor& sensor);
     [[nodiscard]] DefaultAddress& default_address() noexcept { return default_address_; }
     /// Whether a device answered at 0x29 without an XSHUT line having released it. It is parked since.
-    [[nodiscard]] bool has_parked() const noexcept { return default_address_.is_somebody_parked(); }
+    [[nodiscard]] bool has_parked() const noexcept { return default_address_.is_any_parked(); }
 
     /// Advances the owner and passes the bus on, in at most 4 steps. O(steps * sensors of the bus).
     void poll(NodeTime now);
@@ -48,12 +48,12 @@ class BusWorker {
   private:
     void follow_hint(NodeTime now);
     void take_turns(NodeTime now);
-    void begin_turn(Sensor* sensor, bool may_be_interrupted) noexcept;
+    void begin_turn(Sensor* sensor, bool is_preemptible) noexcept;
     [[nodiscard]] bool is_interrupted(const Sensor* sensor) const noexcept;
     [[nodiscard]] Sensor* longest_interrupted() noexcept;
     void advance_owner(NodeTime now);
     [[nodiscard]] Sensor* first_punctual(NodeTime by) const;
-    [[nodiscard]] Sensor* longest_due(NodeTime now, bool is_somebody_punctual) const;
+    [[nodiscard]] Sensor* longest_due(NodeTime now, bool is_any_due) const;
     void free_bus(NodeTime now);
 
     i2c::Bus& bus_;
@@ -67,7 +67,7 @@ class BusWorker {
     Microseconds longest_poll_;
     Sensor* owner_ = nullptr;
     bool is_owner_under_way_ = false;  ///< has begun a transfer since its turn began
-    bool may_be_interrupted_ = true;
+    bool is_preemptible_ = true;
     const Sensor* awaited_ = nullptr;                     ///< the bus is kept free for it until it is due
     std::array<Sensor*, kNodeSensorsMax> interrupted_{};  ///< between two transfers; earliest first
     std::uint8_t interrupted_count_ = 0;

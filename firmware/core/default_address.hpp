@@ -42,7 +42,7 @@ class DefaultAddress {
     void note_parked() noexcept { ++parkings_, is_parked_ = true; }
     /// No device answers at the parking address any more.
     void forget_parked() noexcept { is_parked_ = false; }
-    [[nodiscard]] bool is_somebody_parked() const noexcept { return is_parked_; }
+    [[nodiscard]] bool is_any_parked() const noexcept { return is_parked_; }
     [[nodiscard]] std::uint32_t parkings() const noexcept { return parkings_; }
 
   private:

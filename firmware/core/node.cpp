@@ -140,7 +140,7 @@ void Node::collect_readings(NodeTime now) {
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         const auto reading = sensors_[i]->take_reading();
         if (!reading) continue;
-        told_[i].bound_since = std::max(told_[i].bound_since, reading->capture_bound);
+        reported_[i].bound_since = std::max(reported_[i].bound_since, reading->capture_bound);
         ++accepted_;
         watch_reflex(i, *reading, now);
         queue_.push(i, *reading, now);
@@ -176,11 +176,12 @@ void Node::note_health_changes(NodeTime now) {
     }
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
         if (sensors_[i]->take_failure()) black_box_.on_fault(config_.sensors[i].bus, now);
-        const Told& told = told_[i];
-        const bool is_changed = sensors_[i]->state() != told.state || sensors_[i]->fault() != told.fault;
+        const ReportedSensor& reported = reported_[i];
+        const bool is_changed =
+            sensors_[i]->state() != reported.state || sensors_[i]->fault() != reported.fault;
         // The first comparison avoids the division by the wire's step in nearly every poll.
-        const bool is_bound_exceeded =
-            told.bound_since > told.bound && bound_on_wire(told.bound_since) > bound_on_wire(told.bound);
+        const bool is_bound_exceeded = reported.bound_since > reported.bound &&
+                                       bound_on_wire(reported.bound_since) > bound_on_wire(reported.bound);
         if (is_changed || is_bound_exceeded) announcer_.request_health(i);
     }
 }
@@ -196,7 +197,7 @@ void Node::end_what_has_expired(NodeTime now) {
     if (last_command_ && elapsed(last_command_->received, now) >= policy_.command_repeat) {
         last_command_.reset();
     }
-    if (refused_command_ && elapsed(refused_command_->received, now) >= policy_.refusal_told) {
+    if (refused_command_ && elapsed(refused_command_->received, now) >= policy_.refusal_reported) {
         refused_command_.reset();
     }
     if (own_id_heard_ && elapsed(*own_id_heard_, now) >= policy_.id_conflict_clear) {

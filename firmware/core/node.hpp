@@ -32,7 +32,7 @@ namespace octoskin::node {
 
 /// The node's counters since its start.
 struct NodeCounts {
-    std::uint32_t i2c_errors = 0;  ///< failed transfers, with retried ones; silence at 0x29 does not count
+    std::uint32_t i2c_errors = 0;  ///< failed transfers, also those retried, except unanswered ones at 0x29
     std::uint32_t rejected = 0;    ///< results that did not become readings
     std::uint32_t reads_disagreed = 0;  ///< of these: the two reads never agreed
     std::uint32_t undated = 0;          ///< of these: time or zone not known well enough
@@ -49,17 +49,17 @@ struct NodeCounts {
     std::uint32_t frames_sent = 0;      ///< handed to the controller
     std::uint32_t rx_rejected = 0;      ///< frames for this node that failed a check, and refused commands
     std::uint32_t boots_late = 0;      ///< sensors that were given their address before the end of their boot
-    std::uint32_t spurious_hints = 0;  ///< falls of data-ready lines without data
+    std::uint32_t spurious_hints = 0;  ///< falling edges of data-ready lines while no sensor had data
 };
 
 /// If `config` is not valid or is for another type of board, the node does not range and its heartbeat
 /// reports `bad_config`. For a missing or damaged configuration block see `without_configuration`.
 ///
 /// Call `poll` in a loop of 100 us or faster, or at `wake_time` and whenever an I2C transfer ends or a
-/// transmit mailbox falls free. Call `on_frame` for every frame received (never for own ones), with the time
-/// of its end. One thread only; no call waits, except `i2c::Bus::recover` for at most 1 ms. A `poll` takes at
-/// most 4 steps on each I2C bus and sends at most 8 frames: O(sensors). Slower loops are safe, but lose
-/// readings: each transfer of a reading needs a poll of its own.
+/// transmit mailbox becomes free. Call `on_frame` for every frame received (never for own ones), with the
+/// time of its end. One thread only; no call waits, except `i2c::Bus::recover` for at most 1 ms. A `poll`
+/// takes at most 4 steps on each I2C bus and sends at most 8 frames: O(sensors). Slower loops are safe, but
+/// lose readings: each transfer of a reading needs a poll of its own.
 class Node {
   public:
     Node(const NodeConfig& config, const Identity& identity, const Ports& ports, NodeTime now,
@@ -70,8 +70,8 @@ class Node {
     void poll(NodeTime now);
     void on_frame(const wire::CanFrame& frame, NodeTime received);
 
-    /// When `poll` next has something to do, never before `now`. The ends of I2C transfers and of
-    /// transmissions are additional: they are events of the ports.
+    /// The next time at which `poll` has work, never before `now`. It does not include the ends of I2C
+    /// transfers and of transmissions, which are events of the ports: call `poll` then, too.
     [[nodiscard]] NodeTime wake_time(NodeTime now) const;
 
     /// Readings that wait to be sent.
@@ -86,8 +86,10 @@ class Node {
     /// Its sensors are still read.
     [[nodiscard]] std::uint8_t ignored_data_ready() const noexcept;
 
-    /// Differences that several sensors read back alike, in the order in which they were recognised.
-    [[nodiscard]] std::span<const AlikeDifferences::Told> alike() const noexcept { return alike_.learnt(); }
+    /// Register differences that several sensors have in common, in the order in which they were recognised.
+    [[nodiscard]] std::span<const AlikeDifferences::CommonDifference> alike() const noexcept {
+        return alike_.learnt();
+    }
 
     /// The host requested a reset: the application performs it.
     [[nodiscard]] bool is_reset_requested() const noexcept { return is_reset_requested_; }
@@ -107,7 +109,7 @@ class Node {
         [[nodiscard]] bool is_empty() const noexcept { return first == end; }
     };
     /// What was last reported about a sensor, and the worst capture bound since.
-    struct Told {
+    struct ReportedSensor {
         wire::SensorState state = wire::SensorState::starting;
         wire::SensorFault fault = wire::SensorFault::none;
         Microseconds bound{0};
@@ -163,17 +165,17 @@ class Node {
     [[nodiscard]] bool send_reflex();
     [[nodiscard]] wire::Heartbeat heartbeat() const noexcept;
     [[nodiscard]] wire::NodeInfo info(wire::InfoPage page) const noexcept;
-    [[nodiscard]] wire::InfoFault fault_to_tell() const noexcept;
+    [[nodiscard]] wire::InfoFault fault_to_report() const noexcept;
     void note_fault_change();
-    void tell_faults_on();
-    void note_fault_told() noexcept;
+    void forward_faults();
+    void note_fault_reported() noexcept;
     template <class Visitor>
     void visit_present_faults(Visitor visit) const;
     [[nodiscard]] std::uint32_t fault_count() const noexcept;
     [[nodiscard]] wire::SensorHealth health(std::uint8_t sensor) const noexcept;
-    [[nodiscard]] Microseconds bound_to_tell(std::uint8_t sensor) const noexcept;
+    [[nodiscard]] Microseconds bound_to_report(std::uint8_t sensor) const noexcept;
     [[nodiscard]] std::uint8_t bound_on_wire(Microseconds bound) const noexcept;
-    void note_told(std::uint8_t sensor) noexcept;
+    void note_reported(std::uint8_t sensor) noexcept;
 
     NodeConfig config_;
     Identity identity_;
@@ -182,7 +184,7 @@ class Node {
     bool is_config_usable_;
     std::uint32_t node_hash_;
     std::uint16_t uid_crc_;
-    std::uint8_t sensor_count_ = 0;  ///< sensors at work: none in safe mode, or with a bad configuration
+    std::uint8_t sensor_count_ = 0;  ///< sensors in use: none in safe mode or with a bad configuration
 
     PhaseClock phase_clock_;
     BusRecorders recorders_{};
@@ -190,7 +192,7 @@ class Node {
     vl53l1x::Verification verification_;
     std::array<std::optional<Sensor>, kNodeSensorsMax> sensors_{};
     AlikeDifferences alike_{verification_, sensors_};
-    std::array<Told, kNodeSensorsMax> told_{};
+    std::array<ReportedSensor, kNodeSensorsMax> reported_{};
     std::array<std::optional<Reflex>, kNodeSensorsMax> reflexes_{};
     struct ReflexEvent {
         wire::Reflex message;
@@ -199,11 +201,11 @@ class Node {
     std::array<ReflexEvent, kNodeSensorsMax> reflex_events_{};
     std::uint64_t reflex_due_ = 0;  ///< bit i: `reflex_events_[i]` is to be sent
     std::uint8_t reflex_sequence_ = 0;
-    std::uint32_t faults_seen_ = 0;    ///< hash of the faults at the last look
-    std::uint32_t fault_turn_ = 0;     ///< which of them is reported next
-    std::uint32_t faults_untold_ = 0;  ///< not yet reported since they changed
-    bool is_refusal_untold_ = false;   ///< a command was refused since the last turn of `tell_faults_on`
-    bool is_refusal_due_ = false;      ///< the next fault page reports that
+    std::uint32_t faults_seen_ = 0;        ///< hash of the faults at the last check
+    std::uint32_t fault_turn_ = 0;         ///< number of the fault to report next; counts on
+    std::uint32_t faults_unreported_ = 0;  ///< faults not yet reported since they changed
+    bool is_refusal_unreported_ = false;   ///< a command was refused since the last `forward_faults`
+    bool is_refusal_due_ = false;          ///< the next fault page reports the refused command
     ReadingQueue queue_;
     Announcer announcer_;
     TokenBucket tokens_;
@@ -220,7 +222,7 @@ class Node {
     bool is_reset_requested_ = false;
     bool is_health_look_due_ = false;
     NodeTime health_looked_at_;
-    bool looks_at_faults_ = false;  ///< the next look is at the faults, not at the health
+    bool looks_at_faults_ = false;  ///< the next check is of the faults, not of the health
     std::uint32_t frames_sent_ = 0;
     std::uint32_t given_up_ = 0;
     std::uint32_t others_given_up_ = 0;
@@ -229,7 +231,7 @@ class Node {
     std::uint32_t rx_rejected_ = 0;
     std::optional<wire::SyncReport> sync_report_;
     std::optional<ReceivedCommand> last_command_;
-    std::optional<ReceivedCommand> refused_command_;  ///< first of a recent series; time of the last
+    std::optional<ReceivedCommand> refused_command_;  ///< first of a recent series, with the time of the last
     std::uint64_t commanded_to_range_ = 0;            ///< bit i: sensor i
     std::optional<NodeTime> own_id_heard_;
     std::optional<NodeTime> identify_until_;

@@ -41,11 +41,11 @@ void Node::visit_present_faults(Visitor visit) const {
         if (buses_[bus] && buses_[bus]->has_parked()) tell(wire::FaultKind::stray_sensor, bus);
     }
     for (std::uint8_t i = 0; i < sensor_count_; ++i) {
-        if (const auto difference = sensors_[i]->register_to_tell())
+        if (const auto difference = sensors_[i]->register_to_report())
             tell(wire::FaultKind::register_fixed, report_of(i, *difference).where());
     }
-    for (const AlikeDifferences::Told& told : alike_.learnt())
-        tell(wire::FaultKind::register_alike, report_of(told.parts, told.difference).where());
+    for (const AlikeDifferences::CommonDifference& reported : alike_.learnt())
+        tell(wire::FaultKind::register_alike, report_of(reported.parts, reported.difference).where());
     for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
         if (buses_[bus] && buses_[bus]->hint().is_ignored()) tell(wire::FaultKind::data_ready_ignored, bus);
     }
@@ -54,7 +54,7 @@ void Node::visit_present_faults(Visitor visit) const {
     }
 }
 
-/// The page has room for one fault. The first is sent at once, the others by `tell_faults_on`.
+/// The page has room for one fault. The first is sent at once, the others by `forward_faults`.
 void Node::note_fault_change() {
     constexpr std::uint32_t kOffset = 2'166'136'261U;  // FNV-1a
     constexpr std::uint32_t kPrime = 16'777'619U;
@@ -67,25 +67,25 @@ void Node::note_fault_change() {
     });
     if (seen == faults_seen_) return;
     faults_seen_ = seen;
-    faults_untold_ = count;
+    faults_unreported_ = count;
     announcer_.request_info(wire::InfoPage::fault);
 }
 
 /// After a change each fault is sent once, ten a second: 34 sensors may each have one. A refused command is
 /// reported out of turn; the page sent once a second keeps its turns.
-void Node::tell_faults_on() {
-    is_refusal_due_ = std::exchange(is_refusal_untold_, false);
-    if (faults_untold_ > 0 || is_refusal_due_) announcer_.request_info(wire::InfoPage::fault);
+void Node::forward_faults() {
+    is_refusal_due_ = std::exchange(is_refusal_unreported_, false);
+    if (faults_unreported_ > 0 || is_refusal_due_) announcer_.request_info(wire::InfoPage::fault);
 }
 
-void Node::note_fault_told() noexcept {
+void Node::note_fault_reported() noexcept {
     if (std::exchange(is_refusal_due_, false)) return;
     ++fault_turn_;
-    if (faults_untold_ > 0) --faults_untold_;
+    if (faults_unreported_ > 0) --faults_unreported_;
 }
 
 /// One fault in each turn; the recorded one takes part.
-wire::InfoFault Node::fault_to_tell() const noexcept {
+wire::InfoFault Node::fault_to_report() const noexcept {
     wire::InfoFault fault{.kind = run_.fault,
                           .count = saturated8(run_.resets),
                           .where = run_.where,

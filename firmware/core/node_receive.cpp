@@ -85,7 +85,7 @@ void Node::refuse(const wire::Command& command, NodeTime now) {
     } else {
         refused_command_ = {.command = command, .received = now};
     }
-    is_refusal_untold_ = true;
+    is_refusal_unreported_ = true;
     const bool is_calibration = command.code == wire::CommandCode::calibrate_offset ||
                                 command.code == wire::CommandCode::calibrate_crosstalk;
     if (is_calibration && command.sensor != wire::kAllSensors) calibration_.refuse(command);

@@ -37,7 +37,7 @@ void Node::count_uptime(NodeTime now) {
     uptime_counted_ = uptime_counted_ + kUptimeStep;
     if (uptime_ms_ <= std::numeric_limits<std::uint32_t>::max() - kUptimeStepMs) uptime_ms_ += kUptimeStepMs;
     judge_run(now);
-    tell_faults_on();
+    forward_faults();
     run_.uptime_ms = uptime_ms_;
     keep_run_record();
     // Updating all of them in every poll would be a tenth of the core's time.

@@ -99,11 +99,11 @@ bool Node::send_most_urgent(NodeTime now) {
     } else if (const auto sensor = announcer_.health_due()) {
         if (!send(health(*sensor))) return false;
         announcer_.health_sent(*sensor);
-        note_told(*sensor);
+        note_reported(*sensor);
     } else if (const auto page = announcer_.info_page_due()) {
         if (!send(info(*page))) return false;
         announcer_.info_sent(*page);
-        if (*page == wire::InfoPage::fault) note_fault_told();
+        if (*page == wire::InfoPage::fault) note_fault_reported();
     } else if (queue_.aux()) {
         if (!send(*queue_.aux())) return false;
         queue_.pop_aux();
@@ -193,9 +193,9 @@ wire::NodeInfo Node::info(wire::InfoPage page) const noexcept {
                 .bus_off_count = saturated<std::uint8_t>(counted.bus_off),
                 .rx_rejected = saturated<std::uint8_t>(counted.rx_rejected)};
         case wire::InfoPage::fault:
-            return fault_to_tell();
+            return fault_to_report();
     }
-    return fault_to_tell();
+    return fault_to_report();
 }
 
 wire::SensorHealth Node::health(std::uint8_t sensor) const noexcept {
@@ -205,21 +205,21 @@ wire::SensorHealth Node::health(std::uint8_t sensor) const noexcept {
             .state = about.state(),
             .fault = about.fault(),
             .sent = queue_.sent(sensor),
-            .capture_bound_64us = bound_on_wire(bound_to_tell(sensor)),
+            .capture_bound_64us = bound_on_wire(bound_to_report(sensor)),
             .rejected = static_cast<std::uint8_t>(about.counts().rejected & 0xFFU),
             .period_error_permille = static_cast<std::int8_t>(error)};
 }
 
-Microseconds Node::bound_to_tell(std::uint8_t sensor) const noexcept {
-    const Told& told = told_[sensor];
-    return told.bound_since.count() > 0 ? told.bound_since : told.bound;
+Microseconds Node::bound_to_report(std::uint8_t sensor) const noexcept {
+    const ReportedSensor& reported = reported_[sensor];
+    return reported.bound_since.count() > 0 ? reported.bound_since : reported.bound;
 }
 
-void Node::note_told(std::uint8_t sensor) noexcept {
-    told_[sensor] = {.state = sensors_[sensor]->state(),
-                     .fault = sensors_[sensor]->fault(),
-                     .bound = bound_to_tell(sensor),
-                     .bound_since = Microseconds{0}};
+void Node::note_reported(std::uint8_t sensor) noexcept {
+    reported_[sensor] = {.state = sensors_[sensor]->state(),
+                         .fault = sensors_[sensor]->fault(),
+                         .bound = bound_to_report(sensor),
+                         .bound_since = Microseconds{0}};
 }
 
 std::uint8_t Node::bound_on_wire(Microseconds bound) const noexcept {

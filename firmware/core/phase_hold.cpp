@@ -58,7 +58,7 @@ void PhaseHold::observe(const TimeBracket& ready) noexcept {
     if (!last_) {
         if (is_worth_waiting(ready)) return;
         begin(elapsed(start_.at.earliest, at));
-    } else if (const Microseconds since = elapsed(*last_, at); is_told_from_others(since)) {
+    } else if (const Microseconds since = elapsed(*last_, at); is_distinguished(since)) {
         go_on(since);
     } else {
         count_from(off_ + nearest_to_zero(since));
@@ -76,7 +76,7 @@ bool PhaseHold::is_worth_waiting(const TimeBracket& ready) const noexcept {
 
 /// Whether, this long after the last range, it is certain which range this is: the sensor must not have
 /// drifted as far as the place of another range.
-bool PhaseHold::is_told_from_others(Microseconds since_last) const noexcept {
+bool PhaseHold::is_distinguished(Microseconds since_last) const noexcept {
     const std::int64_t periods_max = start_.is_trimmed ? kGapMaxTrimmed : kGapMax;
     return since_last.count() >= 0 && since_last <= periods_max * start_.period;
 }
@@ -115,7 +115,7 @@ void PhaseHold::begin(Microseconds first_after) noexcept {
     if (!start_.is_trimmed) return;
     // If a start was interrupted in the middle, its time is unknown.
     const bool is_start_known = start_.at.width() <= 2 * policy_.phase_known_within;
-    if (!is_start_known || !is_told_from_others(first_after)) {
+    if (!is_start_known || !is_distinguished(first_after)) {
         if (firsts_ > 0) count_from(off_ + nearest_to_zero(first_after - first_after_));
         return;
     }

@@ -52,7 +52,7 @@ class PhaseHold {
   private:
     [[nodiscard]] bool is_worth_waiting(const TimeBracket& ready) const noexcept;
     void begin(Microseconds first_after) noexcept;
-    [[nodiscard]] bool is_told_from_others(Microseconds since_last) const noexcept;
+    [[nodiscard]] bool is_distinguished(Microseconds since_last) const noexcept;
     void go_on(Microseconds since_last) noexcept;
     [[nodiscard]] bool is_near(Microseconds off, Microseconds other) const noexcept;
     void count_from(Microseconds off) noexcept;

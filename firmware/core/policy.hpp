@@ -17,16 +17,16 @@ struct Policy {
     // --- bring-up. Datasheet DS12385: boots within 1.2 ms of XSHUT high; it states no minimum low time.
     Microseconds xshut_low{1'000};
     Microseconds xshut_boot{2'000};
-    /// The first range takes one period, 103 ms at the defaults by the part's own oscillator. It is not
-    /// polled for before this time.
+    /// The first range takes one period: 103 ms at the defaults, by the part's own oscillator. No poll for it
+    /// comes before this time.
     Microseconds first_range{85'000};
 
     /// A sensor that was stopped for longer than this is brought up again before it ranges. Its temperature
     /// may have changed by 8 degrees, and it adapts only while it ranges (ST UM2510 7.41).
     Microseconds rest_max{60'000'000};
 
-    /// No sensor ranges sooner after the node's start. By then the whole fleet is up, and no bring-up
-    /// occupies the bus when another sensor's data is ready.
+    /// No sensor starts to range sooner than this after the node's start. By then all sensors are brought up,
+    /// and no bring-up occupies the bus when another sensor's data is ready.
     Microseconds first_starts{250'000};
 
     // --- reading
@@ -38,33 +38,33 @@ struct Policy {
     /// better than this.
     [[nodiscard]] Microseconds length_spread() const noexcept { return 2 * (ready_jitter - timer_jitter); }
     /// Where ranges differ in length, the next ready time is never known better than this: the grid is
-    /// derived from ready times that stray, and the next one strays again. Decisions by the width of a
-    /// bracket use what exceeds this.
+    /// derived from ready times that stray, and the next one strays again. Decisions that depend on the width
+    /// of a bracket subtract this first.
     [[nodiscard]] Microseconds width_of_jitter() const noexcept { return 2 * length_spread(); }
     /// A poll is read once. If it was altered in transit it reads "not ready" although data was ready. A
     /// single poll is trusted only where the rhythm predicts the ready time to within this, which bounds the
     /// possible error.
-    Microseconds lone_poll_believed{1'000};
+    Microseconds lone_poll_accepted{1'000};
     /// A poll is also trusted if another one with the same answer was at most this long before. That bounds
     /// the error for its range to this.
-    Microseconds close_polls_believed{500};
+    Microseconds close_polls_accepted{500};
     /// If the next ready time is known less well than this, it needs a punctual poll.
     Microseconds punctual_above{300};
-    /// A sensor whose ready time is known this well is polled early, to check its rhythm, only after
-    /// `unproven_readings_max`.
+    /// A sensor whose ready time is known this well is polled within the bracket. Only after
+    /// `unproven_readings_max` readings is it polled before the bracket, to check its rhythm.
     Microseconds known_width_max{1'000};
-    /// The longest time for which a sensor waits for its turn, or for the rest of it, while others must be
-    /// punctual.
+    /// The longest time for which a sensor waits for its turn on the bus, or for the rest of an interrupted
+    /// one, while others must be punctual.
     Microseconds bus_wait_max{3'000};
     /// The uncertainty of the real period before it is measured. The driver requests 1.075 times the part's
     /// own oscillator value (ST's ULD); drivers for other parts were correct with factors from 1.0 on.
     std::int32_t period_expected_permille = 80;
-    /// The same, once a sensor has contradicted the expectation.
+    /// The same, once the sensor's rhythm was lost.
     std::int32_t period_unknown_permille = 120;
-    /// Readings in a row whose data was ready at the first poll.
+    /// So many readings in a row may have their data ready at the first poll; then the rhythm needs proof.
     std::uint8_t unproven_readings_max = 3;
-    /// Between two polls: the minimum where data may become ready or has just become overdue, the maximum
-    /// where nothing is known.
+    /// Time between two polls: the minimum while data may become ready or has just become overdue, the
+    /// maximum while the ready time is unknown.
     Microseconds repoll_min{20};
     Microseconds repoll_max{1'000};
     /// A reading whose capture time is less certain than this is not sent.
@@ -75,16 +75,17 @@ struct Policy {
     std::uint8_t undated_until_failure = 30;
     /// Ranges in a row that the sensor itself reports as a hardware failure, until it is brought up again.
     std::uint8_t hardware_fails_until_failure = 10;
-    /// One of the three groups of steering registers is read back after this many readings: each group within
-    /// 10.
+    /// After this many readings, one of the three groups of steering registers is read back. Each group is
+    /// thus read back within 10 readings.
     std::uint8_t readings_per_steering_check = 3;
 
     // --- the data-ready line of a bus that has one
-    /// Between two hints: one poll of the bus, plus the same time for others.
+    /// Time between two hints: for one poll, and as much for other transfers.
     Microseconds hint_interval{250};
-    std::uint16_t hint_doubt_max = 100;  ///< so many more spurious falls than confirmed ones offset
-    /// A sensor whose data the line announced is not polled otherwise while its ready time is known this
-    /// well.
+    /// The line is ignored after so many more spurious falls than confirmed ones offset.
+    std::uint16_t hint_doubt_max = 100;
+    /// If the line announced a sensor's last data, and the next ready time is known this well, the next poll
+    /// waits for the line.
     Microseconds hinted_width_max{560};
 
     // --- trimming the inter-measurement register to the configured period
@@ -96,26 +97,28 @@ struct Policy {
 
     // --- holding sensors in their phases, where the rig asks for it
     Microseconds phase_tolerance{170};
-    /// A ready time that is known less well gives no phase.
+    /// A ready time that is known less well than this is not used to measure the phase.
     Microseconds phase_known_within{500};
-    /// All of a run is counted from its first ready time, which must be known better.
+    /// The drift of a run is counted from its first ready time. If that is known less well than this, a
+    /// better one is awaited for some periods.
     Microseconds phase_first_known_within{150};
-    /// How far from its phase a sensor is started, against its direction of drift. The rest of the tolerance
-    /// covers the uncertainty of ready times.
+    /// The most by which a sensor is started off its phase, against its direction of drift. The rest of the
+    /// tolerance covers the uncertainty of ready times.
     Microseconds phase_start_off{130};
-    /// A sensor is due to start this early. If the bus delays it until this late, it starts a period later.
+    /// A start is due this long before its time. If the bus delays it to more than this after its time, the
+    /// sensor starts a period later.
     Microseconds phase_start_slack{75};
-    /// A sensor whose next range may already have begun is stopped this much later than possible. What that
-    /// stop shows then also holds for stops that come as early as possible.
+    /// A sensor whose next range may already have begun is stopped this much later than possible. If the stop
+    /// shows that no range had begun, later stops may come this much sooner without a wait (RangeLength).
     Microseconds phase_stop_delay{1'000};
-    std::int64_t phase_periods_min = 16;  ///< between two starts for the phase; one costs a reading
+    std::int64_t phase_periods_min = 16;  ///< between two starts for the phase; each costs a reading
 
     // --- recovery of one sensor: restart, XSHUT cycle, then XSHUT cycles at growing intervals
     std::uint8_t proven_readings_until_healthy = 10;
     Microseconds backoff_first{100'000};
     Microseconds backoff_max{10'000'000};
-    Microseconds bus_isolation{2'000};  ///< all sensors in reset, before the first attempt to free the bus
-    Microseconds bus_retry{1'000'000};  ///< between further attempts
+    Microseconds bus_isolation{2'000};  ///< time with all sensors in reset before the bus is freed
+    Microseconds bus_retry{1'000'000};  ///< between further attempts to free it
 
     // --- frames out
     Microseconds company_wait{3'000};  ///< a reading waits this long for others to share its CAN FD frame
@@ -127,10 +130,10 @@ struct Policy {
     /// Between two looks, alternately at the sensors' health and at the node's faults.
     Microseconds health_look_interval{500};
 
-    Microseconds black_box_period{50'000};     ///< between two pieces of it
-    Microseconds black_box_pause{60'000'000};  ///< between two dumps of a bus for faults
+    Microseconds black_box_period{50'000};     ///< between two pieces of a dump
+    Microseconds black_box_pause{60'000'000};  ///< between two dumps of a bus that faults cause
 
-    // --- the reflex: an event is over once nothing came this near to the limit for this long
+    // --- the reflex: an event is over once no range was below the limit plus the margin for `reflex_rearm`
     Microseconds reflex_rearm{200'000};
     std::int32_t reflex_margin_mm = 20;
     std::int32_t reflex_margin_permille = 100;
@@ -149,7 +152,7 @@ struct Policy {
     Microseconds command_repeat{500'000};  ///< the same command within this time is a duplicate frame
     Microseconds id_conflict_clear{5'000'000};
     /// NODE_INFO reports refused commands for this long after the last one.
-    Microseconds refusal_told{2'000'000};
+    Microseconds refusal_reported{2'000'000};
 };
 
 }  // namespace octoskin::node

@@ -264,15 +264,15 @@ Ranging::Event Ranging::on_last_read(NodeTime now) {
         if (looks_left_ == 0) range_length_.on_none_begun(stop_began_, last_expected_);
         return on_drained(now);
     }
-    const Verdict verdict = judge_result(now);
+    const Admission verdict = judge_result(now);
     start_anew(now);
     switch (verdict) {
-        case Verdict::accepted:
+        case Admission::accepted:
             checks_.on_reading();
             return Event::reading;
-        case Verdict::undated:
+        case Admission::undated:
             return Event::undated;
-        case Verdict::refused:
+        case Admission::refused:
             break;
     }
     fault_ = SensorFault::stale_stream;
@@ -317,19 +317,19 @@ Ranging::Event Ranging::on_read(NodeTime now) {
     }
     note_announcement();
     switch (judge_result(now)) {
-        case Verdict::accepted:
+        case Admission::accepted:
             after_result(now);
             return Event::reading;
-        case Verdict::undated:
+        case Admission::undated:
             after_result(now);
             return Event::undated;
-        case Verdict::refused:
+        case Admission::refused:
             break;
     }
     return refuse(SensorFault::stale_stream, now);
 }
 
-Verdict Ranging::judge_result(NodeTime now) {
+Admission Ranging::judge_result(NodeTime now) {
     const ResultSeen seen{.measurement = device_.measurement(),
                           .ready_seen = polls_.ready_by(device_.ready_seen()),
                           .read_end = now};

@@ -1,5 +1,6 @@
 // One configured sensor while it ranges: starts it in its phase, polls it when its data should be ready,
-// passes each result to acceptance, cycles its zones, and stops it to trim its period.
+// passes each result to acceptance, cycles its zones, and restarts it to trim its period or correct its
+// phase.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +52,7 @@ class Ranging {
     Ranging(vl53l1x::Device& device, const SensorConfig& config, const RangingRules& rules,
             const Policy& policy, const PhaseClock& clock, NodeTime node_began) noexcept;
 
-    /// The sensor was just configured, which puts it in its first zone, and all of it was read back.
+    /// The sensor was just configured: it is in its first zone, and all its settings were read back.
     void on_configured() noexcept {
         zones_.restart();
         checks_.restart();
@@ -65,32 +66,34 @@ class Ranging {
     /// The bus's data-ready line fell: polls now if data may be there. Which sensor pulled the line is
     /// unknown, so this is only a reason to poll.
     void on_hint(NodeTime now) noexcept;
-    /// Whether a hint was followed and data was there; true once.
+    /// Whether data was found that the line had announced. Returns true once.
     [[nodiscard]] bool take_confirmation() noexcept { return std::exchange(has_confirmed_, false); }
-    /// Sets another period: from the next start on; a ranging sensor is restarted for it.
+    /// Sets another period. It applies from the next start on; a ranging sensor is restarted for it.
     void set_period(Microseconds period, NodeTime now) noexcept;
     /// The sensor was taken away (reset, lost): nothing is under way any more.
     void abandon() noexcept { step_ = Step::idle; }
 
-    /// When it is due for a start in its phase, or for a poll that would blur the ready time if it came late.
-    [[nodiscard]] std::optional<NodeTime> punctual_due() const noexcept {
+    /// When the sensor needs the bus punctually: for a start in its phase, or for a poll that would leave the
+    /// ready time too uncertain if it came late.
+    [[nodiscard]] std::optional<NodeTime> deadline_due() const noexcept {
         const bool is_punctual =
             step_ == Step::awaiting_phase || (step_ == Step::awaiting_data && is_poll_punctual_);
         if (is_punctual) return step_due_;
-        // A sensor that is polled early, or waits for such a poll, is polled punctually afterwards.
+        // After its early polls, a sensor is polled punctually.
         if (step_ == Step::awaiting_data && is_early_) return early_until_;
         return std::nullopt;
     }
-    /// Whether it must be punctual for its start.
+    /// Whether it waits for its start, which must be punctual.
     [[nodiscard]] bool awaits_start() const noexcept { return step_ == Step::awaiting_phase; }
-    /// Whether its due poll comes before the first data is expected and most likely finds none: that can
-    /// wait.
+    /// Whether the poll that is due comes before the first data is expected. It most likely finds none, so it
+    /// can wait.
     [[nodiscard]] bool is_early(NodeTime now) const noexcept {
         return step_ == Step::awaiting_data && is_early_ && !is_reached(early_until_, now);
     }
-    /// False during a start, whose instant determines the times of all its ranges; between two polls of which
-    /// one confirms the other; and before a zone's write, which is short and soon too late.
-    [[nodiscard]] bool may_be_interrupted() const noexcept {
+    /// Whether another sensor may interrupt it. False during a start, which determines the times of all
+    /// ranges of its run. False between a poll and the poll that confirms it. False while a zone is to be
+    /// written, because that is short and soon too late.
+    [[nodiscard]] bool is_preemptible() const noexcept {
         return step_ != Step::starting && step_ != Step::writing_zone &&
                !(step_ == Step::reading && device_.is_confirming_ready());
     }
@@ -98,15 +101,15 @@ class Ranging {
     [[nodiscard]] std::optional<NodeTime> due() const noexcept {
         return step_ == Step::idle ? std::nullopt : std::optional(step_due_);
     }
-    /// One step, while the bus is free or used by this sensor's own transfer.
+    /// Advances by one step. The bus must be free, or in use by this sensor's own transfer.
     [[nodiscard]] Result advance(NodeTime now);
 
     [[nodiscard]] const Reading& reading() const noexcept { return acceptance_.reading(); }
-    /// Whether the last reading followed another one: proof that the sensor measures.
+    /// Whether the last reading followed another one, which proves that the sensor measures.
     [[nodiscard]] bool is_proven() const noexcept { return acceptance_.is_proven(); }
     [[nodiscard]] wire::SensorFault fault() const noexcept { return fault_; }
-    /// Readings accepted since the registers that are now found wrong were last correct; 0 for a failure of
-    /// another kind.
+    /// Readings accepted since the last correct read-back of the registers that are now wrong; 0 for a
+    /// failure of another kind.
     [[nodiscard]] std::uint32_t suspect_readings() const noexcept { return suspect_readings_; }
     /// Whether stopping and starting may help the failed sensor.
     [[nodiscard]] bool can_restart() const noexcept;
@@ -141,7 +144,7 @@ class Ranging {
     void start_anew(NodeTime now);
     [[nodiscard]] Event on_read(NodeTime now);
     [[nodiscard]] Event on_last_read(NodeTime now);
-    [[nodiscard]] Verdict judge_result(NodeTime now);
+    [[nodiscard]] Admission judge_result(NodeTime now);
     [[nodiscard]] Event refuse(wire::SensorFault fault, NodeTime now);
     [[nodiscard]] Event fail(wire::SensorFault fault);
     void on_started(NodeTime now);
@@ -173,28 +176,29 @@ class Ranging {
     SteeringChecks checks_;
 
     NodeTime first_start_;
-    bool is_poll_punctual_ = false;    ///< needed of every sensor in every turn: computed once a poll
-    bool is_early_ = false;            ///< likewise
+    // The next two are computed once for each poll, because they are needed in every turn on the bus.
+    bool is_poll_punctual_ = false;    ///< the poll must be punctual
+    bool is_early_ = false;            ///< the poll comes before the first data is expected
     NodeTime phase_due_;               ///< when the sensor was to start, even if the bus was not free then
-    std::uint8_t starts_put_off_ = 0;  ///< in a row, for being late
-    Microseconds start_off_{0};        ///< of that time from the sensor's phase
+    std::uint8_t starts_put_off_ = 0;  ///< late starts in a row that were put off by a period
+    Microseconds start_off_{0};        ///< offset of the planned start from the sensor's phase
     std::uint32_t ranges_ = 0;         ///< results since the start
     Step step_ = Step::idle;
     NodeTime step_due_;
     NodeTime step_began_;
-    NodeTime ready_from_;         ///< while data is awaited: none is ready before
+    NodeTime ready_from_;         ///< while data is awaited: none is ready before this
     TimeBracket first_expected_;  ///< where the first data after the start is most likely ready
-    NodeTime early_until_;        ///< a poll before this is most likely in vain
-    bool has_hint_ = false;       ///< since the poll under way began, or the last one
+    NodeTime early_until_;        ///< a poll before this most likely finds no data
+    bool has_hint_ = false;       ///< a hint came since the newest poll began
     bool is_hinted_ = false;      ///< the poll under way follows a hint
-    bool has_confirmed_ = false;  ///< not taken yet
+    bool has_confirmed_ = false;  ///< `take_confirmation` will return true
     bool was_announced_ = false;  ///< the line announced the last data
     bool is_stop_requested_ = false;
     bool is_trim_due_ = false;
-    bool is_period_set_ = false;      ///< to the commanded one
+    bool is_period_set_ = false;      ///< the sensor has the commanded period
     bool comes_as_expected_ = false;  ///< the first data of the last run came when it was expected
     NodeTime stop_began_;
-    /// While a last result is looked for: when it would be ready.
+    /// While the result of the range under way at the stop is looked for: when it would be ready.
     TimeBracket last_expected_;
     std::uint8_t looks_left_ = 0;
     wire::SensorFault fault_ = wire::SensorFault::none;

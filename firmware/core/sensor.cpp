@@ -379,7 +379,7 @@ bool Sensor::is_degraded() const noexcept {
            state_ != SensorState::starting;
 }
 
-std::optional<vl53l1x::RegisterDifference> Sensor::register_to_tell() const noexcept {
+std::optional<vl53l1x::RegisterDifference> Sensor::register_to_report() const noexcept {
     const vl53l1x::ReadBack& read_back = device_.read_back();
     if (const auto fixed = read_back.fixed_register()) return fixed;
     if (mismatches_in_row_ >= vl53l1x::ReadBack::kSightingsUntilFixed) return read_back.last_difference();

@@ -85,18 +85,18 @@ class Sensor {
     }
     /// When it is due for something that must not come late; empty if it is due for something else, or for
     /// nothing. Called for every sensor in every turn.
-    [[nodiscard]] std::optional<NodeTime> punctual_due() const noexcept {
+    [[nodiscard]] std::optional<NodeTime> deadline_due() const noexcept {
         if (mode_ != Mode::ranging) return std::nullopt;
-        return ranging_.punctual_due();
+        return ranging_.deadline_due();
     }
     /// Whether it must be punctual for its start.
     [[nodiscard]] bool awaits_start() const noexcept { return ranging_.awaits_start(); }
     /// Whether what it is due for can wait while others must be punctual.
-    [[nodiscard]] bool can_wait(NodeTime now) const noexcept {
+    [[nodiscard]] bool is_deferrable(NodeTime now) const noexcept {
         return mode_ == Mode::ranging && ranging_.is_early(now);
     }
     /// Whether a sensor that must be punctual may come between its transfers.
-    [[nodiscard]] bool may_be_interrupted() const noexcept { return ranging_.may_be_interrupted(); }
+    [[nodiscard]] bool is_preemptible() const noexcept { return ranging_.is_preemptible(); }
     /// One step, while the bus is free or used by this sensor's own transfer.
     [[nodiscard]] BusUse advance(NodeTime now);
     /// The reading that the last step accepted; returned once.
@@ -131,7 +131,7 @@ class Sensor {
     }
     /// The register to report: one that does not keep its value, or the newest that differed in three or more
     /// attempts in a row, alike or not. Empty if there is none.
-    [[nodiscard]] std::optional<vl53l1x::RegisterDifference> register_to_tell() const noexcept;
+    [[nodiscard]] std::optional<vl53l1x::RegisterDifference> register_to_report() const noexcept;
     /// What a person at the node is shown of a degraded sensor.
     struct Trouble {
         wire::SensorFault fault = wire::SensorFault::none;
@@ -140,7 +140,7 @@ class Sensor {
     };
     [[nodiscard]] std::optional<Trouble> trouble() const noexcept {
         if (!is_degraded()) return std::nullopt;
-        return Trouble{.fault = fault_, .difference = register_to_tell()};
+        return Trouble{.fault = fault_, .difference = register_to_report()};
     }
     /// Whether it was ever given its address before the end of its boot.
     [[nodiscard]] bool was_boot_late() const noexcept { return bring_up_.was_boot_late(); }

@@ -3,21 +3,19 @@
 #include <fmt/format.h>
 
 #include "hw/rigfile/pose.hpp"
+#include "hw/rigfile/rig_keys.hpp"
 #include "hw/rigfile/table.hpp"
 
 namespace octoskin::rig {
 namespace {
 
 LensDistortion read_distortion(const Value& value, const std::string& path) {
-    // For cameras with a view of 60 degrees |k| is below 4 and |p| below 0.02; a long lens has larger values.
-    constexpr Range<double> kRadial{-1000.0, 1000.0};
-    constexpr Range<double> kTangential{-1.0, 1.0};
-    const Table table(value, path, {"k1", "k2", "p1", "p2", "k3"});
-    return {.k1 = table.number("k1", kRadial, 0.0),
-            .k2 = table.number("k2", kRadial, 0.0),
-            .p1 = table.number("p1", kTangential, 0.0),
-            .p2 = table.number("p2", kTangential, 0.0),
-            .k3 = table.number("k3", kRadial, 0.0)};
+    const Table table(value, path, keys::kDistortion);
+    return {.k1 = table.number(keys::distortion::kK1),
+            .k2 = table.number(keys::distortion::kK2),
+            .p1 = table.number(keys::distortion::kP1),
+            .p2 = table.number(keys::distortion::kP2),
+            .k3 = table.number(keys::distortion::kK3)};
 }
 
 /// The first pixel on the image border without a ray. If the border pixels have rays, the enclosed pixels
@@ -46,13 +44,13 @@ std::optional<Pixel> pixel_without_ray(const Camera& camera) {
 
 /// Call after the intrinsics are read.
 void read_lens(const Table& table, Camera& camera) {
-    const Value* const distortion = table.find("distortion");
+    const Value* const distortion = table.find(keys::camera::kDistortion);
     if (distortion == nullptr) return;
-    camera.lens = read_distortion(*distortion, table.path_of("distortion"));
+    camera.lens = read_distortion(*distortion, table.path_of(keys::camera::kDistortion));
     const auto lost = pixel_without_ray(camera);
     if (!lost) return;
     table.fail(
-        "distortion",
+        keys::camera::kDistortion,
         fmt::format("expected coefficients that give each pixel one ray, found {}: pixel ({}, {}) has "
                     "none before the polynomial turns back, {:.3f} from the axis: calibrate again "
                     "with views that reach the corners, or without k3",
@@ -60,39 +58,39 @@ void read_lens(const Table& table, Camera& camera) {
 }
 
 DataSetKeys read_data_set(const Value& value, const std::string& path) {
-    const Table table(value, path, {"depth_units_per_m", "depth_no_value", "pose_gap_max_ms"});
+    const Table table(value, path, keys::kDataSet);
     DataSetKeys data_set;
-    if (table.find("depth_units_per_m") != nullptr)
-        data_set.units_per_m = table.number("depth_units_per_m", {1.0, 1e6});
-    if (table.find("depth_no_value") != nullptr)
-        data_set.no_value = table.integer<std::uint16_t>("depth_no_value", {0, 65'535});
-    data_set.pose_gap_max_ms = table.number("pose_gap_max_ms", {1.0, 10'000.0}, data_set.pose_gap_max_ms);
+    if (table.find(keys::data_set::kDepthUnits) != nullptr)
+        data_set.units_per_m = table.number(keys::data_set::kDepthUnits);
+    if (table.find(keys::data_set::kDepthNoValue) != nullptr)
+        data_set.no_value = table.integer<std::uint16_t>(keys::data_set::kDepthNoValue);
+    data_set.pose_gap_max_ms = table.number(keys::data_set::kPoseGapMax);
     return data_set;
 }
 
 }  // namespace
 
 Camera read_camera(const Value& value) {
-    const Table table(value, "camera",
-                      {"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px", "distortion", "rate_hz",
-                       "depth_min_m", "depth_max_m", "data_set", "pose"});
+    const Table table(value, std::string(name_of(keys::kCameraTable)), keys::kCamera);
     Camera camera;
-    camera.width = table.integer<std::uint32_t>("width_px", {1, 4096});
-    camera.height = table.integer<std::uint32_t>("height_px", {1, 4096});
-    camera.fx = table.number("fx_px", {1.0, 100'000.0});
-    camera.fy = table.number("fy_px", {1.0, 100'000.0});
-    camera.cx = table.number("cx_px", {0.0, static_cast<double>(camera.width)});
-    camera.cy = table.number("cy_px", {0.0, static_cast<double>(camera.height)});
+    camera.width = table.integer<std::uint32_t>(keys::camera::kWidth);
+    camera.height = table.integer<std::uint32_t>(keys::camera::kHeight);
+    camera.fx = table.number(keys::camera::kFx);
+    camera.fy = table.number(keys::camera::kFy);
+    camera.cx =
+        table.number(keys::camera::kCx, {keys::camera::kCx.range.min, static_cast<double>(camera.width)});
+    camera.cy =
+        table.number(keys::camera::kCy, {keys::camera::kCy.range.min, static_cast<double>(camera.height)});
     read_lens(table, camera);
-    camera.rate_hz = table.number("rate_hz", {0.1, 1000.0});
-    camera.depth_min_m = table.number("depth_min_m", {0.0, kDepthLargest_m}, camera.depth_min_m);
-    camera.depth_max_m = table.number("depth_max_m", {0.0, kDepthLargest_m}, camera.depth_max_m);
+    camera.rate_hz = table.number(keys::camera::kRate);
+    camera.depth_min_m = table.number(keys::camera::kDepthMin);
+    camera.depth_max_m = table.number(keys::camera::kDepthMax);
     if (!(camera.depth_min_m < camera.depth_max_m))
-        table.fail("depth_max_m", "expected more than depth_min_m");
-    if (const Value* data_set = table.find("data_set"))
-        camera.data_set = read_data_set(*data_set, table.path_of("data_set"));
-    camera.T_base_camera = read_pose(table.require("pose"), table.path_of("pose"),
-                                     {.reach_m = kRoomReachM, .may_look_at_point = true});
+        table.fail(keys::camera::kDepthMax, "expected more than depth_min_m");
+    if (const Value* data_set = table.find(keys::camera::kDataSet))
+        camera.data_set = read_data_set(*data_set, table.path_of(keys::camera::kDataSet));
+    camera.T_base_camera = read_pose(table.require(keys::camera::kPose), table.path_of(keys::camera::kPose),
+                                     {.reach_m = keys::kRoomReach_m, .may_look_at_point = true});
     return camera;
 }
 

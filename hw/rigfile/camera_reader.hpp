@@ -6,9 +6,6 @@
 
 namespace octoskin::rig {
 
-/// Greatest distance of a part of the rig from its base, per coordinate.
-inline constexpr double kRoomReachM = 100.0;
-
 /// `camera` of a rig. Throws Fault: a key, a type, a range, or a lens for which a pixel has no ray or two
 /// rays.
 [[nodiscard]] Camera read_camera(const Value& value);

@@ -3,21 +3,47 @@
 
 #include <iterator>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/rig_keys.hpp"
 
 namespace octoskin::rig {
 namespace {
 
-/// Text under construction, one "key: value" line at a time.
+/// Text under construction, one "key: value" line at a time. `indent` is the beginning of the line: blanks,
+/// and a hyphen before the first key of an item.
 class Writer {
   public:
-    template <class... Args>
-    void line(fmt::format_string<Args...> format, Args&&... args) {
-        fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-        text_ += '\n';
+    void entry(std::string_view indent, const DeclaredKey auto& key, const auto& value) {
+        fmt::format_to(std::back_inserter(text_), "{}{}: {}\n", indent, name_of(key), value);
+    }
+    /// A key that a rig chooses: the name of a link.
+    void entry(std::string_view indent, const std::string& key, const auto& value) {
+        fmt::format_to(std::back_inserter(text_), "{}{}: {}\n", indent, key, value);
+    }
+    /// The key of a table or list whose items follow.
+    void open(std::string_view indent, const DeclaredKey auto& key) {
+        fmt::format_to(std::back_inserter(text_), "{}{}:\n", indent, name_of(key));
+    }
+    void item(std::string_view indent, const auto& value) {
+        fmt::format_to(std::back_inserter(text_), "{}- {}\n", indent, value);
     }
     [[nodiscard]] std::string take() { return std::move(text_); }
+
+  private:
+    std::string text_;
+};
+
+/// A table on one line: "{k1: 0, k2: 1}".
+class FlowTable {
+  public:
+    FlowTable& entry(const DeclaredKey auto& key, const auto& value) {
+        text_ += fmt::format("{}{}: {}", text_.empty() ? "{" : ", ", name_of(key), value);
+        return *this;
+    }
+    [[nodiscard]] std::string take() { return std::move(text_) + "}"; }
 
   private:
     std::string text_;
@@ -35,8 +61,11 @@ std::string list(const Eigen::Vector3d& v) {
 /// The rotation as a matrix: a quaternion would not read back to the same matrix bit for bit.
 std::string pose(const Eigen::Isometry3d& T) {
     const Eigen::Matrix3d rows = T.linear().transpose();
-    return fmt::format("{{xyz_m: {}, rotation_rows: [{}, {}, {}]}}", list(T.translation()), list(rows.col(0)),
-                       list(rows.col(1)), list(rows.col(2)));
+    return FlowTable()
+        .entry(keys::pose::kPosition, list(T.translation()))
+        .entry(keys::pose::kRotationRows,
+               fmt::format("[{}, {}, {}]", list(rows.col(0)), list(rows.col(1)), list(rows.col(2))))
+        .take();
 }
 
 std::string quoted(const std::string& text) {
@@ -48,164 +77,183 @@ std::string quoted(const std::string& text) {
     return out + '"';
 }
 
-const char* word(DistanceMode mode) {
-    if (mode == DistanceMode::short_range) return "short";
-    return mode == DistanceMode::medium_range ? "medium" : "long";
-}
-
-const char* word(StreamGate gate) {
-    switch (gate) {
-        case StreamGate::off:
-            return "'off'";
-        case StreamGate::differs:
-            return "differs";
-        case StreamGate::advanced:
-            break;
-    }
-    return "advanced";
+/// A word that YAML 1.1 reads as false is quoted.
+std::string word(StreamGate gate) {
+    const std::string_view plain = word_of(keys::node::kStreamGate, gate);
+    return plain == "off" ? "'off'" : std::string(plain);
 }
 
 void write_robot(Writer& out, const Rig& rig, const std::string& urdf) {
-    out.line("robot:");
-    out.line("  urdf: {}", quoted(urdf));
-    out.line("  base_link: {}", quoted(rig.base_link));
-    if (!rig.link_padding_m.empty()) out.line("  link_padding_m:");
+    out.open("", keys::kRobotTable);
+    out.entry("  ", keys::robot::kUrdf, quoted(urdf));
+    out.entry("  ", keys::robot::kBaseLink, quoted(rig.base_link));
+    if (!rig.link_padding_m.empty()) out.open("  ", keys::robot::kLinkPadding);
     for (const auto& [link, padding_m] : rig.link_padding_m)
-        out.line("    {}: {}", quoted(link), number(padding_m));
+        out.entry("    ", quoted(link), number(padding_m));
     // Left out if they have their default: rigs without these keys keep the hash from before the keys
     // existed.
-    if (rig.fits_capsules) out.line("  fits_capsules: true");
-    if (!rig.attached_capsules.empty()) out.line("  attached_capsules:");
+    if (rig.fits_capsules) out.entry("  ", keys::robot::kFitsCapsules, rig.fits_capsules);
+    if (!rig.attached_capsules.empty()) out.open("  ", keys::robot::kAttachedCapsules);
     for (const AttachedCapsule& capsule : rig.attached_capsules) {
-        out.line("    - {{name: {}, link: {}, from_m: {}, to_m: {}, radius_m: {}, padding_m: {}}}",
-                 quoted(capsule.name), quoted(capsule.link), list(capsule.p_link_a), list(capsule.p_link_b),
-                 number(capsule.radius_m), number(capsule.padding_m));
+        out.item("    ", FlowTable()
+                             .entry(keys::capsule::kName, quoted(capsule.name))
+                             .entry(keys::capsule::kLink, quoted(capsule.link))
+                             .entry(keys::capsule::kFrom, list(capsule.p_link_a))
+                             .entry(keys::capsule::kTo, list(capsule.p_link_b))
+                             .entry(keys::capsule::kRadius, number(capsule.radius_m))
+                             .entry(keys::capsule::kPadding, number(capsule.padding_m))
+                             .take());
     }
-    if (!rig.links_without_body.empty()) out.line("  links_without_body:");
-    for (const auto& link : rig.links_without_body) out.line("    - {}", quoted(link));
-    if (!rig.links_ignored_by_sensors.empty()) out.line("  links_ignored_by_sensors:");
-    for (const auto& link : rig.links_ignored_by_sensors) out.line("    - {}", quoted(link));
-    out.line("  depth_self_margin_m: {}", number(rig.depth_self_margin_m));
-    out.line("  range_self_margin_m: {}", number(rig.range_self_margin_m));
+    if (!rig.links_without_body.empty()) out.open("  ", keys::robot::kLinksWithoutBody);
+    for (const auto& link : rig.links_without_body) out.item("    ", quoted(link));
+    if (!rig.links_ignored_by_sensors.empty()) out.open("  ", keys::robot::kLinksIgnoredBySensors);
+    for (const auto& link : rig.links_ignored_by_sensors) out.item("    ", quoted(link));
+    out.entry("  ", keys::robot::kDepthSelfMargin, number(rig.depth_self_margin_m));
+    out.entry("  ", keys::robot::kRangeSelfMargin, number(rig.range_self_margin_m));
 }
 
 void write_bus(Writer& out, const Bus& bus) {
-    out.line("bus:");
-    out.line("  protocol: {}", bus.uses_can_fd ? "can_fd" : "can");
-    out.line("  nominal_bitrate_bps: {}", bus.nominal_bitrate);
-    if (bus.uses_can_fd) out.line("  data_bitrate_bps: {}", bus.data_bitrate);
+    out.open("", keys::kBusTable);
+    out.entry("  ", keys::bus::kProtocol, word_of(keys::bus::kProtocol, bus.uses_can_fd));
+    out.entry("  ", keys::bus::kNominalBitrate, bus.nominal_bitrate);
+    if (bus.uses_can_fd) out.entry("  ", keys::bus::kDataBitrate, bus.data_bitrate);
 }
 
 void write_joints(Writer& out, const JointSource& joints) {
-    out.line("joints:");
-    out.line("  node_id: {}", joints.node_id);
-    out.line("  rate_hz: {}", number(joints.rate_hz));
-    out.line("  names:");
-    for (const auto& name : joints.joints) out.line("    - {}", quoted(name));
+    out.open("", keys::kJointsTable);
+    out.entry("  ", keys::joints::kNodeId, joints.node_id);
+    out.entry("  ", keys::joints::kRate, number(joints.rate_hz));
+    out.open("  ", keys::joints::kNames);
+    for (const auto& name : joints.joints) out.item("    ", quoted(name));
 }
 
 void write_camera(Writer& out, const Camera& camera) {
-    out.line("camera:");
-    out.line("  width_px: {}", camera.width);
-    out.line("  height_px: {}", camera.height);
-    out.line("  fx_px: {}", number(camera.fx));
-    out.line("  fy_px: {}", number(camera.fy));
-    out.line("  cx_px: {}", number(camera.cx));
-    out.line("  cy_px: {}", number(camera.cy));
+    out.open("", keys::kCameraTable);
+    out.entry("  ", keys::camera::kWidth, camera.width);
+    out.entry("  ", keys::camera::kHeight, camera.height);
+    out.entry("  ", keys::camera::kFx, number(camera.fx));
+    out.entry("  ", keys::camera::kFy, number(camera.fy));
+    out.entry("  ", keys::camera::kCx, number(camera.cx));
+    out.entry("  ", keys::camera::kCy, number(camera.cy));
     if (const LensDistortion& lens = camera.lens; !lens.is_none()) {
-        out.line("  distortion: {{k1: {}, k2: {}, p1: {}, p2: {}, k3: {}}}", number(lens.k1), number(lens.k2),
-                 number(lens.p1), number(lens.p2), number(lens.k3));
+        out.entry("  ", keys::camera::kDistortion,
+                  FlowTable()
+                      .entry(keys::distortion::kK1, number(lens.k1))
+                      .entry(keys::distortion::kK2, number(lens.k2))
+                      .entry(keys::distortion::kP1, number(lens.p1))
+                      .entry(keys::distortion::kP2, number(lens.p2))
+                      .entry(keys::distortion::kK3, number(lens.k3))
+                      .take());
     }
-    out.line("  rate_hz: {}", number(camera.rate_hz));
-    out.line("  depth_min_m: {}", number(camera.depth_min_m));
-    out.line("  depth_max_m: {}", number(camera.depth_max_m));
+    out.entry("  ", keys::camera::kRate, number(camera.rate_hz));
+    out.entry("  ", keys::camera::kDepthMin, number(camera.depth_min_m));
+    out.entry("  ", keys::camera::kDepthMax, number(camera.depth_max_m));
     // Left out if they have their default, as is a lens without distortion: rigs without these keys keep the
     // hash from before the keys existed.
     const DataSetDepth depth = camera.data_set.depth();
     const double gap_ms = camera.data_set.pose_gap_max_ms;
-    const bool has_gap = gap_ms != DataSetKeys{}.pose_gap_max_ms;
+    const bool has_gap = gap_ms != keys::data_set::kPoseGapMax.fallback.value;
     if (depth != DataSetDepth{} || has_gap) {
-        out.line("  data_set: {{depth_units_per_m: {}, depth_no_value: {}{}}}", number(depth.units_per_m),
-                 depth.no_value, has_gap ? ", pose_gap_max_ms: " + number(gap_ms) : "");
+        FlowTable data_set;
+        data_set.entry(keys::data_set::kDepthUnits, number(depth.units_per_m))
+            .entry(keys::data_set::kDepthNoValue, depth.no_value);
+        if (has_gap) data_set.entry(keys::data_set::kPoseGapMax, number(gap_ms));
+        out.entry("  ", keys::camera::kDataSet, data_set.take());
     }
-    out.line("  pose: {}", pose(camera.T_base_camera));
+    out.entry("  ", keys::camera::kPose, pose(camera.T_base_camera));
 }
 
 void write_board(Writer& out, const Board& board) {
-    out.line("    board:");
-    out.line("      name: {}", quoted(board.name));
-    out.line("      board_type: {}", board.board_type);
-    out.line("      i2c_bus_count: {}", board.i2c_bus_count);
-    out.line("      xshut_line_count: {}", board.xshut_line_count);
-    out.line("      sensors_max: {}", board.sensors_max);
-    out.line("      sensors_per_bus_max: {}", board.sensors_per_bus_max);
-    out.line("      supports_can_fd: {}", board.supports_can_fd);
-    out.line("      has_data_ready_lines: {}", board.has_data_ready_lines);
+    out.open("    ", keys::node::kBoard);
+    out.entry("      ", keys::board::kName, quoted(board.name));
+    out.entry("      ", keys::board::kBoardType, board.board_type);
+    out.entry("      ", keys::board::kI2cBusCount, board.i2c_bus_count);
+    out.entry("      ", keys::board::kXshutLineCount, board.xshut_line_count);
+    out.entry("      ", keys::board::kSensorsMax, board.sensors_max);
+    out.entry("      ", keys::board::kSensorsPerBusMax, board.sensors_per_bus_max);
+    out.entry("      ", keys::board::kSupportsCanFd, board.supports_can_fd);
+    out.entry("      ", keys::board::kHasDataReadyLines, board.has_data_ready_lines);
 }
 
 void write_sensor(Writer& out, const Sensor& sensor, const SensorConfig& config) {
-    out.line("      - name: {}", quoted(sensor.name));
-    out.line("        link: {}", quoted(sensor.link));
-    out.line("        pose: {}", pose(sensor.T_link_sensor));
-    out.line("        bus: {}", config.bus);
-    out.line("        xshut_line: {}", config.xshut_line);
-    out.line("        address: 0x{:02x}", config.address);
-    out.line("        distance_mode: {}", word(config.distance_mode));
-    out.line("        timing_budget_ms: {}", config.timing_budget_ms);
-    out.line("        inter_measurement_ms: {}", config.inter_measurement_ms);
-    out.line("        phase_us: {}", config.phase_us);
-    if (config.has_offset) out.line("        device_offset_mm: {}", number(config.offset_quarter_mm / 4.0));
-    out.line("        crosstalk_kcps: {}", number(config.crosstalk_raw / 512.0));
-    out.line("        sigma_limit_mm: {}", number(config.sigma_limit_quarter_mm / 4.0));
-    out.line("        signal_limit_mcps: {}", number(config.signal_limit_raw / 128.0));
+    out.entry("      - ", keys::sensor::kName, quoted(sensor.name));
+    out.entry("        ", keys::sensor::kLink, quoted(sensor.link));
+    out.entry("        ", keys::sensor::kPose, pose(sensor.T_link_sensor));
+    out.entry("        ", keys::sensor::kBus, config.bus);
+    out.entry("        ", keys::sensor::kXshutLine, config.xshut_line);
+    out.entry("        ", keys::sensor::kAddress, fmt::format("0x{:02x}", config.address));
+    out.entry("        ", keys::sensor::kDistanceMode,
+              word_of(keys::sensor::kDistanceMode, config.distance_mode));
+    out.entry("        ", keys::sensor::kTimingBudget, config.timing_budget_ms);
+    out.entry("        ", keys::sensor::kInterMeasurement, config.inter_measurement_ms);
+    out.entry("        ", keys::sensor::kPhase, config.phase_us);
+    if (config.has_offset)
+        out.entry("        ", keys::sensor::kDeviceOffset,
+                  number(config.offset_quarter_mm / keys::sensor::kQuartersPer_mm));
+    out.entry("        ", keys::sensor::kCrosstalk,
+              number(config.crosstalk_raw / keys::sensor::kCrosstalkStepsPer_kcps));
+    out.entry("        ", keys::sensor::kSigmaLimit,
+              number(config.sigma_limit_quarter_mm / keys::sensor::kQuartersPer_mm));
+    out.entry("        ", keys::sensor::kSignalLimit,
+              number(config.signal_limit_raw / keys::sensor::kSignalStepsPer_mcps));
     if (config.reflex_below_mm > 0) {
-        out.line("        reflex_below_m: {}", number(config.reflex_below_mm / 1000.0));
+        out.entry("        ", keys::sensor::kReflexBelow, number(config.reflex_below_mm / 1000.0));
     }
-    out.line("        applies_gain_factor: {}", config.applies_gain_factor);
-    out.line("        zones:");
+    out.entry("        ", keys::sensor::kAppliesGainFactor, config.applies_gain_factor);
+    out.open("        ", keys::sensor::kZones);
     for (std::size_t i = 0; i < config.zone_count; ++i) {
         const Roi& roi = config.zones[i];
-        out.line("          - {{centre_spad: {}, width_spads: {}, height_spads: {}, offset_m: {}}}",
-                 roi.centre_spad, roi.width, roi.height, number(sensor.zone_offset_m[i]));
+        out.item("          ", FlowTable()
+                                   .entry(keys::zone::kCentre, roi.centre_spad)
+                                   .entry(keys::zone::kWidth, roi.width)
+                                   .entry(keys::zone::kHeight, roi.height)
+                                   .entry(keys::zone::kOffset, number(sensor.zone_offset_m[i]))
+                                   .take());
     }
     if (sensor.cone) {
-        out.line("        cone: {{sub_rays: {}, half_angle_deg: {}, sigma_deg: {}, blur_deg: {}}}",
-                 sensor.cone->sub_rays, number(sensor.cone->half_angle_deg), number(sensor.cone->sigma_deg),
-                 number(sensor.cone->blur_deg));
+        out.entry("        ", keys::sensor::kCone,
+                  FlowTable()
+                      .entry(keys::cone::kSubRays, sensor.cone->sub_rays)
+                      .entry(keys::cone::kHalfAngle, number(sensor.cone->half_angle_deg))
+                      .entry(keys::cone::kSigma, number(sensor.cone->sigma_deg))
+                      .entry(keys::cone::kBlur, number(sensor.cone->blur_deg))
+                      .take());
     }
 }
 
 /// Left out if it has its default: rigs without these keys keep the hash from before the keys existed.
 void write_verification(Writer& out, const NodeConfig& config) {
     if (config.verifies_registers && config.left_out_count == 0) return;
-    out.line("    verification:");
-    out.line("      enabled: {}", config.verifies_registers);
-    if (config.left_out_count > 0) out.line("      leave_out:");
+    out.open("    ", keys::node::kVerification);
+    out.entry("      ", keys::verification::kEnabled, config.verifies_registers);
+    if (config.left_out_count > 0) out.open("      ", keys::verification::kLeaveOut);
     for (std::size_t i = 0; i < config.left_out_count; ++i)
-        out.line("        - 0x{:02x}", config.left_out[i]);
+        out.item("        ", fmt::format("0x{:02x}", config.left_out[i]));
 }
 
 void write_node(Writer& out, const Node& node) {
-    out.line("  - name: {}", quoted(node.name));
-    out.line("    node_id: {}", node.config.node_id);
+    out.entry("  - ", keys::node::kName, quoted(node.name));
+    out.entry("    ", keys::node::kNodeId, node.config.node_id);
     write_board(out, node.board);
-    out.line("    i2c_hz: {}", node.config.i2c_hz);
-    out.line("    io_level: {}", node.config.is_io_2v8 ? "2v8" : "1v8");
-    out.line("    reads_twice: {}", node.config.reads_twice);
-    out.line("    stream_gate: {}", word(node.config.stream_gate));
-    out.line("    aux_every: {}", node.config.aux_every);
-    out.line("    zone_guard_us: {}", node.config.zone_guard_us);
-    out.line("    holds_phases: {}", node.config.holds_phases);
-    if (node.config.data_ready_buses != 0) out.line("    data_ready_buses:");
+    out.entry("    ", keys::node::kI2cHz, node.config.i2c_hz);
+    out.entry("    ", keys::node::kIoLevel, word_of(keys::node::kIoLevel, node.config.is_io_2v8));
+    out.entry("    ", keys::node::kReadsTwice, node.config.reads_twice);
+    out.entry("    ", keys::node::kStreamGate, word(node.config.stream_gate));
+    out.entry("    ", keys::node::kAuxEvery, node.config.aux_every);
+    out.entry("    ", keys::node::kZoneGuard, node.config.zone_guard_us);
+    out.entry("    ", keys::node::kHoldsPhases, node.config.holds_phases);
+    if (node.config.data_ready_buses != 0) out.open("    ", keys::node::kDataReadyBuses);
     for (std::uint8_t bus = 0; bus < kNodeBusesMax; ++bus) {
-        if ((node.config.data_ready_buses >> bus & 1U) != 0) out.line("      - {}", bus);
+        if ((node.config.data_ready_buses >> bus & 1U) != 0) out.item("      ", bus);
     }
     if (node.config.ready_jitter_us != kReadyJitterMinUs)
-        out.line("    ready_jitter_us: {}", node.config.ready_jitter_us);
+        out.entry("    ", keys::node::kReadyJitter, node.config.ready_jitter_us);
     write_verification(out, node.config);
-    if (node.config.refuses_commands) out.line("    refuses_commands: true");
-    if (node.pinned_build_id) out.line("    pinned_build_id: 0x{:08x}", *node.pinned_build_id);
-    out.line("    sensors:");
+    if (node.config.refuses_commands)
+        out.entry("    ", keys::node::kRefusesCommands, node.config.refuses_commands);
+    if (node.pinned_build_id)
+        out.entry("    ", keys::node::kPinnedBuildId, fmt::format("0x{:08x}", *node.pinned_build_id));
+    out.open("    ", keys::node::kSensors);
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {
         write_sensor(out, node.sensors[i], node.config.sensors[i]);
     }
@@ -215,18 +263,19 @@ void write_node(Writer& out, const Node& node) {
 
 std::string canonical_text(const Rig& rig, const std::string& urdf) {
     Writer out;
-    out.line("name: {}", quoted(rig.name));
+    out.entry("", keys::kName, quoted(rig.name));
     write_robot(out, rig, urdf);
-    out.line("T_map_base: {}", pose(rig.T_map_base));
+    out.entry("", keys::kMapBase, pose(rig.T_map_base));
     write_bus(out, rig.bus);
-    out.line("range_limits:");
-    out.line("  min_m: {}", number(rig.range_limits.min_m));
-    out.line("  max_m: {}", number(rig.range_limits.max_m));
-    out.line("  sigma_max_m: {}", number(rig.range_limits.sigma_max_m));
-    out.line("  time_uncertainty_max_ms: {}", number(rig.range_limits.time_uncertainty_max_ms));
+    out.open("", keys::kRangeLimitsTable);
+    out.entry("  ", keys::range_limits::kMin, number(rig.range_limits.min_m));
+    out.entry("  ", keys::range_limits::kMax, number(rig.range_limits.max_m));
+    out.entry("  ", keys::range_limits::kSigmaMax, number(rig.range_limits.sigma_max_m));
+    out.entry("  ", keys::range_limits::kTimeUncertaintyMax,
+              number(rig.range_limits.time_uncertainty_max_ms));
     write_joints(out, rig.joints);
     if (rig.camera) write_camera(out, *rig.camera);
-    out.line("nodes:");
+    out.open("", keys::kNodes);
     for (const Node& node : rig.nodes) write_node(out, node);
     return out.take();
 }

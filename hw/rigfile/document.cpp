@@ -16,6 +16,7 @@
 
 #include "host/io/folder/confined.hpp"
 #include "hw/rigfile/nesting.hpp"
+#include "hw/rigfile/rig_keys.hpp"
 #include "hw/rigfile/syntax_hint.hpp"
 
 namespace octoskin::rig {
@@ -180,8 +181,9 @@ class TreeBuilder final : public YAML::EventHandler {
     Value root_;
 };
 
-constexpr std::array<std::string_view, 4> kOrientationKeys = {"rpy_deg", "quaternion_wxyz", "rotation_rows",
-                                                              "looking_at_m"};
+constexpr std::array<std::string_view, 4> kOrientationKeys = {
+    name_of(keys::pose::kRollPitchYaw), name_of(keys::pose::kQuaternion), name_of(keys::pose::kRotationRows),
+    name_of(keys::pose::kLookingAt)};
 
 bool is_orientation(const Value& item) {
     return std::find(kOrientationKeys.begin(), kOrientationKeys.end(), item.key) != kOrientationKeys.end();
@@ -213,10 +215,11 @@ void merge_item(Value& base, const Value& item) {
 
 /// The file that `extends:` names, or none. Removes the key.
 FilePlace take_extends(Value& document) {
-    const Value* extends = document.find("extends");
+    constexpr std::string_view kKey = name_of(keys::kExtends);
+    const Value* extends = document.find(kKey);
     if (!extends) return {};
-    auto path = existing_file(*extends, "extends");
-    std::erase_if(document.items, [](const Value& item) { return item.key == "extends"; });
+    auto path = existing_file(*extends, std::string(kKey));
+    std::erase_if(document.items, [kKey](const Value& item) { return item.key == kKey; });
     return path;
 }
 
@@ -317,7 +320,7 @@ Value load_with_extends(const FilePlace& file, std::vector<FilePlace>* extended)
         if (extended != nullptr) extended->push_back(next);
         if (layers.size() == kExtendsMax) {
             throw Fault{
-                {file.shown(), 0, "extends",
+                {file.shown(), 0, std::string(name_of(keys::kExtends)),
                  fmt::format(
                      "expected at most {} files that extend each other, found more: is there a circle?",
                      kExtendsMax)}};

@@ -9,9 +9,6 @@
 namespace octoskin::rig {
 namespace {
 
-constexpr double kQuaternionTolerance = 1e-6;
-constexpr double kMatrixTolerance = 1e-9;
-
 std::vector<double> read_numbers(const Value& value, const std::string& path, std::size_t count,
                                  double limit) {
     if (value.kind != Value::Kind::list || value.items.size() != count) {
@@ -23,7 +20,8 @@ std::vector<double> read_numbers(const Value& value, const std::string& path, st
 }
 
 Eigen::Matrix3d read_rpy(const Value& value, const std::string& path) {
-    const auto degrees = read_numbers(value, path, 3, 360.0);
+    const auto degrees =
+        read_numbers(value, path, keys::pose::kRollPitchYaw.count, keys::pose::kRollPitchYaw.range.max);
     const auto turn = [&](std::size_t i, const Eigen::Vector3d& axis) {
         return Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180.0, axis).toRotationMatrix();
     };
@@ -32,9 +30,10 @@ Eigen::Matrix3d read_rpy(const Value& value, const std::string& path) {
 }
 
 Eigen::Matrix3d read_quaternion(const Value& value, const std::string& path) {
-    const auto wxyz = read_numbers(value, path, 4, 2.0);
+    const auto wxyz =
+        read_numbers(value, path, keys::pose::kQuaternion.count, keys::pose::kQuaternion.range.max);
     const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-    if (std::abs(q.norm() - 1.0) > kQuaternionTolerance) {
+    if (std::abs(q.norm() - 1.0) > keys::pose::kQuaternionTolerance) {
         fail(value, path,
              fmt::format("expected a quaternion of length 1, found length {}: divide by it", q.norm()));
     }
@@ -47,12 +46,12 @@ Eigen::Matrix3d read_rows(const Value& value, const std::string& path) {
     }
     Eigen::Matrix3d rotation;
     for (int row = 0; row < 3; ++row) {
-        const auto numbers =
-            read_numbers(value.items[static_cast<std::size_t>(row)], path, 3, 1.0 + kMatrixTolerance);
+        const auto numbers = read_numbers(value.items[static_cast<std::size_t>(row)], path, 3,
+                                          1.0 + keys::pose::kMatrixTolerance);
         rotation.row(row) << numbers[0], numbers[1], numbers[2];
     }
     const double skew = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (skew > kMatrixTolerance || rotation.determinant() < 0.0) {
+    if (skew > keys::pose::kMatrixTolerance || rotation.determinant() < 0.0) {
         fail(value, path, "expected a rotation: rows of length 1, at right angles, right-handed");
     }
     return rotation;
@@ -72,13 +71,6 @@ Eigen::Matrix3d read_looking_at(const Value& value, const std::string& path, con
     return rotation;
 }
 
-Table pose_table(const Value& value, const std::string& path, const PoseRules& rules) {
-    if (rules.may_look_at_point) {
-        return {value, path, {"xyz_m", "rpy_deg", "quaternion_wxyz", "rotation_rows", "looking_at_m"}};
-    }
-    return {value, path, {"xyz_m", "rpy_deg", "quaternion_wxyz", "rotation_rows"}};
-}
-
 }  // namespace
 
 Eigen::Vector3d read_position(const Value& value, const std::string& path, double reach_m) {
@@ -92,23 +84,27 @@ Eigen::Vector3d read_position(const Value& value, const std::string& path, doubl
     return position;
 }
 
+Eigen::Vector3d read_position(const Table& table, const NumbersKey& key) {
+    return read_position(table.require(key), table.path_of(key), key.range.max);
+}
+
 Eigen::Isometry3d read_pose(const Value& value, const std::string& path, const PoseRules& rules) {
-    const Table table = pose_table(value, path, rules);
+    const Table table(value, path, rules.may_look_at_point ? keys::kCameraPose : keys::kPose);
     Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
-    T_parent_child.translation() =
-        read_position(table.require("xyz_m"), table.path_of("xyz_m"), rules.reach_m);
+    T_parent_child.translation() = read_position(table.require(keys::pose::kPosition),
+                                                 table.path_of(keys::pose::kPosition), rules.reach_m);
 
     int orientations = 0;
-    const auto take = [&](std::string_view key, auto read) {
+    const auto take = [&](const DeclaredKey auto& key, auto read) {
         const Value* orientation = table.find(key);
         if (!orientation) return;
         ++orientations;
         T_parent_child.linear() = read(*orientation, table.path_of(key));
     };
-    take("rpy_deg", read_rpy);
-    take("quaternion_wxyz", read_quaternion);
-    take("rotation_rows", read_rows);
-    take("looking_at_m", [&](const Value& point, const std::string& point_path) {
+    take(keys::pose::kRollPitchYaw, read_rpy);
+    take(keys::pose::kQuaternion, read_quaternion);
+    take(keys::pose::kRotationRows, read_rows);
+    take(keys::pose::kLookingAt, [&](const Value& point, const std::string& point_path) {
         return read_looking_at(point, point_path, T_parent_child.translation(), rules.reach_m);
     });
     if (orientations != 1) {

@@ -16,6 +16,7 @@
 #include "hw/rigfile/node_reader.hpp"
 #include "hw/rigfile/pose.hpp"
 #include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/rig_keys.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/table.hpp"
 #include "hw/rigfile/urdf_document.hpp"
@@ -24,8 +25,8 @@ namespace octoskin::rig {
 namespace {
 
 UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_instead, Rig& rig) {
-    const Value& named = robot.require("urdf");
-    rig.urdf = urdf_instead.empty() ? existing_file(named, robot.path_of("urdf"))
+    const Value& named = robot.require(keys::robot::kUrdf);
+    rig.urdf = urdf_instead.empty() ? existing_file(named, robot.path_of(keys::robot::kUrdf))
                                     : confined_to_recording(urdf_instead);
     // Absolute, so that it stays valid if this process changes its working directory.
     if (rig.urdf.folder() == nullptr)
@@ -44,23 +45,24 @@ void require_link(const Value& value, const std::string& path, const std::string
 }
 
 void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig) {
-    rig.base_link = robot.element_name("base_link");
-    require_link(robot.require("base_link"), robot.path_of("base_link"), rig.base_link, document);
-    rig.depth_self_margin_m = robot.number("depth_self_margin_m", {0.0, 1.0}, rig.depth_self_margin_m);
-    rig.range_self_margin_m = robot.number("range_self_margin_m", {0.0, 1.0}, rig.range_self_margin_m);
-    if (const Value* paddings = robot.find("link_padding_m")) {
-        const std::string path = robot.path_of("link_padding_m");
+    rig.base_link = robot.text(keys::robot::kBaseLink);
+    require_link(robot.require(keys::robot::kBaseLink), robot.path_of(keys::robot::kBaseLink), rig.base_link,
+                 document);
+    rig.depth_self_margin_m = robot.number(keys::robot::kDepthSelfMargin);
+    rig.range_self_margin_m = robot.number(keys::robot::kRangeSelfMargin);
+    if (const Value* paddings = robot.find(keys::robot::kLinkPadding)) {
+        const std::string path = robot.path_of(keys::robot::kLinkPadding);
         if (paddings->kind != Value::Kind::table)
             fail(*paddings, path, "expected a table of link names and metres");
         for (const Value& padding : paddings->items) {
             const std::string entry = path + "." + padding.key;
             require_link(padding, entry, padding.key, document);
-            rig.link_padding_m[padding.key] = read_number(padding, entry, {0.0, 0.5});
+            rig.link_padding_m[padding.key] = read_number(padding, entry, keys::robot::kLinkPadding.range);
         }
     }
-    rig.fits_capsules = robot.flag("fits_capsules", false);
-    if (const Value* ignored = robot.find("links_ignored_by_sensors")) {
-        const std::string path = robot.path_of("links_ignored_by_sensors");
+    rig.fits_capsules = robot.flag(keys::robot::kFitsCapsules);
+    if (const Value* ignored = robot.find(keys::robot::kLinksIgnoredBySensors)) {
+        const std::string path = robot.path_of(keys::robot::kLinksIgnoredBySensors);
         for (const Value& link : read_list(*ignored, path)) {
             rig.links_ignored_by_sensors.push_back(read_element_name(link, path));
             require_link(link, path, link.text, document);
@@ -70,34 +72,34 @@ void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig
 
 AttachedCapsule read_attached(const Value& value, const std::string& path, const UrdfDocument& robot,
                               const Rig& rig) {
-    constexpr double kReachM = 2.0;
-    const Table table(value, path, {"name", "link", "from_m", "to_m", "radius_m", "padding_m"});
+    const Table table(value, path, keys::kAttachedCapsule);
     AttachedCapsule capsule;
-    capsule.name = table.name("name");
-    capsule.link = table.element_name("link");
-    require_link(table.require("link"), table.path_of("link"), capsule.link, robot);
+    capsule.name = table.text(keys::capsule::kName);
+    capsule.link = table.text(keys::capsule::kLink);
+    require_link(table.require(keys::capsule::kLink), table.path_of(keys::capsule::kLink), capsule.link,
+                 robot);
     if (!robot.is_below(rig.base_link, capsule.link)) {
-        table.fail("link",
+        table.fail(keys::capsule::kLink,
                    fmt::format("expected a link at or below {}, found '{}'", rig.base_link, capsule.link));
     }
-    capsule.p_link_a = read_position(table.require("from_m"), table.path_of("from_m"), kReachM);
-    capsule.p_link_b = capsule.p_link_a;
-    if (const Value* end = table.find("to_m"))
-        capsule.p_link_b = read_position(*end, table.path_of("to_m"), kReachM);
-    capsule.radius_m = table.number("radius_m", {0.001, 1.0});
-    capsule.padding_m = table.number("padding_m", {0.0, 0.5}, 0.0);
+    capsule.p_link_a = read_position(table, keys::capsule::kFrom);
+    capsule.p_link_b = table.find(keys::capsule::kTo) == nullptr ? capsule.p_link_a
+                                                                 : read_position(table, keys::capsule::kTo);
+    capsule.radius_m = table.number(keys::capsule::kRadius);
+    capsule.padding_m = table.number(keys::capsule::kPadding);
     for (const AttachedCapsule& other : rig.attached_capsules) {
         if (other.name == capsule.name)
-            table.fail("name", fmt::format("expected each name once, found '{}' again", capsule.name));
+            table.fail(keys::capsule::kName,
+                       fmt::format("expected each name once, found '{}' again", capsule.name));
     }
     return capsule;
 }
 
 void read_attached_capsules(const Table& robot, const UrdfDocument& document, Rig& rig) {
-    constexpr std::size_t kAttachedMax = 64;
-    const Value* const list = robot.find("attached_capsules");
+    constexpr std::size_t kAttachedMax = keys::robot::kAttachedCapsules.count.max;
+    const Value* const list = robot.find(keys::robot::kAttachedCapsules);
     if (list == nullptr) return;
-    const std::string path = robot.path_of("attached_capsules");
+    const std::string path = robot.path_of(keys::robot::kAttachedCapsules);
     for (const Value& item : read_list(*list, path)) {
         if (rig.attached_capsules.size() == kAttachedMax)
             fail(item, path, fmt::format("expected at most {} capsules, found more", kAttachedMax));
@@ -127,9 +129,9 @@ std::string body_of(const std::string& link, const UrdfDocument& robot, const Ri
 }
 
 void read_links_without_body(const Table& robot, const UrdfDocument& document, Rig& rig) {
-    const Value* const list = robot.find("links_without_body");
+    const Value* const list = robot.find(keys::robot::kLinksWithoutBody);
     if (list == nullptr) return;
-    const std::string path = robot.path_of("links_without_body");
+    const std::string path = robot.path_of(keys::robot::kLinksWithoutBody);
     for (const Value& item : read_list(*list, path)) {
         auto link = read_element_name(item, path);
         require_link(item, path, link, document);
@@ -147,25 +149,23 @@ void read_links_without_body(const Table& robot, const UrdfDocument& document, R
     }
 }
 
-std::uint32_t read_bitrate(const Table& bus, std::string_view key,
-                           std::initializer_list<std::int64_t> rates) {
-    const auto bitrate = bus.integer<std::int64_t>(key, {1, 8'000'000});
-    if (std::find(rates.begin(), rates.end(), bitrate) == rates.end()) {
-        bus.fail(key, fmt::format("expected one of {}, found {}", joined(rates), bitrate));
+std::uint32_t read_bitrate(const Table& bus, const IntegerKey& key) {
+    const auto bitrate = bus.integer<std::int64_t>(key);
+    if (std::ranges::find(key.values, bitrate) == key.values.end()) {
+        bus.fail(key, fmt::format("expected one of {}, found {}", joined(key.values), bitrate));
     }
     return static_cast<std::uint32_t>(bitrate);
 }
 
 Bus read_bus(const Value& value) {
-    const Table table(value, "bus", {"protocol", "nominal_bitrate_bps", "data_bitrate_bps"});
+    const Table table(value, std::string(name_of(keys::kBusTable)), keys::kBus);
     Bus bus;
-    bus.uses_can_fd = table.choice<bool>("protocol", {{"can", false}, {"can_fd", true}});
-    bus.nominal_bitrate = read_bitrate(table, "nominal_bitrate_bps", {125'000, 250'000, 500'000, 1'000'000});
+    bus.uses_can_fd = table.choice(keys::bus::kProtocol);
+    bus.nominal_bitrate = read_bitrate(table, keys::bus::kNominalBitrate);
     if (bus.uses_can_fd) {
-        bus.data_bitrate =
-            read_bitrate(table, "data_bitrate_bps", {1'000'000, 2'000'000, 4'000'000, 5'000'000, 8'000'000});
-    } else if (table.find("data_bitrate_bps")) {
-        table.fail("data_bitrate_bps",
+        bus.data_bitrate = read_bitrate(table, keys::bus::kDataBitrate);
+    } else if (table.find(keys::bus::kDataBitrate)) {
+        table.fail(keys::bus::kDataBitrate,
                    "expected none with protocol can: remove it (`~` removes an inherited key)");
     }
     return bus;
@@ -191,8 +191,8 @@ Bus read_bus(const Value& value) {
 
 std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument& robot,
                                           const std::string& base_link) {
-    const Value& list = table.require("names");
-    const std::string path = table.path_of("names");
+    const Value& list = table.require(keys::joints::kNames);
+    const std::string path = table.path_of(keys::joints::kNames);
     const auto moving = robot.moving_joints(base_link);
     std::vector<std::string> names;
     for (const Value& item : read_list(list, path)) {
@@ -222,31 +222,27 @@ std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument
 }
 
 JointSource read_joints(const Value& value, const UrdfDocument& robot, const Rig& rig) {
-    const Table table(value, "joints", {"node_id", "names", "rate_hz"});
+    const Table table(value, std::string(name_of(keys::kJointsTable)), keys::kJoints);
     JointSource joints;
-    joints.node_id = table.integer<std::uint8_t>("node_id", {1, kUnconfiguredNodeId - 1});
+    joints.node_id = table.integer<std::uint8_t>(keys::joints::kNodeId);
     for (const Node& node : rig.nodes) {
         if (node.config.node_id != joints.node_id) continue;
-        table.fail("node_id", fmt::format("expected a unique id, found {}: node '{}' has it", joints.node_id,
-                                          node.name));
+        table.fail(keys::joints::kNodeId, fmt::format("expected a unique id, found {}: node '{}' has it",
+                                                      joints.node_id, node.name));
     }
     joints.joints = read_joint_names(table, robot, rig.base_link);
-    joints.rate_hz = table.number("rate_hz", {1.0, 1000.0});
+    joints.rate_hz = table.number(keys::joints::kRate);
     return joints;
 }
 
 RangeLimits read_range_limits(const Value& value) {
-    // SENSOR_HEALTH reports a bound of up to 16.32 ms, which also stands for all greater values. The limit
-    // must be below it.
-    constexpr Range<double> kUncertaintyMs{0.1, 16.0};
-    const Table table(value, "range_limits", {"min_m", "max_m", "sigma_max_m", "time_uncertainty_max_ms"});
-    RangeLimits limits;
-    limits.min_m = table.number("min_m", {0.0, 8.0}, limits.min_m);
-    limits.max_m = table.number("max_m", {0.0, 8.0}, limits.max_m);
-    limits.sigma_max_m = table.number("sigma_max_m", {0.001, 1.0}, limits.sigma_max_m);
-    limits.time_uncertainty_max_ms =
-        table.number("time_uncertainty_max_ms", kUncertaintyMs, limits.time_uncertainty_max_ms);
-    if (!(limits.min_m < limits.max_m)) table.fail("max_m", "expected more than min_m");
+    const Table table(value, std::string(name_of(keys::kRangeLimitsTable)), keys::kRangeLimits);
+    const RangeLimits limits{
+        .min_m = table.number(keys::range_limits::kMin),
+        .max_m = table.number(keys::range_limits::kMax),
+        .sigma_max_m = table.number(keys::range_limits::kSigmaMax),
+        .time_uncertainty_max_ms = table.number(keys::range_limits::kTimeUncertaintyMax)};
+    if (!(limits.min_m < limits.max_m)) table.fail(keys::range_limits::kMax, "expected more than min_m");
     return limits;
 }
 
@@ -254,7 +250,7 @@ void refuse_overloaded_bus(const Table& top, const Rig& rig) {
     const double load = can_load(rig);
     if (load <= wire::kBusLoadLimit) return;
     top.fail(
-        "bus",
+        keys::kBusTable,
         fmt::format("expected a CAN load of at most {:.0f} %, found {:.1f} % in the worst case: use a longer "
                     "inter_measurement_ms, a higher bitrate, can_fd, or fewer sensors",
                     100.0 * wire::kBusLoadLimit, 100.0 * load));
@@ -263,28 +259,23 @@ void refuse_overloaded_bus(const Table& top, const Rig& rig) {
 Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instead) {
     Rig rig;
     const Value document = load_with_extends(file, &rig.extended_files);
-    // `extends` is already removed; it is listed for the hint about an unknown key.
-    const Table top(document, "",
-                    {"name", "robot", "T_map_base", "bus", "range_limits", "joints", "camera",
-                     "sensor_defaults", "nodes", "extends"});
-    rig.name = top.folder_name("name");
-    const Table robot(
-        top.require("robot"), "robot",
-        {"urdf", "base_link", "link_padding_m", "fits_capsules", "attached_capsules", "links_without_body",
-         "links_ignored_by_sensors", "depth_self_margin_m", "range_self_margin_m"});
+    const Table top(document, "", keys::kTop);
+    rig.name = top.text(keys::kName);
+    const Table robot(top.require(keys::kRobotTable), top.path_of(keys::kRobotTable), keys::kRobot);
     const UrdfDocument urdf = read_robot(robot, urdf_instead, rig);
     read_self_filter(robot, urdf, rig);
     read_attached_capsules(robot, urdf, rig);
     read_links_without_body(robot, urdf, rig);
-    if (const Value* pose = top.find("T_map_base")) {
-        rig.T_map_base = read_pose(*pose, "T_map_base", {.reach_m = kRoomReachM});
+    if (const Value* pose = top.find(keys::kMapBase)) {
+        rig.T_map_base = read_pose(*pose, top.path_of(keys::kMapBase), {.reach_m = keys::kRoomReach_m});
     }
-    rig.bus = read_bus(top.require("bus"));
-    if (const Value* limits = top.find("range_limits")) rig.range_limits = read_range_limits(*limits);
-    if (const Value* camera = top.find("camera")) rig.camera = read_camera(*camera);
-    rig.nodes = read_nodes(top.require("nodes"), "nodes",
-                           {urdf, rig.base_link, rig.bus, top.find("sensor_defaults")});
-    rig.joints = read_joints(top.require("joints"), urdf, rig);
+    rig.bus = read_bus(top.require(keys::kBusTable));
+    if (const Value* limits = top.find(keys::kRangeLimitsTable))
+        rig.range_limits = read_range_limits(*limits);
+    if (const Value* camera = top.find(keys::kCameraTable)) rig.camera = read_camera(*camera);
+    rig.nodes = read_nodes(top.require(keys::kNodes), top.path_of(keys::kNodes),
+                           {urdf, rig.base_link, rig.bus, top.find(keys::kSensorDefaults)});
+    rig.joints = read_joints(top.require(keys::kJointsTable), urdf, rig);
     refuse_overloaded_bus(top, rig);
     return rig;
 }

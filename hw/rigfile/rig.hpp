@@ -65,6 +65,8 @@ struct JointSource {
 
 /// Depth images are in millimetres of 16 bits.
 inline constexpr double kDepthLargest_m = 65.5;
+inline constexpr double kDepthMinDefault_m = 0.5;
+inline constexpr double kDepthMaxDefault_m = 4.5;
 
 struct Camera {
     std::uint32_t width = 0;
@@ -72,8 +74,8 @@ struct Camera {
     double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
     LensDistortion lens = {};  ///< checked on load: every pixel has one ray
     double rate_hz = 0.0;
-    double depth_min_m = 0.5;
-    double depth_max_m = 4.5;
+    double depth_min_m = kDepthMinDefault_m;
+    double depth_max_m = kDepthMaxDefault_m;
     Eigen::Isometry3d T_base_camera =
         Eigen::Isometry3d::Identity();  ///< optical frame: z forward, x right, y down
     DataSetKeys data_set = {};
@@ -106,6 +108,9 @@ struct RangeLimits {
         5.0;  ///< of a capture time: the sum of the clock map's bound and the node's
 };
 
+inline constexpr double kDepthSelfMarginDefault_m = 0.09;
+inline constexpr double kRangeSelfMarginDefault_m = 0.12;
+
 struct Rig {
     std::vector<FilePlace> extended_files;  ///< the files that its file extends, the nearest first
     std::string name;
@@ -119,8 +124,10 @@ struct Rig {
     std::vector<std::string> links_without_body;
     /// Links ignored when the host predicts where a sensor's beam meets the robot (the sensor's own mount).
     std::vector<std::string> links_ignored_by_sensors;
-    double depth_self_margin_m = 0.09;  ///< depth points this close to a capsule's surface are the robot
-    double range_self_margin_m = 0.12;  ///< ranges beyond (predicted self-hit - this) are the robot
+    /// Depth points this close to a capsule's surface are the robot.
+    double depth_self_margin_m = kDepthSelfMarginDefault_m;
+    /// Ranges beyond (predicted self-hit - this) are the robot.
+    double range_self_margin_m = kRangeSelfMarginDefault_m;
     Bus bus;
     std::vector<Node> nodes;
     JointSource joints;

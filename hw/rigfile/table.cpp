@@ -242,6 +242,9 @@ Table::Table(const Value& value, std::string path, std::span<const std::string_v
     }
 }
 
+Table::Table(const Value& value, std::string path, const KeyTable& declared)
+    : Table(value, std::move(path), names_of(declared)) {}
+
 std::string Table::path_of(std::string_view key) const {
     return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
@@ -300,6 +303,24 @@ std::string Table::folder_name(std::string_view key) const {
 std::string Table::text(std::string_view key) const {
     const Value* found = find(key);
     return found ? read_text(*found, path_of(key)) : "";
+}
+
+std::string Table::text(const TextKey& key) const {
+    switch (key.kind) {
+        case TextKind::name:
+            return name(name_of(key));
+        case TextKind::folder_name:
+            return folder_name(name_of(key));
+        case TextKind::element_name:
+            return element_name(name_of(key));
+        case TextKind::path:
+            break;
+    }
+    return read_text(require(key), path_of(key));
+}
+
+const std::vector<Value>& Table::list(const ListKey& key) const {
+    return read_list(require(key), path_of(key));
 }
 
 void Table::fail(std::string_view key, std::string what) const {

@@ -14,15 +14,9 @@
 #include <vector>
 
 #include "hw/rigfile/document.hpp"
+#include "hw/rigfile/key.hpp"
 
 namespace octoskin::rig {
-
-/// The least and the greatest value allowed.
-template <class T>
-struct Range {
-    T min;
-    T max;
-};
 
 /// Throws Fault with the file and line of `value`.
 [[noreturn]] void fail(const Value& value, const std::string& path, std::string what);
@@ -51,12 +45,46 @@ class Table {
     Table(const Value& value, std::string path, std::initializer_list<std::string_view> known_keys,
           std::span<const std::string> keys_below = {})
         : Table(value, std::move(path), std::span(known_keys.begin(), known_keys.size()), keys_below) {}
+    /// The keys that are declared for it.
+    Table(const Value& value, std::string path, const KeyTable& declared);
 
     [[nodiscard]] const Value& value() const noexcept { return value_; }
     [[nodiscard]] std::string path_of(std::string_view key) const;
     /// nullptr if the key is absent or null.
     [[nodiscard]] const Value* find(std::string_view key) const noexcept;
     [[nodiscard]] const Value& require(std::string_view key) const;
+
+    /// The same by a declared key.
+    [[nodiscard]] std::string path_of(const DeclaredKey auto& key) const { return path_of(name_of(key)); }
+    [[nodiscard]] const Value* find(const DeclaredKey auto& key) const noexcept { return find(name_of(key)); }
+    [[nodiscard]] const Value& require(const DeclaredKey auto& key) const { return require(name_of(key)); }
+    [[noreturn]] void fail(const DeclaredKey auto& key, std::string what) const {
+        fail(name_of(key), std::move(what));
+    }
+
+    /// The value of a declared key; its default if it is absent and has one.
+    [[nodiscard]] double number(const NumberKey& key) const { return number(key, key.range); }
+    template <std::integral T>
+    [[nodiscard]] T integer(const IntegerKey& key) const {
+        return integer<T>(key, key.range);
+    }
+    /// The same with a range that lies within the declared one, for a limit that depends on another value.
+    [[nodiscard]] double number(const NumberKey& key, Range<double> within) const {
+        return number(name_of(key), within, key.fallback.value);
+    }
+    template <std::integral T>
+    [[nodiscard]] T integer(const IntegerKey& key, Range<std::int64_t> within) const {
+        return static_cast<T>(integer<std::int64_t>(name_of(key), within, key.fallback.value));
+    }
+    [[nodiscard]] bool flag(const FlagKey& key) const { return flag(name_of(key), key.fallback.value); }
+    template <class Enum>
+    [[nodiscard]] Enum choice(const WordKey<Enum>& key) const {
+        return choice(name_of(key), key.words, key.fallback.value);
+    }
+    /// As its kind wants it. A path as it is written, any text.
+    [[nodiscard]] std::string text(const TextKey& key) const;
+    /// Of any length.
+    [[nodiscard]] const std::vector<Value>& list(const ListKey& key) const;
 
     [[nodiscard]] double number(std::string_view key, Range<double> range,
                                 std::optional<double> fallback = std::nullopt) const;

@@ -115,7 +115,7 @@ class OurFrames final : public FrameTask {
     void run() override {
         const auto result = integrator_.integrate(image_, T_map_camera_);
         if (!result) throw std::runtime_error("a frame was refused");
-        if (is_dated_) map_.go_on(HostTime{frames_++ * 100'000'000});
+        if (is_dated_) map_.advance_time(HostTime{frames_++ * 100'000'000});
         map_.apply(result->terms);
     }
     void tell(Figures& figures) const override {

@@ -102,7 +102,7 @@ class OurBeams final : public Task {
   public:
     OurBeams(const std::string& resolution, bool keeps_times)
         : config_(bench_mapping(resolution, DepthUpdate::robust)), model_(config_), map_(config_.map) {
-        if (keeps_times) map_.go_on(HostTime{0});
+        if (keeps_times) map_.advance_time(HostTime{0});
     }
     void prepare() override { beams_ = cycles_.next(); }
     void run() override {

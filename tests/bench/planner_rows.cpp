@@ -64,12 +64,12 @@ class Clearances final : public Task {
         (void)field_->update(map);
     }
     void run() override {
-        Told told;
+        Told reported;
         for (const ArmCapsules& capsules : postures_) {
             for (const PosedCapsule& capsule : capsules)
-                told.add(field_ ? *field_->clearance(capsule) : *clearance(map_, capsule, kReach_m));
+                reported.add(field_ ? *field_->clearance(capsule) : *clearance(map_, capsule, kReach_m));
         }
-        require_that(told.occupied >= wanted_.occupied, "a distance is not told");
+        require_that(reported.occupied >= wanted_.occupied, "a distance is not told");
     }
     void tell(Figures& figures) const override { tell_size(map_, figures); }
 

@@ -114,7 +114,7 @@ Spread expect_true(const Heard& heard) {
             const JudgedReading& judged = readings[i];
             SCOPED_TRACE(testing::Message() << "reading " << i);
             errors.add(judged.error_us);
-            EXPECT_LE(std::abs(judged.error_us), judged.told_bound_us)
+            EXPECT_LE(std::abs(judged.error_us), judged.reported_bound_us)
                 << "beyond the bound that the node told";
             if (i > 0) {
                 EXPECT_EQ(judged.truth.index, readings[i - 1].truth.index + 1) << "unread, or read twice";

@@ -88,7 +88,7 @@ TEST_F(FdcanTest, filters_decide_and_a_full_fifo_loses_the_newest) {
 }
 
 TEST_F(FdcanTest, alone_becomes_error_passive_and_never_bus_off) {
-    tiny_.board().can().set_link(CanLink::nobody_acknowledges);
+    tiny_.board().can().set_link(CanLink::unacknowledged);
     tiny_.jump("alone");
     ASSERT_TRUE(run());
     EXPECT_EQ(tiny_.result(0), 0x60U) << "passive and warning";

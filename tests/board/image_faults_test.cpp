@@ -172,7 +172,7 @@ TEST(ImageFaults, comes_back_from_bus_off_within_a_second) {
 
 TEST(ImageFaults, takes_back_what_nobody_acknowledges_and_goes_on) {
     ImageBench bench(block_of(bare_config()));
-    bench.board().can().set_link(CanLink::nobody_acknowledges);
+    bench.board().can().set_link(CanLink::unacknowledged);
     bench.run(12.0);
     EXPECT_THAT(bench.board().serial_text(), HasSubstr("frames not acknowledged"));
     EXPECT_THAT(bench.board().serial_text(), Not(HasSubstr("bus-off")));

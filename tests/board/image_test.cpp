@@ -234,17 +234,17 @@ TEST(ImageCan, tells_every_reading_that_nobody_acknowledged) {
         return count;
     };
     const std::size_t before = heard();
-    flashed.board().can().set_link(CanLink::nobody_acknowledges);
+    flashed.board().can().set_link(CanLink::unacknowledged);
     flashed.run_for(5s);
     const std::size_t during = heard() - before;
     EXPECT_LE(during, 12U) << "what had begun";
     flashed.board().can().set_link(CanLink::good);
     flashed.run_for(2s);
-    const std::uint32_t told = flashed.traffic()->tx_dropped + flashed.traffic()->late_dropped;
+    const std::uint32_t reported = flashed.traffic()->tx_dropped + flashed.traffic()->late_dropped;
     // 4 sensors at 30.3 Hz for 5 s, and at most 50 heartbeats, 35 pages of information and 20 of health.
     const double readings = 4 * 5 / 0.033;
-    EXPECT_GE(told, readings - 12);
-    EXPECT_LE(told, readings + 50 + 35 + 20 + 12);
+    EXPECT_GE(reported, readings - 12);
+    EXPECT_LE(reported, readings + 50 + 35 + 20 + 12);
     EXPECT_EQ(flashed.violations(), "");
 }
 

@@ -20,8 +20,8 @@ using Source = std::pair<std::uint8_t, std::uint8_t>;  ///< node, sensor
 struct JudgedReading {
     wire::RangeReading reading;
     TrueRanging truth;
-    std::int64_t error_us = 0;       ///< of its capture time, by the node's clock
-    std::int64_t told_bound_us = 0;  ///< on that error: the one told nearest in time
+    std::int64_t error_us = 0;           ///< of its capture time, by the node's clock
+    std::int64_t reported_bound_us = 0;  ///< on that error: the one told nearest in time
 };
 
 /// A sensor's rangings at one period: from its start to the next.

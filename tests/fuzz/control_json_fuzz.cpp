@@ -2,7 +2,7 @@
 // and read again.
 #include <cassert>
 
-#include "host/apps/querying/query_request.hpp"
+#include "host/apps/query/query_request.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "host/apps/querying/joint_lines.hpp"
-#include "host/apps/querying/query_request.hpp"
+#include "host/apps/query/joint_lines.hpp"
+#include "host/apps/query/query_request.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

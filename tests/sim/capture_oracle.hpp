@@ -37,18 +37,19 @@ class ToldBounds {
         for (const auto& item : rig.said()) {
             const auto* health = std::get_if<wire::SensorHealth>(&item.message);
             if (health == nullptr) continue;
-            told_[health->sensor].push_back({item.end, health->capture_bound_64us * std::int64_t{64}});
+            reported_[health->sensor].push_back({item.end, health->capture_bound_64us * std::int64_t{64}});
         }
     }
     /// The largest told in the 1.1 s before a reading that was sent at `end`, or just after it: a larger
     /// bound than before is told at once, but a reading has the higher priority. 0 if none was.
     [[nodiscard]] std::int64_t at(std::uint8_t sensor, sim::SimTime end) const {
-        const auto of_sensor = told_.find(sensor);
-        if (of_sensor == told_.end()) return 0;
+        const auto of_sensor = reported_.find(sensor);
+        if (of_sensor == reported_.end()) return 0;
         std::int64_t largest_us = 0;
-        for (const Told& told : of_sensor->second) {
-            const std::int64_t since_us = end.us - told.when.us;
-            if (since_us < 1'100'000 && since_us > -20'000) largest_us = std::max(largest_us, told.bound_us);
+        for (const Told& reported : of_sensor->second) {
+            const std::int64_t since_us = end.us - reported.when.us;
+            if (since_us < 1'100'000 && since_us > -20'000)
+                largest_us = std::max(largest_us, reported.bound_us);
         }
         return largest_us;
     }
@@ -58,7 +59,7 @@ class ToldBounds {
         sim::SimTime when{};
         std::int64_t bound_us = 0;
     };
-    std::map<std::uint8_t, std::vector<Told>> told_;
+    std::map<std::uint8_t, std::vector<Told>> reported_;
 };
 
 }  // namespace octoskin::test

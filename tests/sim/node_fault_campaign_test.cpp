@@ -38,7 +38,7 @@ constexpr std::size_t kBuses = 2;
 // much as the rhythm left open, and the ready times of this range and of the next may stray from the rhythm
 // on top.
 constexpr node::Policy kPolicy;
-constexpr std::int64_t kOnePollUs = (kPolicy.lone_poll_believed + 2 * kPolicy.ready_jitter).count();
+constexpr std::int64_t kOnePollUs = (kPolicy.lone_poll_accepted + 2 * kPolicy.ready_jitter).count();
 
 // Faults that the double read, the stream count, the read-back and the error handling must catch.
 constexpr std::array<I2cFaultKind, 10> kBusFaults = {

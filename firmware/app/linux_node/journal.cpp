@@ -96,9 +96,9 @@ void Journal::say_troubles(const node::Node& node) {
             (trouble ? std::string(", ") + wire::name(trouble->fault) : "") +
             (trouble && trouble->difference ? ", " + text_of(*trouble->difference) : ""));
     }
-    for (const auto& told : node.alike().subspan(alike_told_))
-        say(text_of(told.difference) + ", alike on several sensors: their readings are still sent");
-    alike_told_ = node.alike().size();
+    for (const auto& reported : node.alike().subspan(common_reported_))
+        say(text_of(reported.difference) + ", alike on several sensors: their readings are still sent");
+    common_reported_ = node.alike().size();
 }
 
 }  // namespace octoskin::linux_node

@@ -29,7 +29,7 @@ class Journal {
     void say_troubles(const node::Node& node);
 
     std::optional<wire::NodeState> state_;
-    std::size_t alike_told_ = 0;
+    std::size_t common_reported_ = 0;
     std::array<std::optional<node::Sensor::Trouble>, kNodeSensorsMax>
         troubles_{};  ///< last reported, by sensor
     std::string trouble_;

@@ -100,7 +100,7 @@ void finish_saying() {
     }
 }
 
-void start_telling(std::uint32_t core_hz) {
+void start_reporting(std::uint32_t core_hz) {
     cpu::enable(Interrupt::tim2, cpu::Priority::text);
     enable_pins();
     light.start();
@@ -129,7 +129,7 @@ void sleep_until(NodeTime wake) {
 /// stay as the reset left them.
 void rest(const std::optional<Fault>& last, std::uint32_t seconds) {
     timer.start(kInternalHz);
-    start_telling(kInternalHz);
+    start_reporting(kInternalHz);
     light.set(true);
     report.start_up_failing(seconds);
     if (last) report.fault(*last);
@@ -150,7 +150,7 @@ void start() {
         node::retry_start_up(kept_memory(), run);
     }
     const Clocks clocks = start_clocks(timer);
-    start_telling(clocks.core_hz);
+    start_reporting(clocks.core_hz);
     xshut.start();
     report.started(OCTOSKIN_BUILD_ID, run.cause, clocks);
     if (last && last->kind != wire::FaultKind::none) {

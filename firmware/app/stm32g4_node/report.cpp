@@ -125,26 +125,26 @@ void Report::update(const node::Node& node, const CanController& can, NodeTime n
     state_ = state;
     ignored_data_ready_ = ignored;
     bus_off_count_ = bus_off_count;
-    tell_losses(can.counts(), now);
-    tell_sensors(node, now);
+    report_losses(can.counts(), now);
+    report_sensors(node, now);
     show(state, can.is_started());
 }
 
 /// Reports at most one changed sensor per check, since the serial port is slow.
-void Report::tell_sensors(const node::Node& node, NodeTime now) {
+void Report::report_sensors(const node::Node& node, NodeTime now) {
     sensors_pause_.update(now);
     if (!sensors_pause_.is_over()) return;
     sensors_pause_.begin(now, kSensorsPause);
     const auto sensors = node.sensors();
-    bool has_told = false;
+    bool has_reported = false;
     has_trouble_ = false;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         const node::Sensor& sensor = *sensors[i];
         const auto trouble = sensor.trouble();
         has_trouble_ = has_trouble_ || trouble;
-        if (has_told || trouble == troubles_[i]) continue;
+        if (has_reported || trouble == troubles_[i]) continue;
         troubles_[i] = trouble;
-        has_told = true;
+        has_reported = true;
         TextLine line;
         line.text("sensor ").number(static_cast<std::uint32_t>(i)).text(": ");
         line.text(wire::name(sensor.state()));
@@ -152,28 +152,29 @@ void Report::tell_sensors(const node::Node& node, NodeTime now) {
         if (trouble && trouble->difference) add(line.text(", "), *trouble->difference);
         serial_.say(line.view());
     }
-    if (!has_told) tell_alike(node);
+    if (!has_reported) report_common_differences(node);
 }
 
 /// At most one per check.
-void Report::tell_alike(const node::Node& node) {
+void Report::report_common_differences(const node::Node& node) {
     const auto alike = node.alike();
-    if (alike_told_ >= alike.size()) return;
+    if (common_reported_ >= alike.size()) return;
     TextLine line;
-    add(line, alike[alike_told_++].difference);
+    add(line, alike[common_reported_++].difference);
     serial_.say(line.text(", alike on several sensors: their readings are still sent").view());
 }
 
 /// Without another node to acknowledge, frames are lost every second: reported at most once per
 /// `kLossesPause`.
-void Report::tell_losses(const CanCounts& counts, NodeTime now) {
-    const bool is_news = counts.given_up != told_.given_up || counts.receive_lost != told_.receive_lost;
+void Report::report_losses(const CanCounts& counts, NodeTime now) {
+    const bool is_news =
+        counts.given_up != reported_.given_up || counts.receive_lost != reported_.receive_lost;
     losses_pause_.update(now);
     if (!is_news || !losses_pause_.is_over()) return;
     TextLine line;
     line.text("CAN: ").number(counts.given_up).text(" frames not acknowledged, ");
     serial_.say(line.number(counts.receive_lost).text(" not received, since start").view());
-    told_ = counts;
+    reported_ = counts;
     losses_pause_.begin(now, kLossesPause);
 }
 

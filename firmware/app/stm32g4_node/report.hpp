@@ -38,9 +38,9 @@ class Report {
     void update(const node::Node& node, const CanController& can, NodeTime now);
 
   private:
-    void tell_losses(const CanCounts& counts, NodeTime now);
-    void tell_sensors(const node::Node& node, NodeTime now);
-    void tell_alike(const node::Node& node);
+    void report_losses(const CanCounts& counts, NodeTime now);
+    void report_sensors(const node::Node& node, NodeTime now);
+    void report_common_differences(const node::Node& node);
     void show(wire::NodeState state, bool is_can_started);
 
     SerialPort& serial_;
@@ -50,11 +50,11 @@ class Report {
     std::uint32_t bus_off_count_ = 0;
     std::uint8_t ignored_data_ready_ = 0;
     std::uint32_t can_failed_ = 0;
-    CanCounts told_;
+    CanCounts reported_;
     node::Pause losses_pause_;
     std::array<std::optional<node::Sensor::Trouble>, kNodeSensorsMax>
         troubles_{};  ///< last reported, by sensor
-    std::size_t alike_told_ = 0;
+    std::size_t common_reported_ = 0;
     bool has_trouble_ = false;  ///< any sensor, at the last check
     node::Pause sensors_pause_;
 };

@@ -20,9 +20,9 @@ constexpr Microseconds kDeadlineGrace{5'000};
 Progress Device::poll(NodeTime now) {
     if (is_in_flight_) collect(now);
     if (progress_ == Progress::busy && !is_in_flight_) proceed(now);
-    const Progress told = progress_;
-    if (told == Progress::done || told == Progress::failed) progress_ = Progress::idle;
-    return told;
+    const Progress reported = progress_;
+    if (reported == Progress::done || reported == Progress::failed) progress_ = Progress::idle;
+    return reported;
 }
 
 std::optional<NodeTime> Device::wake_time() const noexcept {
@@ -158,14 +158,14 @@ void Device::on_transfer_done(NodeTime now) {
     if (step.judge != nullptr) follow(step.judge(*this, now), now);
 }
 
-void Device::follow(Verdict verdict, NodeTime now) {
+void Device::follow(NextStep verdict, NodeTime now) {
     switch (verdict) {
-        case Verdict::proceed:
+        case NextStep::proceed:
             return;
-        case Verdict::repeat_stage:
+        case NextStep::repeat_stage:
             repeat_stage(now);
             return;
-        case Verdict::end:
+        case NextStep::end:
             if (progress_ == Progress::busy) progress_ = Progress::done;
             return;
     }
@@ -191,10 +191,10 @@ void Device::count_i2c_error() noexcept {
     if (i2c_error_count_ < std::numeric_limits<std::uint16_t>::max()) ++i2c_error_count_;
 }
 
-Device::Verdict Device::fail(Error error) {
+Device::NextStep Device::fail(Error error) {
     error_ = error;
     progress_ = Progress::failed;
-    return Verdict::end;
+    return NextStep::end;
 }
 
 void Device::line_up(const Step& step) {

@@ -46,32 +46,32 @@ class Device {
     /// Resets the sensor without XSHUT. The sensor loses all settings, including its address, and returns to
     /// 0x29, where the identification is checked. No other device may be at 0x29. <= 500 ms, typically 3 ms.
     void begin_soft_reset();
-    /// Waits at 0x29 for the firmware's boot, <= 5 ms, or <= 100 ms if `is_patient`; then `boot_timeout`.
-    /// Also `done` if no device answers: the following probe detects that.
+    /// Waits at 0x29 for the end of the firmware's boot: <= 5 ms, or <= 100 ms if `is_patient`. Fails with
+    /// `boot_timeout` after that. Is `done`, too, if no device answers: the probe that follows detects that.
     void begin_await_boot_at_default(bool is_patient);
-    /// Waits for the firmware's boot, <= 500 ms. Tests bit 0 of the status only, since real sensors first
-    /// answer 0x02.
+    /// Waits for the end of the firmware's boot, <= 500 ms. Tests bit 0 of the status only, since real
+    /// sensors first answer 0x02.
     void begin_await_boot();
     /// Writes the default configuration and starts the first range, without waiting for boot. <= 10 ms in
     /// bursts, 100 ms otherwise.
     void begin_load_configuration();
-    /// Waits for boot, then loads the configuration; in between reads the factory offset if the options say
-    /// so. Ends when the first range has started. `begin_finish_initialise` collects that range about 100 ms
-    /// later, so that many sensors range at the same time.
+    /// Waits for the end of the boot, reads the factory offset if the options request it, and loads the
+    /// configuration. Ends when the first range has started. `begin_finish_initialise` collects that range
+    /// about 100 ms later, so that many sensors range at the same time.
     void begin_initialise();
-    /// Waits for the first data ready (<= 1 s), clears, stops, and sets the VHV loop bound and start.
+    /// Waits for the first data (<= 1 s), clears the interrupt, stops, and bounds the VHV search.
     void begin_finish_initialise();
 
     // --- settings, while stopped. An operation whose argument breaks a limit fails with `unsupported_config`
     // and writes nothing.
     /// Stops, and applies all settings in ST's order: mode, budget, period, ROI, limits, offset, crosstalk.
-    /// Later readings carry the gain factor if it is set. <= 20 ms.
+    /// Later measurements have the gain factor applied if the settings request it. <= 20 ms.
     void begin_configure(const Settings& settings);
     /// The budget does not change; the new mode must support it.
     void begin_set_distance_mode(DistanceMode mode);
     void begin_set_timing_budget(std::uint16_t budget_ms);
-    /// Writes `nominal * 1.075` in units of the sensor's oscillator. Also used to trim the period to the
-    /// measured one, in steps finer than the milliseconds of `Settings`. For that reason the period is not
+    /// Writes `nominal * 1.075` in units of the sensor's oscillator. Also used to correct the period after it
+    /// was measured, in finer steps than the milliseconds of `Settings`. For that reason the period is not
     /// checked against the budget.
     void begin_set_inter_measurement(Microseconds nominal);
     void begin_set_sigma_limit(std::uint16_t quarter_mm);
@@ -92,9 +92,9 @@ class Device {
     void begin_set_zone(const Roi& roi);
 
     // --- ranging
-    /// Clears, then starts timed ranging.
+    /// Clears the interrupt, then starts timed ranging.
     void begin_start();
-    /// Clears, then starts one range.
+    /// Clears the interrupt, then starts one range.
     void begin_start_single();
     /// Stops after the current range: one more result may follow.
     void begin_stop();
@@ -102,11 +102,11 @@ class Device {
     void begin_abort();
     /// Polls data ready once. If ready, reads the result block (twice if the options say so) and clears the
     /// interrupt. Done with or without a measurement: see `has_measurement`. <= 5 ms.
-    /// `confirms_ready`: a positive poll is repeated, against a bit flipped on the bus. Needed where no other
-    /// check exists: for the first result of a run, and while the time of data ready is not well known.
+    /// `confirms_ready`: a positive poll is repeated, to detect a bit flipped on the bus. Needed where no
+    /// other check exists: for the first result of a run, and while the time of data ready is not well known.
     void begin_read(bool confirms_ready = false);
-    /// The last `begin_read` polled ready and, repeated, not ready: one of the two answers was altered on the
-    /// bus.
+    /// In the last `begin_read`, the first poll found data and the repeated poll did not: one of the two
+    /// answers was altered on the bus.
     [[nodiscard]] bool have_polls_disagreed() const noexcept { return have_polls_disagreed_; }
     /// From a `begin_read` with `confirms_ready` until a positive poll has been repeated. Meanwhile the time
     /// of data ready is uncertain.
@@ -146,10 +146,11 @@ class Device {
     [[nodiscard]] bool has_measurement() const noexcept { return has_measurement_; }
     /// The newest measurement; `has_measurement` says whether the last read delivered it.
     [[nodiscard]] const Measurement& measurement() const noexcept { return reading_.measurement; }
-    /// Time at which the poll that found data ready was collected. The data was ready no later than this.
+    /// Time at which the answer of the poll that found data was collected. The data was ready no later than
+    /// this.
     [[nodiscard]] NodeTime ready_seen() const noexcept { return reading_.ready_seen; }
     /// The latest time at which the data was certainly not ready: the start of the transfer that found no
-    /// data, or that cleared the interrupt. Empty if there was none.
+    /// data, or that cleared the interrupt. Empty if there was no such transfer.
     [[nodiscard]] std::optional<NodeTime> not_ready_seen() const noexcept { return reading_.not_ready_seen; }
     /// Expected register values, and the differences found.
     [[nodiscard]] const ReadBack& read_back() const noexcept { return read_back_; }
@@ -159,7 +160,7 @@ class Device {
     [[nodiscard]] std::span<const std::uint8_t> register_bytes() const noexcept {
         return std::span(register_bytes_).first(register_count_);
     }
-    /// Whether measurements carry the gain factor.
+    /// Whether measurements have the gain factor applied.
     [[nodiscard]] bool applies_gain_factor() const noexcept { return settings_.applies_gain_factor; }
     /// Change of the period per step of the inter-measurement register; empty before a period was set.
     [[nodiscard]] std::optional<Nanoseconds> period_step() const noexcept {
@@ -171,8 +172,8 @@ class Device {
 
   private:
     /// How the operation continues after the answer to a transfer.
-    enum class Verdict : std::uint8_t { proceed, repeat_stage, end };
-    using Judge = Verdict (*)(Device&, NodeTime now);
+    enum class NextStep : std::uint8_t { proceed, repeat_stage, end };
+    using Judge = NextStep (*)(Device&, NodeTime now);
 
     /// One transfer, or a run of equal transfers at consecutive indices.
     struct Step {
@@ -188,9 +189,9 @@ class Device {
         Judge on_refused = nullptr;
     };
 
-    /// A named part of an operation. `line_up` queues its transfers when the stage begins. If a judge asks
-    /// for it, the stage is repeated every `every_us`; after `within_us` the operation fails with
-    /// `otherwise`.
+    /// A named part of an operation. `line_up` queues its transfers when the stage begins. If a judge returns
+    /// `repeat_stage`, the stage is repeated every `every_us`. After `within_us` the operation fails with the
+    /// error `otherwise`.
     struct Stage {
         void (*line_up)(Device&) = nullptr;
         std::uint32_t every_us = 0;
@@ -205,7 +206,7 @@ class Device {
         std::optional<NodeTime> not_ready_seen;
     };
 
-    // The runner of tables (device.cpp).
+    // Running the tables (device.cpp).
     void begin(std::span<const Stage> stages);
     void begin_refused();
     void proceed(NodeTime now);
@@ -216,9 +217,9 @@ class Device {
     void collect(NodeTime now);
     void on_transfer_done(NodeTime now);
     void on_transfer_failed(i2c::TransferError error, NodeTime now);
-    void follow(Verdict verdict, NodeTime now);
+    void follow(NextStep verdict, NodeTime now);
     void count_i2c_error() noexcept;
-    Verdict fail(Error error);
+    NextStep fail(Error error);
 
     // For the stages.
     void line_up(const Step& step);
@@ -285,7 +286,7 @@ class Device {
     NodeTime ready_seen_{};
     bool has_read_again_ = false;
     RegisterRun run_;               ///< the run being verified
-    bool is_run_of_write_ = false;  ///< the verified write was just made
+    bool is_run_of_write_ = false;  ///< the run is that of the write just made
     bool is_run_steering_ = false;  ///< the run is a whole steering group
 
     // Results.

@@ -14,14 +14,14 @@ struct Device::Method {
     // --- bring-up
 
     static void ask_boot_state(Device& d) { d.read(reg::FIRMWARE_SYSTEM_STATUS, 1, judge_boot_state); }
-    static Verdict judge_boot_state(Device& d, NodeTime) {
-        return (d.answer_[0] & 1U) != 0 ? Verdict::proceed : Verdict::repeat_stage;
+    static NextStep judge_boot_state(Device& d, NodeTime) {
+        return (d.answer_[0] & 1U) != 0 ? NextStep::proceed : NextStep::repeat_stage;
     }
 
     static void ask_identity(Device& d) { d.read(reg::IDENTIFICATION_MODEL_ID, 2, judge_identity); }
-    static Verdict judge_identity(Device& d, NodeTime) {
+    static NextStep judge_identity(Device& d, NodeTime) {
         constexpr std::uint16_t kModelAndModuleType = 0xEACC;  // DS12385 table 11; ST's header says 0xEEAC
-        return d.answer16() == kModelAndModuleType ? Verdict::proceed : d.fail(Error::wrong_id);
+        return d.answer16() == kModelAndModuleType ? NextStep::proceed : d.fail(Error::wrong_id);
     }
 
     // Until reset is released, the sensor may answer at its own address or at 0x29: no public document says
@@ -33,7 +33,7 @@ struct Device::Method {
         d.write8(reg::SOFT_RESET, 0x00, [](Device& device, NodeTime now) {
             constexpr Microseconds kHeld{100};  // full API
             device.resume_at_ = now + kHeld;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     static void leave_soft_reset(Device& d) {
@@ -44,18 +44,18 @@ struct Device::Method {
                    .judge =
                        [](Device& device, NodeTime) {
                            device.live_address_ = kDefaultAddress;
-                           return Verdict::proceed;
+                           return NextStep::proceed;
                        },
                    .on_refused =
                        [](Device& device, NodeTime) {
                            if (!device.was_retried_) {
                                device.was_retried_ = true;
-                               return Verdict::proceed;
+                               return NextStep::proceed;
                            }
                            if (device.live_address_ == kDefaultAddress) return device.fail(Error::no_answer);
                            device.live_address_ = kDefaultAddress;
                            device.was_retried_ = false;
-                           return Verdict::proceed;
+                           return NextStep::proceed;
                        }});
     }
     /// A booting sensor does not acknowledge.
@@ -63,22 +63,22 @@ struct Device::Method {
         d.line_up({.index = reg::FIRMWARE_SYSTEM_STATUS,
                    .count = 1,
                    .judge = judge_boot_state,
-                   .on_refused = [](Device&, NodeTime) { return Verdict::repeat_stage; }});
+                   .on_refused = [](Device&, NodeTime) { return NextStep::repeat_stage; }});
     }
 
     /// Ends at once if no device answers.
-    static void ask_boot_state_of_somebody(Device& d) {
+    static void ask_boot_state_of_any(Device& d) {
         d.line_up({.index = reg::FIRMWARE_SYSTEM_STATUS,
                    .count = 1,
                    .judge = judge_boot_state,
-                   .on_refused = [](Device&, NodeTime) { return Verdict::end; }});
+                   .on_refused = [](Device&, NodeTime) { return NextStep::end; }});
     }
 
     // The sensor uses its new address from the next START on.
     static void write_address(Device& d) {
         d.write8(reg::I2C_SLAVE_DEVICE_ADDRESS, d.new_address_, [](Device& device, NodeTime) {
             device.live_address_ = device.new_address_;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     static void verify_address(Device& d) {
@@ -93,11 +93,12 @@ struct Device::Method {
         d.read(kFactoryRun.first, kFactoryRun.count, [](Device& device, NodeTime) {
             device.read_back_.learn(kFactoryRun, device.answer_);
             device.read(kFactoryRun.first, kFactoryRun.count, compare_factory_offset);
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
-    static Verdict compare_factory_offset(Device& d, NodeTime) {
-        return d.read_back_.agrees(kFactoryRun, d.answer_) ? Verdict::proceed : d.fail(Error::reads_disagree);
+    static NextStep compare_factory_offset(Device& d, NodeTime) {
+        return d.read_back_.agrees(kFactoryRun, d.answer_) ? NextStep::proceed
+                                                           : d.fail(Error::reads_disagree);
     }
 
     static void write_default_configuration(Device& d) {
@@ -112,12 +113,12 @@ struct Device::Method {
                        device.budget_ms_ = 100;
                        device.written_roi_ = Roi{};
                        device.is_active_low_ = device.options_.is_interrupt_active_low;
-                       return Verdict::proceed;
+                       return NextStep::proceed;
                    }});
     }
 
-    // VHV: the bias voltage of the SPADs. Either two search loops from the last value found, or the full
-    // search.
+    // VHV: the bias voltage of the SPADs. The search for it is either limited to two loops from the last
+    // value found, or complete.
     static void bound_vhv_search(Device& d) {
         d.write8(reg::VHV_CONFIG_TIMEOUT_MACROP_LOOP_BOUND, 0x09);
         d.write8(reg::VHV_CONFIG_INIT, 0x00);
@@ -135,7 +136,7 @@ struct Device::Method {
             const auto budget_ms = budget_of_timeout_a(device.answer16());
             if (!budget_ms) return device.fail(Error::config_mismatch);
             device.budget_ms_ = *budget_ms;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     static void reread_mode(Device& d) {
@@ -144,7 +145,7 @@ struct Device::Method {
             const auto mode = marked_mode(device.answer_[0]);
             if (!mode) return device.fail(Error::config_mismatch);
             device.mode_ = *mode;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
 
@@ -157,7 +158,7 @@ struct Device::Method {
         d.write16(reg::SD_CONFIG_WOI_SD0, mode.woi);
         d.write16(reg::SD_CONFIG_INITIAL_PHASE_SD0, mode.initial_phase, [](Device& device, NodeTime) {
             device.mode_ = device.settings_.distance_mode;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     /// Fails if the new mode does not support the current budget.
@@ -177,7 +178,7 @@ struct Device::Method {
     static void write_new_budget(Device& d) {
         write_timeouts(d, d.settings_.timing_budget_ms, [](Device& device, NodeTime) {
             device.budget_ms_ = device.settings_.timing_budget_ms;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     /// ST's mode setter applies the old budget to the new mode. Only needed to match ST's transfers, since
@@ -192,17 +193,17 @@ struct Device::Method {
             device.oscillator_ = device.answer16();
             if (!device.options_.reads_twice) return write_period(device);
             device.read(reg::RESULT_OSC_CALIBRATE_VAL, 2, compare_oscillator);
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
-    static Verdict compare_oscillator(Device& d, NodeTime) {
+    static NextStep compare_oscillator(Device& d, NodeTime) {
         return d.answer16() == d.oscillator_ ? write_period(d) : d.fail(Error::reads_disagree);
     }
-    static Verdict write_period(Device& d) {
+    static NextStep write_period(Device& d) {
         const auto value = period_register(d.oscillator_, d.period_);
         if (!value) return d.fail(Error::oscillator_zero);
         d.write32(reg::SYSTEM_INTERMEASUREMENT_PERIOD, *value);
-        return Verdict::proceed;
+        return NextStep::proceed;
     }
 
     // --- region of interest
@@ -222,9 +223,9 @@ struct Device::Method {
             d.write8(reg::ROI_CONFIG_USER_ROI_CENTRE_SPAD, d.roi_.centre_spad, note_roi);
         }
     }
-    static Verdict note_roi(Device& d, NodeTime) {
+    static NextStep note_roi(Device& d, NodeTime) {
         d.written_roi_ = d.roi_;
-        return Verdict::proceed;
+        return NextStep::proceed;
     }
 
     /// ST's SetROI, which also moves the centre.
@@ -236,7 +237,7 @@ struct Device::Method {
             device.write8(reg::ROI_CONFIG_USER_ROI_CENTRE_SPAD, is_large ? kArrayCentre : device.answer_[0]);
             device.write8(reg::ROI_CONFIG_USER_ROI_REQUESTED_GLOBAL_XY_SIZE, size_register(device.roi_),
                           note_roi);
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     static void write_roi_size_as_st(Device& d) {
@@ -269,7 +270,7 @@ struct Device::Method {
         d.write8(reg::GPIO_HV_MUX_CTRL, interrupt_pin_control(d.is_polarity_low_),
                  [](Device& device, NodeTime) {
                      device.is_active_low_ = device.is_polarity_low_;
-                     return Verdict::proceed;
+                     return NextStep::proceed;
                  });
     }
 
@@ -306,7 +307,7 @@ struct Device::Method {
         if (d.options_.caches_polarity) return;
         d.read(reg::GPIO_HV_MUX_CTRL, 1, [](Device& device, NodeTime) {
             device.is_active_low_ = (device.answer_[0] & 0x10U) != 0;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     static bool is_ready(const Device& d) {
@@ -316,7 +317,7 @@ struct Device::Method {
     static void await_ready(Device& d) {
         ask_polarity(d);
         d.read(reg::GPIO_TIO_HV_STATUS, 1, [](Device& device, NodeTime) {
-            return is_ready(device) ? Verdict::proceed : Verdict::repeat_stage;
+            return is_ready(device) ? NextStep::proceed : NextStep::repeat_stage;
         });
     }
     static void ask_ready(Device& d) {
@@ -325,49 +326,49 @@ struct Device::Method {
             if (!is_ready(device)) return end_without_data(device);
             device.ready_seen_ = now;
             if (device.is_confirming_ready_) device.read(reg::GPIO_TIO_HV_STATUS, 1, confirm_ready);
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     /// If the first answer was altered on the bus, the data may have become ready after it. So if the second
     /// poll is much later, its time is used.
-    static Verdict confirm_ready(Device& d, NodeTime now) {
+    static NextStep confirm_ready(Device& d, NodeTime now) {
         constexpr Microseconds kAtOnce{300};
         d.is_confirming_ready_ = false;
         if (elapsed(d.ready_seen_, now) > kAtOnce) d.ready_seen_ = now;
-        if (is_ready(d)) return Verdict::proceed;
+        if (is_ready(d)) return NextStep::proceed;
         d.have_polls_disagreed_ = true;
         d.count_i2c_error();
         return end_without_data(d);
     }
-    static Verdict end_without_data(Device& d) {
+    static NextStep end_without_data(Device& d) {
         d.not_ready_seen_ = d.submitted_;
-        return Verdict::end;
+        return NextStep::end;
     }
 
     // I2C has no checksum: a result is accepted if two reads of it agree.
     static void read_result(Device& d) {
         d.read(reg::RESULT_RANGE_STATUS, ResultBlock{}.size(), [](Device& device, NodeTime) {
             device.block_ = device.answered_block();
-            return device.options_.reads_twice ? Verdict::proceed : judge_result(device);
+            return device.options_.reads_twice ? NextStep::proceed : judge_result(device);
         });
         if (d.options_.reads_twice) d.read(reg::RESULT_RANGE_STATUS, ResultBlock{}.size(), compare_result);
     }
-    static Verdict compare_result(Device& d, NodeTime) {
+    static NextStep compare_result(Device& d, NodeTime) {
         if (d.answered_block() == d.block_) return judge_result(d);
         // A new result between the two reads is no error, but it can happen once per period only.
         const bool has_moved = d.answer_[kStreamCountOffset] != d.block_[kStreamCountOffset];
         if (!has_moved || d.has_read_again_) return d.fail(Error::reads_disagree);
         d.has_read_again_ = true;
-        return Verdict::repeat_stage;
+        return NextStep::repeat_stage;
     }
-    static Verdict judge_result(Device& d) {
-        return is_plausible(d.block_) ? Verdict::proceed : d.fail(Error::implausible_block);
+    static NextStep judge_result(Device& d) {
+        return is_plausible(d.block_) ? NextStep::proceed : d.fail(Error::implausible_block);
     }
 
     static void clear(Device& d) {
         d.write8(reg::SYSTEM_INTERRUPT_CLEAR, 0x01, [](Device& device, NodeTime) {
             device.not_ready_seen_ = device.submitted_;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
     /// The last step of a read: the measurement is published only after the clear succeeded.
@@ -378,7 +379,7 @@ struct Device::Method {
                                .not_ready_seen = device.not_ready_seen_};
             device.has_measurement_ = true;
             device.not_ready_seen_ = device.submitted_;
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
 
@@ -386,7 +387,7 @@ struct Device::Method {
         d.read(d.register_index_, d.register_bytes_wanted_, [](Device& device, NodeTime) {
             device.register_count_ = device.register_bytes_wanted_;
             std::copy_n(device.answer_.begin(), device.register_count_, device.register_bytes_.begin());
-            return Verdict::proceed;
+            return NextStep::proceed;
         });
     }
 
@@ -397,7 +398,7 @@ struct Device::Method {
         const RegisterRun& run = d.run_;
         d.read(run.first, run.count, judge_run);
     }
-    static Verdict judge_run(Device& d, NodeTime) {
+    static NextStep judge_run(Device& d, NodeTime) {
         const RegisterRun& run = d.run_;
         if (d.read_back_.agrees(run, d.answer_)) {
             d.read_back_.learn(run, d.answer_);
@@ -405,10 +406,10 @@ struct Device::Method {
         } else {
             d.read(run.first, run.count, judge_run_again);
         }
-        return Verdict::proceed;
+        return NextStep::proceed;
     }
     /// The second read distinguishes a bit flipped on the bus from a wrong register.
-    static Verdict judge_run_again(Device& d, NodeTime) {
+    static NextStep judge_run_again(Device& d, NodeTime) {
         const RegisterRun& run = d.run_;
         if (d.read_back_.agrees(run, d.answer_)) {
             d.count_i2c_error();
@@ -416,7 +417,7 @@ struct Device::Method {
                                       : d.read_back_.record(run, d.answer_)) {
             return d.fail(Error::config_mismatch);
         }
-        return Verdict::proceed;
+        return NextStep::proceed;
     }
 
     // --- the stages that wait
@@ -439,10 +440,9 @@ struct Device::Method {
                                         {ask_identity}};
     // Real sensors may answer before bit 0 is set; it is set a few milliseconds later (ST community, posts on
     // register 0xE5). The boot may overwrite what was written to such a sensor.
-    static constexpr Stage kAwaitBootAtDefault[]{
-        {ask_boot_state_of_somebody, 500, 5'000, Error::boot_timeout}};
+    static constexpr Stage kAwaitBootAtDefault[]{{ask_boot_state_of_any, 500, 5'000, Error::boot_timeout}};
     static constexpr Stage kAwaitBootAtDefaultPatiently[]{
-        {ask_boot_state_of_somebody, 500, 100'000, Error::boot_timeout}};  // the limit of Linux's driver
+        {ask_boot_state_of_any, 500, 100'000, Error::boot_timeout}};  // the limit of Linux's driver
     static constexpr Stage kAwaitBootOnly[]{kAwaitBoot};
     static constexpr Stage kLoadConfiguration[]{
         {forget_registers}, {write_default_configuration}, {choose_timed}, {clear_before_start}, {start}};

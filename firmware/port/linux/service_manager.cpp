@@ -49,8 +49,8 @@ std::optional<Microseconds> ServiceManager::sleep_max() const {
 }
 
 void ServiceManager::turned(NodeTime now) {
-    if (!watchdog_ || (told_ && elapsed(*told_, now) < *watchdog_ / kTellsPerWatchdog)) return;
-    told_ = now;
+    if (!watchdog_ || (reported_ && elapsed(*reported_, now) < *watchdog_ / kTellsPerWatchdog)) return;
+    reported_ = now;
     tell("WATCHDOG=1");
 }
 

@@ -32,7 +32,7 @@ class ServiceManager {
     std::string
         socket_;  ///< path of a Unix datagram socket; first character '@': an abstract one; empty: none
     std::optional<Microseconds> watchdog_;
-    std::optional<NodeTime> told_;
+    std::optional<NodeTime> reported_;
 };
 
 }  // namespace octoskin::linux_port

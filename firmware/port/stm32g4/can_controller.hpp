@@ -18,20 +18,20 @@ namespace octoskin::stm32g4 {
 
 struct CanCounts {
     std::uint32_t given_up = 0;  ///< frames taken but not sent: not acknowledged in time, or bus-off
-    std::uint32_t failed = 0;    ///< times that the controller left the bus itself, other than by bus-off
+    std::uint32_t failed = 0;    ///< times that the controller left the bus for a reason other than bus-off
     std::uint32_t received = 0;
     std::uint32_t receive_lost = 0;  ///< frames lost for lack of room
 };
 
-/// Traffic heard on a bus while its rates are being searched.
+/// Traffic received on a bus while its bit rates are being determined.
 struct Heard {
     std::uint32_t frames = 0;
-    bool has_errors = false;  ///< a frame could not be read: wrong rates, or a disturbed line
+    bool has_errors = false;  ///< a frame could not be decoded: wrong rates, or a disturbed line
 };
 
 struct ReceivedFrame {
     wire::CanFrame frame;
-    NodeTime received;  ///< end of the frame, time of the interrupt
+    NodeTime received;  ///< end of the frame, as timed by the interrupt
 };
 
 class CanController final : public node::CanTransmitter {
@@ -43,8 +43,8 @@ class CanController final : public node::CanTransmitter {
 
     constexpr explicit CanController(const MicrosecondTimer& timer) : timer_(timer) {}
 
-    /// Joins the bus at these rates and receives the frames for `node_id`. False, and silent, if `clock_hz`
-    /// is 0 or cannot give these rates.
+    /// Joins the bus at these rates and receives the frames for `node_id`. Returns false and stays off the
+    /// bus if `clock_hz` is 0 or cannot give these rates.
     [[nodiscard]] bool start(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
 
     /// As `start`, but receives every frame, sends nothing and does not disturb the bus at any rate. May be
@@ -52,11 +52,11 @@ class CanController final : public node::CanTransmitter {
     [[nodiscard]] bool listen(const CanRates& rates, wire::NodeId node_id, std::uint32_t clock_hz);
     /// Call after `listen`: leaves monitoring mode and joins the bus.
     [[nodiscard]] bool join();
-    /// Traffic heard since `listen`.
+    /// Traffic received since `listen`.
     [[nodiscard]] Heard heard() const;
 
-    /// Takes the frame if one of the three places is free and `node::may_join` permits it. The lowest
-    /// identifier is sent first.
+    /// Takes the frame if one of the three transmit buffers (`Place`) is free and `node::may_join` permits
+    /// it. The lowest identifier is sent first.
     [[nodiscard]] bool send(const wire::CanFrame& frame) override;
     /// The oldest frame received and not yet taken.
     [[nodiscard]] std::optional<ReceivedFrame> receive();

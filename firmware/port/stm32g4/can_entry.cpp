@@ -32,12 +32,12 @@ void CanEntry::enter(NodeTime now) {
 
 void CanEntry::judge(NodeTime now) {
     switch (search_.judge(can_.heard(), now)) {
-        case RateSearch::Verdict::wait:
+        case RateSearch::NextStep::wait:
             break;
-        case RateSearch::Verdict::try_next:
+        case RateSearch::NextStep::try_next:
             (void)can_.listen(search_.rates(), node_id_, clock_hz_);
             break;
-        case RateSearch::Verdict::found:
+        case RateSearch::NextStep::found:
             (void)can_.join();
             break;
     }

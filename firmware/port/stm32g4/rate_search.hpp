@@ -19,7 +19,7 @@ class RateSearch {
     /// With this many frames and no error in that time, the rates are those of the bus.
     static constexpr std::uint32_t kFramesMin = 3;
 
-    enum class Verdict : std::uint8_t {
+    enum class NextStep : std::uint8_t {
         wait,
         try_next,  ///< listen at the new `rates()`
         found,     ///< join at the current `rates()`
@@ -31,13 +31,13 @@ class RateSearch {
 
     /// An error ends the try at once. Without errors the try lasts `kPatience`, and then succeeds if at least
     /// `kFramesMin` frames were heard.
-    [[nodiscard]] Verdict judge(const Heard& heard, NodeTime now) noexcept {
+    [[nodiscard]] NextStep judge(const Heard& heard, NodeTime now) noexcept {
         const bool is_over = elapsed(begun_, now) >= kPatience;
-        if (!heard.has_errors && !is_over) return Verdict::wait;
-        if (!heard.has_errors && heard.frames >= kFramesMin) return Verdict::found;
+        if (!heard.has_errors && !is_over) return NextStep::wait;
+        if (!heard.has_errors && heard.frames >= kFramesMin) return NextStep::found;
         turn_ = (turn_ + 1) % kRates.size();
         begun_ = now;
-        return Verdict::try_next;
+        return NextStep::try_next;
     }
 
   private:

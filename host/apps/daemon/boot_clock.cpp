@@ -129,14 +129,14 @@ std::optional<std::int64_t> MapTime::begin_with(FusedMap& map, const std::option
         begin(map, saved, now);
         if (is_older) map_time_ = now;
     } else {
-        map.forget_times();
+        map.clear_times();
         begin(map, now, now);
     }
     return passed_s;
 }
 
 void MapTime::forget(Pipeline& pipeline) {
-    pipeline.forget_times();
+    pipeline.clear_times();
     const std::optional<BootTime> now = clock_();
     begin(pipeline.map(), now, now);
 }
@@ -151,7 +151,7 @@ void MapTime::begin(const FusedMap& map, const std::optional<BootTime>& since,
 
 Nanoseconds MapTime::attend(Pipeline& pipeline, HostTime bus) {
     const Nanoseconds slept = sleep_.look();
-    if (slept > Nanoseconds{0}) go_on_after_sleep(pipeline, bus, slept);
+    if (slept > Nanoseconds{0}) jump_over_sleep(pipeline, bus, slept);
     if (const auto passed_s = since_saved()) pipeline.wait(*passed_s);
     note(pipeline.map(), bus);
     return slept;
@@ -159,8 +159,8 @@ Nanoseconds MapTime::attend(Pipeline& pipeline, HostTime bus) {
 
 /// Counts from when the map's clock reached its present value: what passed before the sleep is included. If
 /// that is not known, only the sleep counts.
-void MapTime::go_on_after_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds slept) {
-    pipeline.go_on_after_sleep();
+void MapTime::jump_over_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds slept) {
+    pipeline.jump_over_sleep();
     note(pipeline.map(), bus);
     saved_ = map_time_;
     // It may have been read since then, and the time set may be that of another second.
@@ -168,10 +168,10 @@ void MapTime::go_on_after_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds sl
     if (!since_saved()) pipeline.wait((slept.count() + kSecond_ns - 1) / kSecond_ns);
 }
 
-std::optional<BootTime> MapTime::go_on(FusedMap& copy, HostTime bus) const {
+std::optional<BootTime> MapTime::advance_time(FusedMap& copy, HostTime bus) const {
     const VoxelAges::Clock before = copy.layers().ages.clock();
     if (!before.has_begun || before.waits) return map_time_;
-    copy.go_on(bus);
+    copy.advance_time(bus);
     const VoxelAges::Clock& after = copy.layers().ages.clock();
     return after.runs_for_s == before.runs_for_s ? map_time_ : begin_of_second(after, clock_(), bus);
 }

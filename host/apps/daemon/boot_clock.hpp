@@ -89,12 +89,12 @@ class MapTime {
     /// A map in a file is queried without this clock. So the time of a copy is first advanced to the bus
     /// time, if that is known and the map does not wait, as for a copy that a query uses. Returns the copy's
     /// `map_time`.
-    [[nodiscard]] std::optional<BootTime> go_on(FusedMap& copy, HostTime bus) const;
+    [[nodiscard]] std::optional<BootTime> advance_time(FusedMap& copy, HostTime bus) const;
 
   private:
     /// `map` has waited since `since`.
     void begin(const FusedMap& map, const std::optional<BootTime>& since, const std::optional<BootTime>& now);
-    void go_on_after_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds slept);
+    void jump_over_sleep(Pipeline& pipeline, HostTime bus, Nanoseconds slept);
 
     Clock clock_;
     SleepWatch sleep_;

@@ -192,7 +192,7 @@ bool ControlSocket::serve(Client& client) {
     (void)socketcan::receive_text(client.descriptor, std::span(bytes).first(taken));
     if (client.request.size() > kRequestMax) {
         refuse(client,
-               fmt::format("a request has at most {} bytes, and this one has more: ask about parts of it",
+               fmt::format("a request has at most {} bytes, this one has more: ask about parts of it",
                            kRequestMax),
                ExitCode::usage);
     }

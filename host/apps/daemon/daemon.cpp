@@ -12,7 +12,7 @@
 #include "host/apps/daemon/daemon_parts.hpp"
 #include "host/apps/daemon/ending.hpp"
 #include "host/apps/daemon/unwinding_room.hpp"
-#include "host/apps/querying/query_answer.hpp"
+#include "host/apps/query/query_answer.hpp"
 
 namespace octoskin {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::chrono::milliseconds kHomePeriod{500};
 
 }  // namespace
 
-void tell_warnings(const Settings& settings) {
+void report_warnings(const Settings& settings) {
     for (const std::string& warning : settings.host.warnings) spdlog::warn("{}", warning);
     for (const std::string& note : settings.host.notes) spdlog::info("{}", note);
 }
@@ -31,7 +31,7 @@ Result<std::unique_ptr<Daemon>, AppError> Daemon::build(const DaemonRequest& req
                                                         std::shared_ptr<const LogQueue> log) {
     auto settings = read_settings(request);
     if (!settings) return unexpected(settings.error());
-    tell_warnings(*settings);
+    report_warnings(*settings);
     auto pipeline = make_pipeline(request, *settings);
     if (!pipeline) return unexpected(pipeline.error());
     auto parts = std::make_unique<Parts>(request, std::move(settings).value(), std::move(pipeline).value(),
@@ -52,7 +52,7 @@ ExitCode Daemon::run() {
                  parts_->request.is_listen_only ? ", listening only" : "");
     const int outcome = parts_->run_loop();
     const Nanoseconds patience = end_patience(parts_->pipeline.map().memory_bytes());
-    tell_end(patience);
+    report_end(patience);
     parts_->stop_recording();
     const HostTime end = monotonic_now() + patience;
     parts_->control->close_clients();
@@ -79,7 +79,7 @@ int Daemon::Parts::run_loop() {
     try {
         return loop.run();
     } catch (const std::exception& error) {
-        return tell_why_it_ends(error);
+        return report_why_it_ends(error);
     }
 }
 
@@ -111,7 +111,7 @@ void Daemon::Parts::watch() {
     }));
     sources.push_back(loop.on_readable(queries.descriptor(), [this] {
         const HostTime now = monotonic_now();
-        const QueryDesk::Now of_map{inputs.bus_now(now), inputs.reckoned_bus_now(now), wall_now()};
+        const QueryServer::Now of_map{inputs.bus_now(now), inputs.reckoned_bus_now(now), wall_now()};
         for (const auto& [ticket, line] : queries.serve(pipeline, of_map)) control->reply(ticket, line);
     }));
     sources.push_back(loop.every(kAttendPeriod, [this] { attend(); }));
@@ -130,13 +130,13 @@ void Daemon::Parts::attend() {
         slept > Nanoseconds{0})
         spdlog::info("the machine slept for {:.0f} s: the map is older by that time", seconds_of(slept));
     if (reload_pace.is_due(monotonic_now())) begin_reload();
-    tell_problems();
+    report_problems();
     for (const std::string& line : register_log.news(pipeline.intake().nodes())) spdlog::info("{}", line);
 }
 
-void Daemon::Parts::tell_problems() {
+void Daemon::Parts::report_problems() {
     const DaemonView now = view();
-    problem_log.tell(problems(now), now.now, now.is_settling());
+    problem_log.update(problems(now), now.now, now.is_settling());
 }
 
 DaemonView Daemon::Parts::view() const {
@@ -153,7 +153,7 @@ DaemonView Daemon::Parts::view() const {
             .camera = inputs.camera(),
             .used = last_used,
             .log = log->record(),
-            .saves = keeper->record(),
+            .saves = saver->record(),
             .maps_silent_since = maps_silent_since(now),
             .maps_problem = home->problem(),
             .recorder = recordings.recorder(),

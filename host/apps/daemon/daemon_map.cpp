@@ -14,17 +14,17 @@ namespace octoskin {
 Status<AppError> Daemon::Parts::take_folder() {
     auto taken = MapHome::take(request.map_folder);
     if (!taken) return unexpected(taken.error());
-    keeper.emplace(NamedFolder(taken->folder()));
+    saver.emplace(NamedFolder(taken->folder()));
     home.emplace(std::move(taken).value());
-    tell_load(load_patience(keeper->saved_bytes()));
-    auto saved = keeper->load(settings.mapping, settings.recorded.mapping_crc32());
+    report_load(load_patience(saver->saved_bytes()));
+    auto saved = saver->load(settings.mapping, settings.recorded.mapping_crc32());
     if (!saved) return unexpected(saved.error());
-    if (saved->has_value()) go_on_with(std::move(**saved));
+    if (saved->has_value()) resume_with(std::move(**saved));
     return Done{};
 }
 
 /// Its ages grow by the time since it was saved, here and until its first measurement.
-void Daemon::Parts::go_on_with(KeptMap kept) {
+void Daemon::Parts::resume_with(KeptMap kept) {
     for (const std::string& warning : kept.warnings) spdlog::warn("{}", warning);
     if (kept.is_whole && !is_placed_as(kept.placement_crc32)) kept.map_time.reset();
     const auto passed_s = map_time.begin_with(kept.map, kept.map_time);
@@ -51,13 +51,13 @@ SnapshotOrigin Daemon::Parts::make_ready_to_save(FusedMap& copy) {
     map_time.note(copy, bus);
     return {.mapping_crc32 = settings.recorded.mapping_crc32(),
             .placement_crc32 = settings.recorded.placement_crc32,
-            .map_time = map_time.go_on(copy, bus)};
+            .map_time = map_time.advance_time(copy, bus)};
 }
 
 /// At the place where a person looks for the maps.
 void Daemon::Parts::go_where_home_is(std::optional<OpenFolder> next) {
     if (!next) return;
-    keeper->move_to(NamedFolder(std::move(*next)));
+    saver->move_to(NamedFolder(std::move(*next)));
     spdlog::warn("{}: the maps' folder was removed and made again: the map is still saved there",
                  home->where());
 }
@@ -67,7 +67,7 @@ std::optional<HostTime> Daemon::Parts::maps_silent_since(HostTime now) const {
     constexpr Nanoseconds kLookMax{3'000'000'000};
     const auto& looking = home->looking_since();
     if (looking && now - *looking > kLookMax) return looking;
-    const auto saving = keeper->record().saving_since;
+    const auto saving = saver->record().saving_since;
     if (!saving) return std::nullopt;
     const Nanoseconds save_max = end_patience(pipeline.map().memory_bytes()) + kEndMargin;
     return now - *saving > save_max ? saving : std::nullopt;
@@ -81,7 +81,7 @@ std::size_t Daemon::Parts::bytes_to_save(const MapConfig& map) noexcept {
 
 void Daemon::Parts::save_map() {
     // A save that is still running is counted as skipped; the next one is soon.
-    (void)keeper->save(pipeline.map(), [this](FusedMap& copy) { return make_ready_to_save(copy); });
+    (void)saver->save(pipeline.map(), [this](FusedMap& copy) { return make_ready_to_save(copy); });
 }
 
 /// Why it could not be saved by `end`; empty: it is saved.
@@ -95,7 +95,7 @@ std::string Daemon::Parts::save_last_map(HostTime end) {
                                     seconds_of(monotonic_now() - *silent))
                       : std::string(what);
     };
-    if (!keeper->finish(end - monotonic_now()))
+    if (!saver->finish(end - monotonic_now()))
         return too_long("the disk took too long for the previous save");
     FusedMap last = pipeline.take_map();
     SnapshotOrigin origin;
@@ -105,9 +105,9 @@ std::string Daemon::Parts::save_last_map(HostTime end) {
         origin = {.mapping_crc32 = settings.recorded.mapping_crc32(),
                   .placement_crc32 = settings.recorded.placement_crc32};
     }
-    keeper->save_last(std::move(last), origin);
-    if (!keeper->finish(end - monotonic_now())) return too_long("the disk took too long");
-    return keeper->record().error;
+    saver->save_last(std::move(last), origin);
+    if (!saver->finish(end - monotonic_now())) return too_long("the disk took too long");
+    return saver->record().error;
 }
 
 }  // namespace octoskin

@@ -19,10 +19,10 @@
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/home_watch.hpp"
 #include "host/apps/daemon/inputs.hpp"
-#include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/map_saver.hpp"
 #include "host/apps/daemon/next_settings.hpp"
 #include "host/apps/daemon/problem_log.hpp"
-#include "host/apps/daemon/query_desk.hpp"
+#include "host/apps/daemon/query_server.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/register_log.hpp"
 #include "host/apps/daemon/reload_pace.hpp"
@@ -51,10 +51,10 @@ struct Daemon::Parts {
     Status<AppError> take_folder();
     void watch();
     void attend();
-    void tell_problems();
+    void report_problems();
     void go_where_home_is(std::optional<OpenFolder> next);
     [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
-    void go_on_with(KeptMap kept);
+    void resume_with(KeptMap kept);
     /// The origin of a copy of the map for the next start; first advances the copy to the present time.
     [[nodiscard]] SnapshotOrigin make_ready_to_save(FusedMap& copy);
     void save_map();
@@ -65,7 +65,7 @@ struct Daemon::Parts {
     /// The address space that a save of such a map takes in addition, for its list of bricks.
     [[nodiscard]] static std::size_t bytes_to_save(const MapConfig& map) noexcept;
     [[nodiscard]] bool take_limits(const MapConfig& next);
-    [[nodiscard]] bool go_on_with(Next& next);
+    [[nodiscard]] bool resume_with(Next& next);
     void ask_reload();
     void begin_reload();
     void end_reload();
@@ -86,9 +86,9 @@ struct Daemon::Parts {
     RecordRequests recordings;  ///< releases the pipeline before it is destroyed
     Inputs inputs;
     std::optional<HomeWatch> home;
-    std::optional<MapKeeper> keeper;
+    std::optional<MapSaver> saver;
     std::unique_ptr<ControlSocket> control;
-    QueryDesk queries;
+    QueryServer queries;
     HostTime started;
     std::string reload_error;
     ReloadCounts reloads;
@@ -104,6 +104,6 @@ struct Daemon::Parts {
 };
 
 /// Logs the warnings about the rig and the robot.
-void tell_warnings(const Settings& settings);
+void report_warnings(const Settings& settings);
 
 }  // namespace octoskin

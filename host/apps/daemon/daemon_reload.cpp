@@ -38,7 +38,7 @@ void Daemon::Parts::end_reload() {
 void Daemon::Parts::obey_reload(NextResult next) {
     const bool has_changed = take_next(std::move(next));
     reload_pace.obeyed(monotonic_now(), has_changed);
-    tell_problems();  // including the reason if it was refused
+    report_problems();  // including the reason if it was refused
     (void)sd_notify(0, "READY=1");
 }
 
@@ -54,14 +54,14 @@ bool Daemon::Parts::take_next(NextResult next) {
         spdlog::info("SIGHUP: rig, robot and mapping are unchanged");
         return false;
     }
-    if (next && go_on_with(**next)) return true;
+    if (next && resume_with(**next)) return true;
     spdlog::error("not reloaded");  // the problems contain the reason
     return next.has_value();
 }
 
 /// False, with nothing changed: there is not enough memory. After the limits are set there is no way back: if
 /// a later step lacks memory, the daemon ends, with the map still in the pipeline.
-bool Daemon::Parts::go_on_with(Next& next) {
+bool Daemon::Parts::resume_with(Next& next) {
     std::optional<FusedMap> recorded =
         recordings.last_map();  // changes by the new limits are not part of the recording
     if (!take_limits(next.settings.mapping.map)) return false;
@@ -69,7 +69,7 @@ bool Daemon::Parts::go_on_with(Next& next) {
     inputs.prepare_for(next.settings.host.rig);
     const std::uint64_t dropped = settle_pipeline();
     if (!is_placed_as(next.settings.recorded.placement_crc32)) map_time.forget(pipeline);
-    next.pipeline.go_on_from(pipeline);
+    next.pipeline.resume_from(pipeline);
     settings = std::move(next.settings);
     pipeline = std::move(next.pipeline);
     pipeline.work_beside(&depth_thread);
@@ -79,7 +79,7 @@ bool Daemon::Parts::go_on_with(Next& next) {
     reloaded = monotonic_now();
     spdlog::info("reloaded: rig '{}'; the map is kept; {} waiting inputs were not used",
                  settings.host.rig.name, dropped);
-    tell_warnings(settings);
+    report_warnings(settings);
     return true;
 }
 
@@ -109,9 +109,9 @@ bool Daemon::Parts::take_limits(const MapConfig& next) {
 /// Uses or counts all that waits in the old pipeline; returns how much was not used.
 std::uint64_t Daemon::Parts::settle_pipeline() {
     const auto rejected = [this] {
-        const PipelineAccounts& accounts = pipeline.accounts();
-        return accounts.readings.rejected() + accounts.joint_samples.rejected() +
-               accounts.depth_frames.rejected();
+        const PipelineInputs& counted = pipeline.inputs();
+        return counted.readings.rejected() + counted.joint_samples.rejected() +
+               counted.depth_frames.rejected();
     };
     const std::uint64_t before = rejected();
     pipeline.finish();

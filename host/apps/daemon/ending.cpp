@@ -18,7 +18,7 @@ Nanoseconds end_patience(std::size_t map_bytes) noexcept {
     return kSmallMap + Nanoseconds{kNsPerByte * static_cast<std::int64_t>(map_bytes - kSmallBytes)};
 }
 
-void tell_end(Nanoseconds patience) {
+void report_end(Nanoseconds patience) {
     const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience + kEndMargin);
     (void)sd_notifyf(0, "STOPPING=1\nEXTEND_TIMEOUT_USEC=%lld\nWATCHDOG_USEC=%lld",
                      static_cast<long long>(all.count()), static_cast<long long>(all.count()));
@@ -30,12 +30,12 @@ Nanoseconds load_patience(std::uint64_t bytes) noexcept {
     return kUsual + Nanoseconds{kNsPerByte * static_cast<std::int64_t>(bytes)};
 }
 
-void tell_load(Nanoseconds patience) {
+void report_load(Nanoseconds patience) {
     const auto all = std::chrono::duration_cast<std::chrono::microseconds>(patience);
     (void)sd_notifyf(0, "EXTEND_TIMEOUT_USEC=%lld", static_cast<long long>(all.count()));
 }
 
-int tell_why_it_ends(const std::exception& thrown) {
+int report_why_it_ends(const std::exception& thrown) {
     const auto shortage = shortage_in(thrown);
     if (!shortage) {
         spdlog::critical("a defect of octoskin, please report it: {}; octoskin saves the map and ends",

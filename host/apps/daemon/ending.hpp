@@ -22,15 +22,15 @@ inline constexpr int kInternalDefect = 70;
 inline constexpr Nanoseconds kEndMargin{6'500'000'000};
 
 /// Asks the service manager to wait that long, and its watchdog too: the loop that feeds it has ended.
-void tell_end(Nanoseconds patience);
+void report_end(Nanoseconds patience);
 
 /// How long the start may take to read `bytes` of saved maps: the time of a disk with 25 MB/s, plus the 90 s
 /// of the unit.
 [[nodiscard]] Nanoseconds load_patience(std::uint64_t bytes) noexcept;
 /// Asks the service manager to wait that long for the daemon's start.
-void tell_load(Nanoseconds patience);
+void report_load(Nanoseconds patience);
 
 /// Logs the reason, and returns the exit code for it.
-[[nodiscard]] int tell_why_it_ends(const std::exception& thrown);
+[[nodiscard]] int report_why_it_ends(const std::exception& thrown);
 
 }  // namespace octoskin

@@ -142,7 +142,7 @@ void Inputs::attend() {
     catch_up();  // without a kernel, the echoes of this host's frames wake no one
     exchange_alone();
     const auto bus_now = bus_time_.at(now);
-    if (bus_now && now - told_ > BusTime::kSilent) pipeline_.on_silence(*bus_now);
+    if (bus_now && now - reported_ > BusTime::kSilent) pipeline_.on_silence(*bus_now);
 }
 
 /// Joint states of this machine have times of its own clock, so they need no working bus. For the pipeline
@@ -263,7 +263,7 @@ void Inputs::answer_sync(const socketcan::Received& received, HostTime at) {
 
 /// Passes the frame to the pipeline, and notes the time since its arrival and the age of the readings.
 void Inputs::feed(const wire::CanFrame& frame, WallTime stamp) {
-    if (is_of_node(frame)) told_ = monotonic_now();
+    if (is_of_node(frame)) reported_ = monotonic_now();
     recordings_.on_can(frame, stamp);
     pipeline_.on_can(frame, stamp);
     note_host_frame(frame, stamp);

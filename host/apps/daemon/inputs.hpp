@@ -39,8 +39,8 @@ class Inputs {
     [[nodiscard]] Status<AppError> take_sockets(const HostRig& rig);
     /// From now on the loop delivers the inputs.
     void watch(const HostRig& rig);
-    /// Switches to another rig: its filters, joints and camera. Call `prepare_for` before, while the pipeline
-    /// is the former rig's, and this when the pipeline is the new rig's.
+    /// Switches to another rig: its filters, joints and camera. First call `prepare_for`, with the pipeline
+    /// of the former rig. Call this with the pipeline of the new rig.
     void change_rig(const HostRig& rig);
     /// Prepares for the next rig: waiting inputs go into the pipeline, joint states first. A camera that the
     /// rig uses in another mode, or not at all, is released, and its waiting frames go into the pipeline,
@@ -58,17 +58,17 @@ class Inputs {
     [[nodiscard]] Nanoseconds bus_busy() const noexcept { return bus_busy_; }
     /// Null without a socket.
     [[nodiscard]] const JointSocket* joints() const noexcept { return joints_ ? &*joints_ : nullptr; }
-    /// Samples of the socket that followed the one before too soon.
+    /// Samples of the socket that were left out because they followed the one before too soon.
     [[nodiscard]] std::uint64_t joints_thinned() const noexcept { return joints_thinned_; }
-    /// Samples of the socket that came while several programs sent some.
+    /// Samples of the socket that came while several programs were sending samples.
     [[nodiscard]] std::uint64_t joints_of_several() const noexcept { return joints_of_several_; }
-    /// Datagrams of the socket displaced by newer ones: the loop was held up, or they are a flood.
+    /// Datagrams of the socket that newer ones displaced: the loop was delayed, or too many arrived.
     [[nodiscard]] std::uint64_t joints_displaced() const;
     /// Datagrams were displaced within the last 2 s, or exceeded the share of one program.
     [[nodiscard]] bool is_flooded(HostTime now) const;
     /// Frames of the rig's joint node on the bus, while the socket is the source.
     [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
-    /// Empty without a camera. Its `untimed` includes those that came while another host's clock was not
+    /// Empty without a camera. Its `untimed` includes the frames that came while another host's clock was not
     /// known.
     [[nodiscard]] std::optional<CameraRecord> camera() const;
     /// For readings that reached the map with a frame: the time since the arrival of that frame.
@@ -90,7 +90,7 @@ class Inputs {
 
   private:
     [[nodiscard]] std::optional<openni2::CameraMode> mode_for(const HostRig& rig) const;
-    /// Opens the camera, once the one before is released; without a thread left, tries again in a second.
+    /// Opens the camera once the one before is released. If no thread is left, tries again in a second.
     void attend_camera();
     void take_depth(DepthFrame frame);
     /// False if there may be more frames.
@@ -114,7 +114,7 @@ class Inputs {
     EventLoop& loop_;
     Pipeline& pipeline_;
     RecordRequests& recordings_;
-    EventSource can_ready_;  ///< before the link: it must release a descriptor before that is closed
+    EventSource can_ready_;  ///< declared before the link, which resets it before it closes a descriptor
     CanLink can_;
     SyncMaster sync_;
     wire::NodeId joint_node_;
@@ -122,10 +122,10 @@ class Inputs {
     JointBurst joint_burst_;
     std::optional<JointSocket> joints_;
     EventSource joints_ready_;
-    std::deque<JointSample> joints_waiting_;  ///< for frames of the bus that arrived before them
+    std::deque<JointSample> joints_waiting_;  ///< until the CAN frames that arrived before them are taken
     bool has_joints_left_ = false;            ///< more arrived than one turn takes
-    std::uint64_t joints_late_ = 0;        ///< left out: later frames are in the pipeline, or the rig changed
-    std::optional<WallTime> rig_changed_;  ///< by a reload
+    std::uint64_t joints_late_ = 0;           ///< left out: later frames are already used, or the rig changed
+    std::optional<WallTime> rig_changed_;     ///< by a reload
     std::uint64_t displaced_noted_ = 0;
     std::optional<HostTime> displaced_at_;  ///< when displaced samples were noted last
     std::optional<WallTime> newest_stamp_;  ///< of the frames in the pipeline that are no joint samples
@@ -143,7 +143,7 @@ class Inputs {
     std::uint64_t joints_of_several_ = 0;
     std::uint64_t joint_node_ignored_ = 0;
     std::uint64_t foreign_follow_ups_ = 0;
-    HostTime told_;  ///< arrival of the newest frame that gives the pipeline the time
+    HostTime reported_;  ///< arrival of the newest frame of a node, which gives the pipeline the time
     std::optional<HostTime> foreign_sync_;
     ForeignClock foreign_clock_;
     BusTime bus_time_;

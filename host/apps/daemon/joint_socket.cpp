@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "host/apps/daemon/unix_socket.hpp"
-#include "host/apps/querying/joint_lines.hpp"
+#include "host/apps/query/joint_lines.hpp"
 #include "host/apps/recording/shortage.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"

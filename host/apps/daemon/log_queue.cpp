@@ -57,16 +57,16 @@ class LogQueue::Work {
         return message.payload.size() + kLineBytes;
     }
     void write(const Line& line);
-    void tell_dropped(std::uint64_t count);
+    void report_dropped(std::uint64_t count);
 
     std::vector<spdlog::sink_ptr> sinks_;
     std::size_t bytes_max_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Line> lines_;
-    std::size_t bytes_ = 0;             ///< of `lines_`
-    std::uint64_t dropped_ = 0;         ///< in all
-    std::uint64_t dropped_untold_ = 0;  ///< since the newest line that waits
+    std::size_t bytes_ = 0;                 ///< of `lines_`
+    std::uint64_t dropped_ = 0;             ///< in all
+    std::uint64_t dropped_unreported_ = 0;  ///< since the newest line that waits
     std::optional<HostTime> writing_since_;
     bool is_ending_ = false;
     std::atomic<std::size_t> waiting_ = 0;  ///< includes the one being written
@@ -78,13 +78,13 @@ void LogQueue::Work::add(const spdlog::details::log_msg& message) {
         const std::size_t bytes = bytes_of(message);
         try {
             if (bytes_ + bytes > bytes_max_) throw std::bad_alloc();
-            lines_.push_back({spdlog::details::log_msg_buffer(message), dropped_untold_});
+            lines_.push_back({spdlog::details::log_msg_buffer(message), dropped_unreported_});
         } catch (const std::bad_alloc&) {  // no memory of any kind
             ++dropped_;
-            ++dropped_untold_;
+            ++dropped_unreported_;
             return;
         }
-        dropped_untold_ = 0;
+        dropped_unreported_ = 0;
         bytes_ += bytes;
         ++waiting_;
     }
@@ -100,12 +100,12 @@ void LogQueue::Work::run() {
         lines_.pop_front();
         bytes_ -= bytes_of(line.message);
         // If no line behind it can report them.
-        const std::uint64_t dropped_after = lines_.empty() ? std::exchange(dropped_untold_, 0) : 0;
+        const std::uint64_t dropped_after = lines_.empty() ? std::exchange(dropped_unreported_, 0) : 0;
         writing_since_ = monotonic_now();
         lock.unlock();
         try {
             write(line);
-            tell_dropped(dropped_after);
+            report_dropped(dropped_after);
         } catch (const std::exception&) {  // it cannot be logged
         }
         lock.lock();
@@ -115,12 +115,12 @@ void LogQueue::Work::run() {
 }
 
 void LogQueue::Work::write(const Line& line) {
-    tell_dropped(line.dropped_before);
+    report_dropped(line.dropped_before);
     for (const auto& each : sinks_)
         if (each->should_log(line.message.level)) each->log(line.message);
 }
 
-void LogQueue::Work::tell_dropped(std::uint64_t count) {
+void LogQueue::Work::report_dropped(std::uint64_t count) {
     if (count == 0) return;
     const std::string text = fmt::format(
         "{} lines are left out here, because the reader of the log took none for too long", count);

@@ -11,13 +11,13 @@
 
 namespace octoskin {
 
-void ProblemLog::tell(std::vector<Problem> problems, HostTime now, bool is_settling) {
-    const auto is_hidden = [&problems](const Problem& told) {
-        return !told.hidden_by.empty() &&
-               std::ranges::find(problems, told.hidden_by, &Problem::subject) != problems.end();
+void ProblemLog::update(std::vector<Problem> problems, HostTime now, bool is_settling) {
+    const auto is_hidden = [&problems](const Problem& reported) {
+        return !reported.hidden_by.empty() &&
+               std::ranges::find(problems, reported.hidden_by, &Problem::subject) != problems.end();
     };
-    for (Told& told : told_)
-        if (is_settling || is_hidden(told.problem)) told.seen = now;
+    for (LoggedProblem& reported : logged_)
+        if (is_settling || is_hidden(reported.problem)) reported.seen = now;
     log(problems, now);
     log_over(now);
     if (newest_ == problems) return;
@@ -29,43 +29,47 @@ void ProblemLog::tell(std::vector<Problem> problems, HostTime now, bool is_settl
 
 void ProblemLog::log(const std::vector<Problem>& problems, HostTime now) {
     for (const Problem& problem : problems) {
-        const auto told = std::ranges::find(
-            told_, problem.about, [](const Told& each) -> const std::string& { return each.problem.about; });
-        if (told == told_.end()) {
+        const auto reported = std::ranges::find(
+            logged_, problem.about,
+            [](const LoggedProblem& each) -> const std::string& { return each.problem.about; });
+        if (reported == logged_.end()) {
             spdlog::warn("{}", problem.text);
-            told_.push_back({problem, now, returns_of_gone(problem)});
+            logged_.push_back({problem, now, returns_of_gone(problem)});
         } else {
-            const bool was_away = now - told->seen >= kOver;
-            *told = {problem, now, told->returns + (was_away ? 1U : 0U)};
+            const bool was_away = now - reported->seen >= kOver;
+            *reported = {problem, now, reported->returns + (was_away ? 1U : 0U)};
         }
     }
 }
 
 /// A sentence that was replaced by another one of the same subject is removed without "over".
 void ProblemLog::log_over(HostTime now) {
-    const auto is_over = [now](const Told& told) { return now - told.seen >= told.over_after(); };
-    for (const Told& told : told_) {
-        const bool is_replaced = std::ranges::any_of(told_, [&](const Told& other) {
+    const auto is_over = [now](const LoggedProblem& reported) {
+        return now - reported.seen >= reported.over_after();
+    };
+    for (const LoggedProblem& reported : logged_) {
+        const bool is_replaced = std::ranges::any_of(logged_, [&](const LoggedProblem& other) {
             return !is_over(other) && !other.problem.subject.empty() &&
-                   other.problem.subject == told.problem.subject;
+                   other.problem.subject == reported.problem.subject;
         });
-        if (!is_over(told)) continue;
+        if (!is_over(reported)) continue;
         if (!is_replaced) {
-            const std::string often = told.returns > kFreeReturns
-                                          ? fmt::format(" (it came and went {} times)", told.returns + 1)
+            const std::string often = reported.returns > kFreeReturns
+                                          ? fmt::format(" (it came and went {} times)", reported.returns + 1)
                                           : "";
-            spdlog::info("over: {}{}", told.problem.text, often);
+            spdlog::info("over: {}{}", reported.problem.text, often);
         }
-        gone_.push_back(told);
+        gone_.push_back(reported);
     }
-    std::erase_if(told_, is_over);
+    std::erase_if(logged_, is_over);
     forget_old(now);
 }
 
 /// How often a problem that appears has come back by now. Removes it from the gone ones.
 unsigned ProblemLog::returns_of_gone(const Problem& problem) {
-    const auto gone = std::ranges::find(
-        gone_, problem.about, [](const Told& each) -> const std::string& { return each.problem.about; });
+    const auto gone =
+        std::ranges::find(gone_, problem.about,
+                          [](const LoggedProblem& each) -> const std::string& { return each.problem.about; });
     if (gone == gone_.end()) return 0;
     const unsigned returns = gone->returns + 1;
     gone_.erase(gone);
@@ -73,11 +77,11 @@ unsigned ProblemLog::returns_of_gone(const Problem& problem) {
 }
 
 void ProblemLog::forget_old(HostTime now) {
-    std::erase_if(gone_, [now](const Told& gone) { return now - gone.seen >= kForgotten; });
+    std::erase_if(gone_, [now](const LoggedProblem& gone) { return now - gone.seen >= kForgotten; });
     if (gone_.size() > kGoneMax) gone_.erase(gone_.begin(), gone_.end() - kGoneMax);
 }
 
-Nanoseconds ProblemLog::Told::over_after() const {
+Nanoseconds ProblemLog::LoggedProblem::over_after() const {
     constexpr unsigned kDoublingsMax = 8;  // 2 s to over kOverMax
     const unsigned doublings = std::min(returns - std::min(returns, kFreeReturns), kDoublingsMax);
     return std::min(kOver * (1 << doublings), kOverMax);

@@ -36,10 +36,10 @@ class ProblemLog {
 
     /// `problems`: all that exist now. While `is_settling`, some cannot be judged, and no reported problem is
     /// over.
-    void tell(std::vector<Problem> problems, HostTime now, bool is_settling = false);
+    void update(std::vector<Problem> problems, HostTime now, bool is_settling = false);
 
   private:
-    struct Told {
+    struct LoggedProblem {
         Problem problem;
         HostTime seen;         ///< when it was last there
         unsigned returns = 0;  ///< after it was absent for kOver
@@ -52,8 +52,8 @@ class ProblemLog {
     void forget_old(HostTime now);
 
     static constexpr std::size_t kGoneMax = 256;
-    std::vector<Told> told_;
-    std::vector<Told> gone_;  ///< in the order of their ends
+    std::vector<LoggedProblem> logged_;
+    std::vector<LoggedProblem> gone_;  ///< in the order of their ends
     std::vector<Problem> newest_;
 };
 

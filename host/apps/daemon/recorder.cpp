@@ -60,17 +60,17 @@ Recorder::Recorder(const std::filesystem::path& folder, std::optional<Nanosecond
       depth_max_m_(pipeline.depth_stage() != nullptr ? pipeline.depth_stage()->camera().depth_max_m : 0.0),
       begun_(now),
       pipeline_(&pipeline),
-      accounts_at_begin_(pipeline.account_tables()),
+      inputs_at_begin_(pipeline.counter_tables()),
       writer_(begin_of(folder, settings, pipeline, copier_)) {
     entry_.interface = settings.interface;
     // Poses are still interpolated from earlier samples.
     pipeline.builder().for_each_joint_sample([this](const JointMeasurement& joints) { put(joints); });
     commits_before_ = counts_.commits;
-    pipeline.tell(this);  // the last step: nothing may throw after it
+    pipeline.set_listener(this);  // the last step: nothing may throw after it
 }
 
 Recorder::~Recorder() {
-    if (pipeline_ != nullptr) pipeline_->tell(nullptr);
+    if (pipeline_ != nullptr) pipeline_->set_listener(nullptr);
 }
 
 void Recorder::on_can(const wire::CanFrame& frame, WallTime stamp) {
@@ -102,14 +102,14 @@ void Recorder::on_depth(const DepthFrame& frame, const Evidence&) {
     put(commit);
 }
 
-void Recorder::on_time_leap() {
+void Recorder::on_time_jump() {
     stop(monotonic_now(),
          "the bus time jumped, and a replay could not continue from there: the host that sends SYNC "
          "restarted or was set, another host sends it too, or this machine slept");
 }
 
 void Recorder::attend(HostTime now) {
-    if (stopped_) return tell_end();
+    if (stopped_) return report_end();
     const bool is_long_enough = limit_ && now - begun_ >= *limit_;
     if (is_long_enough || !writer_.error().empty()) stop(now);
 }
@@ -135,16 +135,16 @@ void Recorder::stop(HostTime now, std::string early, std::optional<FusedMap> las
                               .depth_frames = depth_frames_,
                               .duration_s = seconds_of(now - begun_)},
                      .last_map = std::move(last_map)};
-    pipeline_->tell(nullptr);
+    pipeline_->set_listener(nullptr);
     pipeline_ = nullptr;
     writer_.finish(std::move(end));
-    tell_end();
+    report_end();
 }
 
-void Recorder::tell_end() {
+void Recorder::report_end() {
     const std::string why = error();
-    if (is_end_told_ || (why.empty() && !has_ended())) return;
-    is_end_told_ = true;
+    if (is_end_reported_ || (why.empty() && !has_ended())) return;
+    is_end_reported_ = true;
     if (!why.empty()) {
         spdlog::error("the recording has failed: {}", why);
     } else if (!early_.empty()) {
@@ -166,11 +166,11 @@ std::optional<FusedMap> Recorder::last_map() const {
 
 std::string Recorder::remarks() const try {
     std::string text = "# rejected while this was recorded:\n";
-    const auto now = pipeline_->account_tables();
+    const auto now = pipeline_->counter_tables();
     for (std::size_t unit = 0; unit < now.size(); ++unit) {
         for (std::size_t row = 0; row < now[unit].rejected.size(); ++row) {
             const auto& rejected = now[unit].rejected[row];
-            const std::uint64_t count = rejected.count - accounts_at_begin_[unit].rejected[row].count;
+            const std::uint64_t count = rejected.count - inputs_at_begin_[unit].rejected[row].count;
             if (count > 0) text += fmt::format("# {} {} {}\n", now[unit].unit, rejected.name, count);
         }
     }

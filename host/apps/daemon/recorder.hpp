@@ -86,14 +86,14 @@ class Recorder final : public CommitListener {
     void on_depth(const DepthFrame& frame, const Evidence& terms) override;
     void on_wait(const WaitCommit& passed) override { put(passed); }
     /// Ends the recording: its replay could not continue from there.
-    void on_time_leap() override;
+    void on_time_jump() override;
 
   private:
     void put(const Commit& commit);
     /// Counts of rejected inputs since the start, by name.
     [[nodiscard]] std::string remarks() const;
     /// Logs the result once it has ended.
-    void tell_end();
+    void report_end();
 
     Copier copier_;
     std::filesystem::path folder_;
@@ -103,9 +103,9 @@ class Recorder final : public CommitListener {
     HostTime begun_;
     std::optional<HostTime> stopped_;
     std::string early_;  ///< why it ended before its time; empty: it did not
-    bool is_end_told_ = false;
+    bool is_end_reported_ = false;
     Pipeline* pipeline_;
-    std::vector<AccountTable> accounts_at_begin_;
+    std::vector<CounterTable> inputs_at_begin_;
     candump::LogEntry entry_;
     orderlog::Trailer counts_;
     std::uint64_t commits_before_ = 0;  ///< joint samples in the daemon at the start

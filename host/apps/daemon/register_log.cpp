@@ -10,7 +10,8 @@ std::vector<std::string> RegisterLog::news(const NodeRegistry& nodes) {
     std::vector<std::string> lines;
     for (const auto& [node, record] : nodes.records()) {
         for (const wire::RegisterReport& report : record.registers.alike()) {
-            if (told_.size() >= kToldMax || !told_.emplace(node, report.index, report.read).second) continue;
+            if (reported_.size() >= kToldMax || !reported_.emplace(node, report.index, report.read).second)
+                continue;
             lines.push_back(fmt::format("node {} '{}': {}", node, record.expected.name, alike_text(report)));
         }
     }

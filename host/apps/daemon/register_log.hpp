@@ -18,7 +18,7 @@ class RegisterLog {
     [[nodiscard]] std::vector<std::string> news(const NodeRegistry& nodes);
 
   private:
-    std::set<std::tuple<wire::NodeId, std::uint8_t, std::uint8_t>> told_;  ///< node, register, read
+    std::set<std::tuple<wire::NodeId, std::uint8_t, std::uint8_t>> reported_;  ///< node, register, read
 };
 
 }  // namespace octoskin

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "host/apps/choosing/named_mapping.hpp"
-#include "host/apps/choosing/rig_pipeline.hpp"
+#include "host/apps/profile/named_mapping.hpp"
+#include "host/apps/profile/rig_pipeline.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/io/mapping/mapping_file.hpp"

@@ -67,8 +67,8 @@ Json clock_json(const DaemonView& view) {
 
 Json not_excluded_json(const SensorEvidence& evidence) {
     Json faults = Json::array();
-    for (std::size_t i = 0; i < kSensorFaults; ++i)
-        if (evidence.not_excluded[i]) faults.push_back(name(static_cast<SensorFault>(i)));
+    for (std::size_t i = 0; i < kRangeFaults; ++i)
+        if (evidence.not_excluded[i]) faults.push_back(name(static_cast<RangeFault>(i)));
     return faults;
 }
 
@@ -103,8 +103,9 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
     json["reflex_below_m"] = node.sensors[index].reflex_below_m;
     json["reflex_m"] = record.reflex ? Json(record.reflex->range_mm * 1e-3) : Json(nullptr);
     json["camera"] = nullptr;
-    if (const SensorWitness* const witness = view.pipeline->builder().witness()) {
-        const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
+    if (const CrossCheck* const cross_check = view.pipeline->builder().cross_check()) {
+        const SensorEvidence& evidence =
+            cross_check->evidence(node.node_id, static_cast<std::uint8_t>(index));
         const bool is_refused =
             view.pipeline->builder().is_refused(node.node_id, static_cast<std::uint8_t>(index));
         json["camera"] = {{"verdict", name(evidence.verdict())},
@@ -149,7 +150,7 @@ Json registers_json(const DaemonView& view, const HostNode& node, const NodeReco
 Json node_json(const DaemonView& view, const HostNode& node) {
     const CanIntake& intake = view.pipeline->intake();
     const NodeRecord& record = intake.nodes().records().at(node.node_id);
-    const NodeVerdict verdict = intake.nodes().verdict(node.node_id, view.bus_now);
+    const NodeCondition verdict = intake.nodes().verdict(node.node_id, view.bus_now);
     const auto reason = intake.nodes().reason(node.node_id, view.bus_now);
     const ClockMap& clock = intake.clock(node.node_id);
     const bool is_clock_known = view.bus_now && !clock.fault(*view.bus_now);
@@ -158,7 +159,7 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     Json json = {
         {"id", node.node_id},
         {"name", node.name},
-        {"verdict", names_of(NodeVerdict{})[static_cast<std::size_t>(verdict)]},
+        {"verdict", names_of(NodeCondition{})[static_cast<std::size_t>(verdict)]},
         {"reason", reason ? Json(reason->text()) : Json(nullptr)},
         {"state", record.heartbeat ? Json(name(record.heartbeat->state)) : Json(nullptr)},
         {"age_s", age_s(record.heard, view.bus_now)},
@@ -181,13 +182,13 @@ Json node_json(const DaemonView& view, const HostNode& node) {
 
 /// The fault that the comparison of images with ranges finds, if any.
 PoseFault pose_fault(const DaemonView& view) {
-    const SensorWitness* const witness = view.pipeline->builder().witness();
-    return witness != nullptr ? witness->pose().fault().value_or(PoseFault{}) : PoseFault{};
+    const CrossCheck* const cross_check = view.pipeline->builder().cross_check();
+    return cross_check != nullptr ? cross_check->pose().fault().value_or(PoseFault{}) : PoseFault{};
 }
 
 Json camera_json(const DaemonView& view) {
     if (!view.camera) return nullptr;
-    const SensorWitness* const witness = view.pipeline->builder().witness();
+    const CrossCheck* const cross_check = view.pipeline->builder().cross_check();
     const PoseFault fault = pose_fault(view);
     const auto& error = fault.camera;
     const auto axes = [](const Eigen::Vector3d& of) { return Json{of.x(), of.y(), of.z()}; };
@@ -198,7 +199,7 @@ Json camera_json(const DaemonView& view) {
             {"untimed", view.camera->untimed},
             {"repeated", view.camera->repeated},
             {"opened", view.camera->opened},
-            {"is_off", witness != nullptr ? Json(error && !fault.joint) : Json(nullptr)},
+            {"is_off", cross_check != nullptr ? Json(error && !fault.joint) : Json(nullptr)},
             {"turned_deg", error ? axes(error->turn_deg) : Json(nullptr)},
             {"shifted_m", error ? axes(error->shift_m) : Json(nullptr)},
             {"depth_scale", error ? Json(error->depth_scale) : Json(nullptr)},
@@ -276,11 +277,11 @@ Json map_json(const DaemonView& view) {
             {"folder_silent_s", age_s(view.maps_silent_since, view.now)}};
 }
 
-Json account_json(const Pipeline& pipeline) {
+Json inputs_json(const Pipeline& pipeline) {
     Json units = Json::object();
-    for (const AccountTable& table : pipeline.account_tables()) {
+    for (const CounterTable& table : pipeline.counter_tables()) {
         Json rejected = Json::object();
-        for (const AccountTable::Row& row : table.rejected)
+        for (const CounterTable::Row& row : table.rejected)
             if (row.count > 0) rejected[row.name] = row.count;
         units[table.unit] = {{"in", table.in},
                              {"used", table.used},
@@ -294,23 +295,23 @@ Json account_json(const Pipeline& pipeline) {
 }  // namespace
 
 void LastUsed::note(const Pipeline& pipeline, HostTime now) {
-    const PipelineAccounts& accounts = pipeline.accounts();
+    const PipelineInputs& inputs = pipeline.inputs();
     const auto note_one = [now](std::uint64_t count, std::uint64_t& before, std::optional<HostTime>& last) {
         if (count > before) last = now;
         before = count;
     };
-    note_one(accounts.joint_samples.used(), counts_[0], joint_sample);
-    note_one(accounts.readings.used(), counts_[1], reading);
-    note_one(accounts.depth_frames.used(), counts_[2], depth_frame);
-    note_one(accounts.joint_samples.rejected(JointReason::joint_jump), counts_[6], joint_jump);
-    note_one(accounts.joint_samples.rejected(JointReason::second_sender) +
+    note_one(inputs.joint_samples.used(), counts_[0], joint_sample);
+    note_one(inputs.readings.used(), counts_[1], reading);
+    note_one(inputs.depth_frames.used(), counts_[2], depth_frame);
+    note_one(inputs.joint_samples.rejected(JointReason::joint_jump), counts_[6], joint_jump);
+    note_one(inputs.joint_samples.rejected(JointReason::second_sender) +
                  pipeline.intake().joint_senders().contradictions(),
              counts_[7], joint_senders);
     note_one(pipeline.times_back(), counts_[3], time_back);
     note_one(pipeline.times_ahead(), counts_[5], time_ahead);
     constexpr Nanoseconds kAgain{1'000'000'000};
     const auto before = depth_left_out;
-    note_one(accounts.depth_frames.rejected(DepthReason::queue_overflow), counts_[4], depth_left_out);
+    note_one(inputs.depth_frames.rejected(DepthReason::queue_overflow), counts_[4], depth_left_out);
     if (depth_left_out == now && (!before || now - *before > kAgain)) depth_left_out_since = now;
 }
 
@@ -344,7 +345,7 @@ Json status_json(const DaemonView& view) {
              {{"dropped", view.log.dropped},
               {"waiting", view.log.waiting},
               {"stuck_s", age_s(view.log.stuck_since, view.now)}}},
-            {"account", account_json(*view.pipeline)}};
+            {"inputs", inputs_json(*view.pipeline)}};
 }
 
 }  // namespace octoskin

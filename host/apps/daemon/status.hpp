@@ -1,4 +1,4 @@
-// What is going on, for a person and for a script: one JSON object (docs/status.md has every key).
+// The daemon's status, for users and for scripts: one JSON object (docs/status.md has every key).
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 #include "host/apps/daemon/camera_feed.hpp"
 #include "host/apps/daemon/inputs.hpp"
 #include "host/apps/daemon/log_queue.hpp"
-#include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/map_saver.hpp"
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/recorder.hpp"
 #include "host/core/pipeline/pipeline.hpp"
@@ -20,19 +20,19 @@
 
 namespace octoskin {
 
-/// When something last happened; empty if never.
+/// When inputs of each kind were last used, and when some problems last occurred; empty: never.
 class LastUsed {
   public:
     /// Call this often: inputs used since the last call count as used now.
     void note(const Pipeline& pipeline, HostTime now);
 
     std::optional<HostTime> joint_sample;
-    std::optional<HostTime> joint_jump;     ///< one was rejected for it
-    std::optional<HostTime> joint_senders;  ///< two contradicted each other, or one was withheld for it
+    std::optional<HostTime> joint_jump;     ///< a sample was rejected because of a jump
+    std::optional<HostTime> joint_senders;  ///< two contradicted each other, or a sample was withheld for it
     std::optional<HostTime> reading;
     std::optional<HostTime> depth_frame;
     std::optional<HostTime> time_back;             ///< the bus time went back
-    std::optional<HostTime> time_ahead;            ///< or jumped ahead
+    std::optional<HostTime> time_ahead;            ///< the bus time jumped ahead
     std::optional<HostTime> depth_left_out;        ///< for lack of time (queue_overflow)...
     std::optional<HostTime> depth_left_out_since;  ///< ... again and again, at least once a second
 
@@ -44,7 +44,7 @@ struct ReloadCounts {
     std::uint64_t count = 0;
     std::uint64_t unchanged = 0;  ///< how often the files were unchanged
     std::uint64_t dropped = 0;    ///< waiting readings, joint samples and depth frames that could not be used
-    std::optional<HostTime> reading_since = {};  ///< since when the files are being read; empty: they are not
+    std::optional<HostTime> reading_since = {};  ///< start of the reload in progress; empty: none is
 };
 
 /// All inputs of the status. The objects that it points to must exist.
@@ -64,11 +64,11 @@ struct DaemonView {
     LastUsed used;
     LogRecord log;
     SaveRecord saves;
-    std::optional<HostTime> maps_silent_since;  ///< a save or check of the folder hangs; empty: none
+    std::optional<HostTime> maps_silent_since;  ///< since when a save or check of the folder hangs
     std::string maps_problem;                   ///< the problem of the maps' folder; empty: none
-    const Recorder* recorder = nullptr;         ///< the running one, or the last one; null if there was none
-    std::string recording_refusal;              ///< why the newest one could not start; empty if it could
-    std::string reload_error;                   ///< of the newest SIGHUP; empty if it succeeded
+    const Recorder* recorder = nullptr;  ///< the running recorder, or the last one; null if there was none
+    std::string recording_refusal;       ///< why the newest one could not start; empty if it could
+    std::string reload_error;            ///< of the newest SIGHUP; empty if it succeeded
     ReloadCounts reloads;
     std::optional<HostTime> reloaded;  ///< when SIGHUP last changed something
 
@@ -81,17 +81,17 @@ struct DaemonView {
     }
 };
 
-/// All problems, the most fundamental first, a sentence each: an empty map has its reason here.
+/// All problems, the most fundamental first, a sentence each. If the map is empty, the reason is among them.
 [[nodiscard]] std::vector<Problem> problems(const DaemonView& view);
-/// The problem of a camera that has `rate_hz` frames a second in the rig; empty if there is none. If its mode
-/// has another rate, that one is used.
+/// The problem of a camera that has `rate_hz` frames a second in the rig; empty if there is none. If the rate
+/// of its mode differs, the mode's rate is used.
 [[nodiscard]] std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz, HostTime now);
 /// Empty if its mode is not known, or has about the rig's rate.
 [[nodiscard]] std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double rate_hz);
 
 /// Two senders of joint states are active, and neither is used.
 [[nodiscard]] bool are_joints_withheld(const DaemonView& view);
-/// More samples come through the joint socket than at the rig's rate: the surplus is left out.
+/// Samples come through the joint socket at more than the rig's rate: the surplus is left out.
 [[nodiscard]] bool are_joints_above_rate(const DaemonView& view);
 
 [[nodiscard]] nlohmann::ordered_json status_json(const DaemonView& view);

@@ -66,8 +66,8 @@ Unexpected<AppError> cannot_listen(const std::filesystem::path& file, const std:
 std::string listener_of(int probe) {
     ucred listener{};
     socklen_t size = sizeof(listener);
-    const bool is_told = ::getsockopt(probe, SOL_SOCKET, SO_PEERCRED, &listener, &size) == 0;
-    return is_told && listener.pid > 0 ? " (process " + std::to_string(listener.pid) + ")" : std::string();
+    const bool is_known = ::getsockopt(probe, SOL_SOCKET, SO_PEERCRED, &listener, &size) == 0;
+    return is_known && listener.pid > 0 ? " (process " + std::to_string(listener.pid) + ")" : std::string();
 }
 
 /// Empty if there is no listener, else a description of it. Does not wait for one that accepts no connection.
@@ -77,14 +77,14 @@ std::optional<std::string> find_listener(const sockaddr_un& address, int type) {
     const bool is_connected =
         ::connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
     // Refused, or no such name: no listener. On any other error there may be one.
-    const bool is_nobody =
+    const bool is_unknown =
         !is_connected && (errno == ECONNREFUSED || errno == ENOENT || errno == ENOTDIR || errno == ENOTSOCK);
     const bool is_full = !is_connected && errno == EAGAIN;
     const std::string listener = is_connected ? listener_of(probe)
                                  : is_full    ? " (it accepts no connection: is it stopped?)"
                                               : std::string();
     ::close(probe);
-    return is_nobody ? std::nullopt : std::optional(listener);
+    return is_unknown ? std::nullopt : std::optional(listener);
 }
 
 /// Held from the check for another daemon until the socket is bound: two daemons that start at once would

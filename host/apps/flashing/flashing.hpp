@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/result.hpp"
-#include "host/apps/flashing/openocd_verdict.hpp"
+#include "host/apps/flashing/openocd_outcome.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "hw/image/flash_contents.hpp"
 #include "hw/rigfile/board_hardware.hpp"

@@ -1,4 +1,4 @@
-// The script with which OpenOCD programs one board. It executes steps and prints markers; `openocd_verdict`
+// The script with which OpenOCD programs one board. It executes steps and prints markers; openocd_outcome.hpp
 // evaluates the output.
 #pragma once
 

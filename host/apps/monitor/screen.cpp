@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "host/apps/monitor/status_meanings.hpp"
-#include "host/core/account/counter_meanings.hpp"
+#include "host/core/counters/counter_meanings.hpp"
 #include "host/core/text/printable.hpp"
 
 namespace octoskin {
@@ -170,7 +170,7 @@ class Screen {
     }
     void add_joints() {
         const auto used = [](const Json& status) -> const Json& {
-            return at(at(at(status, "account"), "joint samples"), "used");
+            return at(at(at(status, "inputs"), "joint samples"), "used");
         };
         add("joint samples " + rate(used(before_), used(now_), passed_) + " used", Emphasis::title);
         add_nonzero("joints_socket",
@@ -215,13 +215,13 @@ class Screen {
     }
     /// The counters of each kind of input, with the reasons of those that were not used.
     void add_counters() {
-        for (const auto& [unit, account] : at(now_, "account").items()) {
-            add(fmt::format("{}: {} in, {} used", unit, count(at(account, "in")), count(at(account, "used"))),
+        for (const auto& [unit, inputs] : at(now_, "inputs").items()) {
+            add(fmt::format("{}: {} in, {} used", unit, count(at(inputs, "in")), count(at(inputs, "used"))),
                 Emphasis::title);
-            if (at(account, "balanced") == false)
+            if (at(inputs, "balanced") == false)
                 add("  the counters do not add up: a defect of octoskin", Emphasis::bad);
-            for (const auto& [name, value] : at(account, "rejected").items()) {
-                const Json& was = at(at(at(at(before_, "account"), unit), "rejected"), name);
+            for (const auto& [name, value] : at(inputs, "rejected").items()) {
+                const Json& was = at(at(at(at(before_, "inputs"), unit), "rejected"), name);
                 const CounterMeaning* const meaning = find_counter(unit, name);
                 add_counter(name, was, value, meaning == nullptr ? std::string_view{} : meaning->text);
             }

@@ -36,7 +36,7 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "map", "the fused map, below"},
     Meaning{"", "reloads", "re-reads of rig, robot and mapping, below"},
     Meaning{"", "log", "the daemon's log on its way to standard error, below"},
-    Meaning{"", "account",
+    Meaning{"", "inputs",
             "the input counters: one object for each of \"CAN frames\", \"readings\", \"joint samples\" and "
             "\"depth frames\", below; they count since the newest reload"},
     Meaning{"can", "interface", "the name of the interface"},
@@ -111,7 +111,7 @@ constexpr std::array kStatusMeanings = {
             "share of its readings within the last second that were refused for their time, number or "
             "sender; null: 0.05 or less"},
     Meaning{"nodes", "refused_most",
-            "the most frequent reason for these, a name of account.md; null: 0.05 or less"},
+            "the most frequent reason for these, a name of counters.md; null: 0.05 or less"},
     Meaning{"nodes", "clock_contradictions",
             "answers to SYNC under its id that contradicted another answer to the same SYNC "
             "(sync_contradicted): there is another sender"},
@@ -158,7 +158,7 @@ constexpr std::array kStatusMeanings = {
             "the first"},
     Meaning{"nodes.sensors", "zone", "the zone in which it measured; absent before the first"},
     Meaning{"nodes.sensors", "rejected",
-            "why the newest reading was not used, a name of account.md; null: it was used, or it waits"},
+            "why the newest reading was not used, a name of counters.md; null: it was used, or it waits"},
     Meaning{"nodes.sensors", "contradictions",
             "readings that cannot come from the sender of the earlier ones: their number arrived with other "
             "contents, or goes back while their time does not (contradicts_reading). A single one may be a "
@@ -342,11 +342,11 @@ constexpr std::array kStatusMeanings = {
     Meaning{"log", "dropped", "lines dropped because the reader of the log took none for too long"},
     Meaning{"log", "waiting", "lines not written yet"},
     Meaning{"log", "stuck_s", "for how long one line is being written; null: none is"},
-    Meaning{"account", "in", "inputs of this kind"},
-    Meaning{"account", "used", "inputs that went into the map, or were accepted"},
-    Meaning{"account", "pending", "inputs that wait, for a joint state or for others to arrive"},
-    Meaning{"account", "rejected", "the counters that are not 0, by name: account.md has each"},
-    Meaning{"account", "balanced",
+    Meaning{"inputs", "in", "inputs of this kind"},
+    Meaning{"inputs", "used", "inputs that went into the map, or were accepted"},
+    Meaning{"inputs", "pending", "inputs that wait, for a joint state or for others to arrive"},
+    Meaning{"inputs", "rejected", "the counters that are not 0, by name: counters.md has each"},
+    Meaning{"inputs", "balanced",
             "in = used + pending + the sum of rejected; if not, it is a defect of octoskin"},
 };
 

@@ -48,7 +48,7 @@ void print_black_boxes(const std::filesystem::path& log) {
     }
     if (const auto foreign = reader->foreign_file())
         throw CommandFailure({ExitCode::bad_data, foreign->message()});
-    if (reader->account().used() == 0)
+    if (reader->inputs().used() == 0)
         throw CommandFailure({ExitCode::bad_data, log.string() + ": no frames: the log is empty"});
     for (const Dump& dump : pieces.assembler.finish()) pieces.take(dump);
     spdlog::info("{}: {} dumps, {} of them incomplete", log.string(), pieces.dumps, pieces.incomplete);

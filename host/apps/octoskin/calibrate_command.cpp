@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "common/wire/frame_type.hpp"
-#include "host/apps/calibrating/calibrating.hpp"
+#include "host/apps/calibration/calibration.hpp"
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/standard_output.hpp"

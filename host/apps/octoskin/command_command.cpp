@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "common/wire/frame_type.hpp"
+#include "host/apps/command/dialogue.hpp"
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/standard_output.hpp"
-#include "host/apps/commanding/dialogue.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/recording/given_rig.hpp"
 

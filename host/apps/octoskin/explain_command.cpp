@@ -9,7 +9,7 @@
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/standard_output.hpp"
-#include "host/apps/explaining/explanation.hpp"
+#include "host/apps/explain/explanation.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/playback_options.hpp"
 

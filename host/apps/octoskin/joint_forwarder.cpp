@@ -83,9 +83,9 @@ void JointForwarder::send_until(WallTime now) {
 void JointForwarder::send(const std::string& line, const std::optional<JointSample>& sample) {
     const std::uint64_t count = 1 + std::exchange(left_out_, 0);
     if (!output_.put(line, sample)) return lose(count);
-    if (!losses_told_.empty()) spdlog::info("samples are sent again; so far lost: {}", lines(lost_));
-    losses_told_.clear();
-    refusals_told_.clear();
+    if (!losses_reported_.empty()) spdlog::info("samples are sent again; so far lost: {}", lines(lost_));
+    losses_reported_.clear();
+    refusals_reported_.clear();
     sent_ += count;
 }
 
@@ -99,14 +99,15 @@ void JointForwarder::finish() {
 void JointForwarder::lose(std::uint64_t count) {
     lost_ += count;
     why_ = output_.why();
-    if (why_.empty() || losses_told_.size() >= kLossesTold || !losses_told_.insert(why_).second) return;
+    if (why_.empty() || losses_reported_.size() >= kLossesTold || !losses_reported_.insert(why_).second)
+        return;
     spdlog::warn("{}; waiting for it; lines are lost meanwhile", why_);
 }
 
 void JointForwarder::refuse(const char* reason, std::string why) {
     ++refused_;
     why_ = std::move(why);
-    if (refusals_told_.insert(reason).second) spdlog::warn("{}", why_);
+    if (refusals_reported_.insert(reason).second) spdlog::warn("{}", why_);
 }
 
 }  // namespace octoskin::app

@@ -77,9 +77,9 @@ class JointForwarder {
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t refused_ = 0;
-    std::set<std::string> losses_told_;    ///< each reason once since the last line that was sent
-    std::set<std::string> refusals_told_;  ///< likewise
-    std::string why_;                      ///< of the newest line that was not sent
+    std::set<std::string> losses_reported_;    ///< each reason once since the last line that was sent
+    std::set<std::string> refusals_reported_;  ///< likewise
+    std::string why_;                          ///< of the newest line that was not sent
 };
 
 }  // namespace octoskin::app

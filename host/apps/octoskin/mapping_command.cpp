@@ -6,11 +6,11 @@
 #include <regex>
 #include <string>
 
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/apps/profile/named_mapping.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/mapping/mapping_keys.hpp"
 

@@ -16,12 +16,12 @@
 
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/standard_output.hpp"
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/monitor/screen.hpp"
 #include "host/apps/monitor/scroll.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/querying/query_answer.hpp"
+#include "host/apps/query/query_answer.hpp"
 
 namespace octoskin::app {
 namespace {

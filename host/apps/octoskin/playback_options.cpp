@@ -11,11 +11,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/film_playback.hpp"
+#include "host/apps/profile/named_mapping.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "hw/rigfile/joined.hpp"

@@ -13,11 +13,11 @@
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/end_signals.hpp"
 #include "host/apps/command_line/standard_output.hpp"
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/querying/query_answer.hpp"
+#include "host/apps/query/query_answer.hpp"
 #include "host/apps/recording/recording.hpp"
 
 namespace octoskin::app {
@@ -68,7 +68,7 @@ bool comes(const FilePlace& file) {
 }
 
 /// Reports where the recording of an ended daemon is, and whether it is complete. meta.yaml is written last.
-[[noreturn]] void tell_left(const std::filesystem::path& folder) {
+[[noreturn]] void report_left(const std::filesystem::path& folder) {
     if (!comes(RecordingPaths(folder).meta())) {
         throw CommandFailure({ExitCode::unavailable,
                               "the daemon ended, and did not complete the recording: what it wrote is in " +
@@ -185,7 +185,7 @@ void record(const RecordOptions& options) {
     try {
         const Json begun = options.stops ? stop(options) : start(options);
         const auto ended = follow(options, begun);
-        if (!ended) tell_left(begun.at("folder").get<std::string>());
+        if (!ended) report_left(begun.at("folder").get<std::string>());
         tell(*ended);
     } catch (const Json::exception&) {
         throw CommandFailure(foreign_answer(options.socket));

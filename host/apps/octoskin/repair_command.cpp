@@ -8,7 +8,7 @@
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/daemon/folder_lock.hpp"
-#include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/map_saver.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/recording/file_lock.hpp"
 #include "host/apps/recording/file_set.hpp"

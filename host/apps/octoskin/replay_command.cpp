@@ -71,13 +71,13 @@ class ProgressSeconds {
     /// The second to log; empty: the last one was logged a moment ago.
     [[nodiscard]] std::optional<int> due(Nanoseconds into_recording) {
         const auto second = static_cast<int>(into_recording / std::chrono::seconds(1));
-        if (second < told_ + 2) return std::nullopt;
-        told_ = second;
+        if (second < reported_ + 2) return std::nullopt;
+        reported_ = second;
         return second;
     }
 
   private:
-    int told_ = 0;
+    int reported_ = 0;
 };
 
 /// `unit`: name of the inputs that the replay counts.
@@ -152,7 +152,7 @@ void replay_onto_bus(const ReplayOptions& options) {
 }
 
 /// For queries of the map: unknown space surrounds the arm's last posture.
-void tell_last_posture(const Playback& playback) {
+void report_last_posture(const Playback& playback) {
     std::string joints;
     playback.pipeline.builder().for_each_joint_sample([&](const JointMeasurement& sample) {
         joints.clear();
@@ -179,14 +179,14 @@ void replay_recording(const ReplayOptions& options) {
         request, [&](const ReplayProgress& progress) { report_progress(progress, unit, seconds); });
     if (!playback) throw CommandFailure(playback.error());
 
-    for (const AccountTable& table : playback->accounts) print_text(to_text(table));
+    for (const CounterTable& table : playback->inputs) print_text(to_text(table));
     if (!playback->nodes.empty()) print_text(to_text(std::span<const NodeSummary>(playback->nodes)));
     for (const std::string& note : playback->notes) print("{}\n", note);
     static_cast<void>(flush_standard_output());  // a failure is reported at the end
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     refuse_failed(*playback);
     save(*playback, *folder, maps.shown());
-    tell_last_posture(*playback);
+    report_last_posture(*playback);
     if (auto lost = loss_of(*playback)) throw CommandFailure(std::move(*lost));
     if (playback->is_unlike_daemons) {
         throw CommandFailure(

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <memory>
 
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/log_format.hpp"
@@ -15,6 +14,7 @@
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/octoskin/daemon_signals.hpp"
+#include "host/apps/profile/named_mapping.hpp"
 
 namespace octoskin::app {
 namespace {

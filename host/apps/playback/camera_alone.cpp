@@ -98,7 +98,7 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const r
     config.maps = request.maps;
     auto pipeline = Pipeline::build(host, std::move(*robot), request.mapping, config);
     if (!pipeline) return fail(ExitCode::failed, "no pipeline: " + pipeline.error().element);
-    pipeline->tell(request.listener);
+    pipeline->set_listener(request.listener);
     return std::move(*pipeline);
 }
 
@@ -113,12 +113,12 @@ Result<Playback, AppError> play_camera(PlaybackRequest request, rig::Rig rig, st
     NoBus bus;
     PacedDepth paced(images, request.pace);
     ReplayOutcome outcome = replay(*pipeline, bus, &paced, report);
-    std::vector<AccountTable> accounts = pipeline->account_tables();
-    std::erase_if(accounts, [](const AccountTable& table) { return table.in == 0; });
+    std::vector<CounterTable> inputs = pipeline->counter_tables();
+    std::erase_if(inputs, [](const CounterTable& table) { return table.in == 0; });
     return Playback{.rig = std::move(rig),
                     .pipeline = std::move(*pipeline),
                     .outcome = std::move(outcome),
-                    .accounts = std::move(accounts),
+                    .inputs = std::move(inputs),
                     .nodes = {},
                     .notes = {},
                     .warnings = {},

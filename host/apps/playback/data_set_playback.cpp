@@ -48,7 +48,7 @@ std::string first_of(const tum::ImageCounts& images) {
     return images.first_without_pose ? seconds_text(images.first_without_pose->captured.ns) : "";
 }
 
-AccountTable image_table(const tum::DataSetReader& reader, const ReplayOutcome& outcome) {
+CounterTable image_table(const tum::DataSetReader& reader, const ReplayOutcome& outcome) {
     const std::uint64_t failed = outcome.depth_error ? 1 : 0;
     const std::uint64_t left = reader.images_left() - failed;
     const tum::ImageCounts& images = reader.images();
@@ -62,7 +62,7 @@ AccountTable image_table(const tum::DataSetReader& reader, const ReplayOutcome& 
             .is_balanced = true};
 }
 
-AccountTable pose_table(const tum::PoseCounts& poses) {
+CounterTable pose_table(const tum::PoseCounts& poses) {
     return {
         .unit = "camera poses",
         .in = poses.in,
@@ -167,8 +167,8 @@ Result<Playback, AppError> play_data_set(const PlaybackRequest& request, const R
     auto playback = play_camera(request, rig_of_camera(*camera, "data_set"), *crc32, *reader, report);
     if (!playback) return playback;
     playback->outcome.progress.begin = reader->begin();
-    playback->accounts.insert(playback->accounts.begin(),
-                              {image_table(*reader, playback->outcome), pose_table(reader->poses())});
+    playback->inputs.insert(playback->inputs.begin(),
+                            {image_table(*reader, playback->outcome), pose_table(reader->poses())});
     playback->warnings = warnings_of(request, *camera, *reader);
     return playback;
 }

@@ -40,7 +40,7 @@ int rank_of(const Loss& loss) {
 
 void find_losses(Playback& playback) {
     const bool is_empty = playback.pipeline.map().known_voxels() == 0;
-    for (const AccountTable& table : playback.accounts) {
+    for (const CounterTable& table : playback.inputs) {
         auto loss = octoskin::loss_of(table);
         if (!loss && is_empty && table.used == 0) loss = most_frequent(table);
         if (!loss) continue;

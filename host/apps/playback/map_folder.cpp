@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 
 /// Maps of earlier runs that are not among the new ones.
 struct OtherMaps {
-    SavedMaps told;
+    SavedMaps reported;
     std::vector<fs::path> retired;
 };
 
@@ -22,7 +22,7 @@ OtherMaps look_at_others(const OpenFolder& folder, const MapOrigin& origin) {
         // Only a map that is byte for byte the one of an earlier replay.
         const bool is_ours =
             former && *former && (*former)->maps.contains(name) && !fault_of_map(map, **former);
-        (is_ours ? others.told.removed : others.told.foreign).push_back(name);
+        (is_ours ? others.reported.removed : others.reported.foreign).push_back(name);
         if (is_ours) others.retired.emplace_back(name);
     }
     return others;
@@ -70,7 +70,7 @@ Result<SavedMaps, AppError> MapFolder::save(const NamedMaps& maps, MapOrigin ori
     files.emplace_back(kMapOriginFile);
     if (const auto committed = files_.commit(files, others.retired); !committed)
         return unexpected(committed.error());
-    return others.told;
+    return others.reported;
 }
 
 }  // namespace octoskin

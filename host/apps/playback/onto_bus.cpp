@@ -62,7 +62,7 @@ Result<OntoBus, AppError> play_onto(const FilePlace& can_log, socketcan::CanSock
             if (const auto sent = send(socket, line.frame, played); !sent) return unexpected(sent.error());
         }
     }
-    played.lines_refused = reader->account().rejected();
+    played.lines_refused = reader->inputs().rejected();
     if (played.interface.empty()) {
         const auto foreign = reader->foreign_file();
         return fail(ExitCode::bad_data,

@@ -172,9 +172,9 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
     OrderedPlayback played{.outcome = replay_in_order(pipeline.builder(), paced, depth, report, begin)};
     played.warnings = std::move(*warnings);
     played.has_daemons_mapping = has_daemons_mapping;
-    played.accounts = {tabulate("readings", played.outcome.readings, 0, seconds_text),
-                       tabulate("joint samples", played.outcome.joint_samples, 0, seconds_text),
-                       tabulate("depth frames", played.outcome.depth_frames, 0, seconds_text)};
+    played.inputs = {tabulate("readings", played.outcome.readings, 0, seconds_text),
+                     tabulate("joint samples", played.outcome.joint_samples, 0, seconds_text),
+                     tabulate("depth frames", played.outcome.depth_frames, 0, seconds_text)};
     judge(request, rig, *order, pipeline.map(), played);
     return played;
 }

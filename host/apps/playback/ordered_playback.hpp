@@ -13,7 +13,7 @@ namespace octoskin {
 struct OrderedPlayback {
     OrderedOutcome outcome;
     bool has_daemons_mapping = false;  ///< voxels that had no room here had none in the daemon either
-    std::vector<AccountTable> accounts = {};
+    std::vector<CounterTable> inputs = {};
     bool is_unlike_daemons = false;  ///< the map differs from the daemon's, and nothing given explains it
     /// Whether the map equals the daemon's, and if not, why.
     std::vector<std::string> notes = {};

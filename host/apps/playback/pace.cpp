@@ -14,7 +14,7 @@ namespace octoskin {
 namespace {
 
 /// Longer gaps of a recording are skipped.
-constexpr std::int64_t kLeapMax_ns = 60'000'000'000;
+constexpr std::int64_t kJumpMax_ns = 60'000'000'000;
 
 std::int64_t steady_now_ns() {
     return std::chrono::steady_clock::now().time_since_epoch().count();
@@ -75,7 +75,7 @@ void Pace::wait(std::int64_t time_ns, const std::string& what) {
     // Measurements of several sources are slightly out of order: only a large step back restarts the time
     // base.
     constexpr std::int64_t kBackMax_ns = 1'000'000'000;
-    const bool leaps = time_ns - newest_ns_ > kLeapMax_ns || newest_ns_ - time_ns > kBackMax_ns;
+    const bool leaps = time_ns - newest_ns_ > kJumpMax_ns || newest_ns_ - time_ns > kBackMax_ns;
     if (!has_begun_ || leaps) {
         has_begun_ = true;
         first_ns_ = time_ns;

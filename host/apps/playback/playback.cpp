@@ -5,12 +5,12 @@
 #include <optional>
 #include <utility>
 
-#include "host/apps/choosing/rig_pipeline.hpp"
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/film_playback.hpp"
 #include "host/apps/playback/log_survey.hpp"
 #include "host/apps/playback/losses.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
+#include "host/apps/profile/rig_pipeline.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
@@ -86,19 +86,19 @@ DepthInput open_depth(const RecordingPaths& recording) {
     return {std::move(*reader), std::nullopt};
 }
 
-AccountTable line_table(const candump::LogSource& log) {
+CounterTable line_table(const candump::LogSource& log) {
     const auto line = [](std::int64_t number) { return "can.log:" + std::to_string(number); };
-    AccountTable table = tabulate("log lines", log.reader().account(), 0, line);
+    CounterTable table = tabulate("log lines", log.reader().inputs(), 0, line);
     table.used -= log.other_interface();
     table.rejected.push_back({"other_interface", log.other_interface()});
     return table;
 }
 
 /// Counts of the pixels of the used depth frames, by their use.
-AccountTable pixel_table(const DepthStage& depth) {
+CounterTable pixel_table(const DepthStage& depth) {
     const DepthPixelCounts& pixels = depth.pixels();
     const std::uint64_t robot = depth.robot_pixels();
-    AccountTable table{.unit = "depth pixels",
+    CounterTable table{.unit = "depth pixels",
                        .in = pixels.used + pixels.no_value + pixels.bad_value + pixels.outside_map,
                        .used = pixels.used,
                        .pending = 0,
@@ -165,13 +165,14 @@ void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInp
 
 /// Sensors that contradict the camera: exchanged cables, a stuck value, or a wrong pose in the rig.
 void find_contradictions(const HostRig& rig, Playback& playback) {
-    const SensorWitness* const witness = playback.pipeline.builder().witness();
-    if (witness == nullptr) return;
-    if (const auto& fault = witness->pose().fault())
+    const CrossCheck* const cross_check = playback.pipeline.builder().cross_check();
+    if (cross_check == nullptr) return;
+    if (const auto& fault = cross_check->pose().fault())
         playback.warnings.push_back(describe(*fault, rig.joints.joints));
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
-            const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(i));
+            const SensorEvidence& evidence =
+                cross_check->evidence(node.node_id, static_cast<std::uint8_t>(i));
             if (!evidence.contradicts()) continue;
             playback.warnings.push_back(sensor_text(node, i) + ": " + describe(evidence));
         }
@@ -214,7 +215,7 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& 
     auto pipeline = build_pipeline(rig_file.string(), setup.host.rig, std::move(setup.host.robot),
                                    request.mapping, config);
     if (!pipeline) return unexpected(pipeline.error());
-    pipeline->tell(request.listener);
+    pipeline->set_listener(request.listener);
     return std::move(*pipeline);
 }
 
@@ -241,14 +242,14 @@ Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup
     Playback playback{.rig = std::move(setup.rig),
                       .pipeline = std::move(*pipeline),
                       .outcome = std::move(outcome),
-                      .accounts = {},
+                      .inputs = {},
                       .nodes = {},
                       .notes = {},
                       .warnings = {},
                       .origin = std::move(origin)};
-    playback.accounts.push_back(line_table(*log));
-    for (AccountTable& table : playback.pipeline.account_tables())
-        playback.accounts.push_back(std::move(table));
+    playback.inputs.push_back(line_table(*log));
+    for (CounterTable& table : playback.pipeline.counter_tables())
+        playback.inputs.push_back(std::move(table));
     playback.nodes = summarise(playback.pipeline.intake());
     playback.notes = take_notes(playback.pipeline);
     if (auto warning = survey.warning()) playback.warnings.push_back(std::move(*warning));
@@ -284,7 +285,7 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
     return Playback{.rig = std::move(setup.rig),
                     .pipeline = std::move(*pipeline),
                     .outcome = std::move(outcome),
-                    .accounts = std::move(played->accounts),
+                    .inputs = std::move(played->inputs),
                     .nodes = {},
                     .notes = std::move(played->notes),
                     .warnings = std::move(played->warnings),
@@ -293,10 +294,10 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
                     .is_unlike_daemons = played->is_unlike_daemons};
 }
 
-std::string why_nothing(const Playback& playback, std::string_view where_the_account_is) {
-    const AccountTable& first_table = playback.accounts.front();
+std::string why_nothing(const Playback& playback, std::string_view where_the_counters_are) {
+    const CounterTable& first_table = playback.inputs.front();
     if (first_table.unit == "log lines" && first_table.in == 0) return ": can.log is empty";
-    if (playback.losses.empty()) return "; " + std::string(where_the_account_is);
+    if (playback.losses.empty()) return "; " + std::string(where_the_counters_are);
     const Loss& first = playback.losses.front();
     return ": " + std::to_string(first.rejected) + " of " + std::to_string(first.of) + " " + first.unit +
            " are not used, most as " + first.reason + "; see the warnings above";
@@ -304,17 +305,17 @@ std::string why_nothing(const Playback& playback, std::string_view where_the_acc
 
 }  // namespace
 
-std::optional<AppError> failure_of(const Playback& playback, std::string_view where_the_account_is) {
+std::optional<AppError> failure_of(const Playback& playback, std::string_view where_the_counters_are) {
     if (const auto& failed = playback.outcome.can_error) return AppError{ExitCode::bad_data, failed->what};
     if (const auto& failed = playback.outcome.depth_error) return unread_depth(*failed);
     const bool is_balanced =
-        playback.pipeline.is_balanced() && std::all_of(playback.accounts.begin(), playback.accounts.end(),
+        playback.pipeline.is_balanced() && std::all_of(playback.inputs.begin(), playback.inputs.end(),
                                                        [](const auto& table) { return table.is_balanced; });
     if (!is_balanced) return AppError{ExitCode::failed, "the input counters do not balance"};
     if (playback.is_map_incomplete) return AppError{ExitCode::failed, "the map is not complete"};
     if (playback.pipeline.map().known_voxels() == 0) {
         return AppError{ExitCode::failed,
-                        "no measurement entered the map" + why_nothing(playback, where_the_account_is)};
+                        "no measurement entered the map" + why_nothing(playback, where_the_counters_are)};
     }
     return std::nullopt;
 }
@@ -392,7 +393,7 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     auto playback = play(request, report);
     if (!playback) return playback;
     if (const DepthStage* stage = playback->pipeline.depth_stage())
-        playback->accounts.push_back(pixel_table(*stage));
+        playback->inputs.push_back(pixel_table(*stage));
     find_wrong_sizes(*playback);
     find_full_maps(*playback);
     find_losses(*playback);

@@ -14,8 +14,8 @@
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/recording.hpp"
 #include "host/apps/recording/source_file.hpp"
-#include "host/core/account/account.hpp"
-#include "host/core/account/loss.hpp"
+#include "host/core/counters/input_counters.hpp"
+#include "host/core/counters/loss.hpp"
 #include "host/core/ingest/node_summary.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/pipeline.hpp"
@@ -58,8 +58,8 @@ struct Playback {
     rig::Rig rig;
     Pipeline pipeline;  ///< finished, with its maps and input counters
     ReplayOutcome outcome;
-    std::vector<AccountTable> accounts;  ///< log lines, then the pipeline's, then the pixels
-    std::vector<NodeSummary> nodes;      ///< the state of each node at the end
+    std::vector<CounterTable> inputs;  ///< log lines, then the pipeline's, then the pixels
+    std::vector<NodeSummary> nodes;    ///< the state of each node at the end
     /// Links that use another link's body; notable behaviour of the host's clock.
     std::vector<std::string> notes;
     std::vector<std::string> warnings;  ///< for the user, about this recording
@@ -77,10 +77,10 @@ struct Playback {
 
 /// Why the result must not be used as a map; empty if there is no reason against it. Reasons: a source failed
 /// during the playback, the input counters do not balance, a map had no room, or no map contains anything.
-/// `where_the_account_is`: half a sentence on where to find the counters that explain an empty map.
+/// `where_the_counters_are`: half a sentence on where to find the counters that explain an empty map.
 [[nodiscard]] std::optional<AppError> failure_of(
     const Playback& playback,
-    std::string_view where_the_account_is = "`octoskin replay` shows the counters with the reason");
+    std::string_view where_the_counters_are = "`octoskin replay` shows the counters with the reason");
 
 /// An error if more than half of the usable input is lost for reasons that a user can correct; the maps then
 /// contain only the rest. Empty if not.

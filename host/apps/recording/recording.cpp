@@ -18,10 +18,9 @@ constexpr const char* kMetaMissing =
 constexpr const char* kDirectoryMissing =
     "no such directory; `octoskin record` (of a running daemon) and `octoskin-lab simulate` make recordings";
 constexpr const char* kLogMissing =
-    "no such file: this is no recording, as `octoskin record` (of a running daemon) and `octoskin-lab "
-    "simulate` "
-    "make them; by hand, it is what `candump -L` writes. A data set has depth.txt, associations.txt or "
-    "frame-*.depth.png, and the poses of its camera (docs/how-to/record-and-replay.md)";
+    "no such file: this is not a recording of `octoskin record` (of a running daemon) or `octoskin-lab "
+    "simulate`; by hand, can.log is the output of `candump -L`. A data set has depth.txt, associations.txt "
+    "or frame-*.depth.png, and the poses of its camera (docs/how-to/record-and-replay.md)";
 
 Unexpected<RecordingError> failure(const std::filesystem::path& file, std::string what) {
     return unexpected(RecordingError{file, std::move(what), 0, ""});

@@ -15,7 +15,7 @@ bool are_one(std::span<const SyncSample> answers) {
 
 }  // namespace
 
-std::optional<SampleVerdict> AnswerCheck::take(std::span<const SyncSample> answers, ClockMap& clock) {
+std::optional<SampleEffect> AnswerCheck::take(std::span<const SyncSample> answers, ClockMap& clock) {
     assert(!answers.empty());
     const HostTime host = answers.front().host;
     const bool is_contested = answers.size() > 1;

@@ -21,7 +21,7 @@ class AnswerCheck {
   public:
     /// `answers`: all answers to one SYNC so far, at least one, in order of arrival. Call again for each
     /// further answer. Returns the effect of the used answer on the clock; empty if none is used.
-    std::optional<SampleVerdict> take(std::span<const SyncSample> answers, ClockMap& clock);
+    std::optional<SampleEffect> take(std::span<const SyncSample> answers, ClockMap& clock);
     /// The node restarted: its earlier clock does not come back.
     void forget() noexcept {
         taken_.reset();

@@ -217,7 +217,7 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::RangeAux& mess
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Heartbeat& message, FrameOutcome&) {
     ranges_.on_rate(node, message.is_rate_overridden, now());
-    if (nodes_.verdict(node, now()) != NodeVerdict::usable) ranges_.expect(node, now());
+    if (nodes_.verdict(node, now()) != NodeCondition::usable) ranges_.expect(node, now());
     if (nodes_.on_heartbeat(node, message, now()) == NodeRegistry::Life::restarted) {
         clocks_.at(node).forget();
         answers_.at(node).forget();
@@ -258,7 +258,7 @@ void CanIntake::add_exchange(wire::NodeId node) {
     if (!verdict) {
         return;
     }
-    if (verdict == SampleVerdict::contradicts) {
+    if (verdict == SampleEffect::contradicts) {
         ranges_.on_clock_contradicted(node);
         return;
     }
@@ -299,7 +299,7 @@ CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Mark& message, Fram
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Command&, FrameOutcome&) {
-    return FrameReason::for_nodes;
+    return FrameReason::host_command;
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Reflex& message, FrameOutcome&) {
@@ -312,12 +312,12 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::Reflex& messag
 
 /// Not used by the map: `octoskin black-box` reads it from the log.
 CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::BlackBox&, FrameOutcome&) {
-    return FrameReason::for_people;
+    return FrameReason::diagnostic_frame;
 }
 
 /// Not used by the map: `octoskin calibrate` waits for it.
 CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Calibration&, FrameOutcome&) {
-    return FrameReason::for_people;
+    return FrameReason::diagnostic_frame;
 }
 
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& message,

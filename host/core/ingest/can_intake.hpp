@@ -34,7 +34,7 @@ struct IntakeConfig {
     HostClockConfig host_clock;
     bool uses_no_return = false;  ///< beams without return may clear space
     /// A joint sample that arrives later than this after its sampling time is not used. Smaller than the
-    /// shift at which a stepping wall clock makes a range's time field ambiguous: host/core/time/README.md.
+    /// steps of the wall clock that make a range's time field ambiguous: host/core/time/README.md.
     Nanoseconds joint_age_max{50'000'000};
     /// Joint states come from this machine only. Their sender is checked before they become frames.
     bool has_local_joints = false;
@@ -48,7 +48,7 @@ struct FrameOutcome {
     std::uint64_t readings_held = 0;               ///< readings that are held: CanIntake::take_due
     std::vector<ReadingReason> readings_given_up;  ///< rejected after they were held
     std::uint64_t joint_samples_begun = 0;
-    /// samples that this frame completed or ended
+    /// Samples that this frame completed or ended.
     std::vector<Result<JointMeasurement, JointReason>> joint_samples;
     /// Samples that were waiting when the host time jumped back or was relocked: their times refer to the
     /// time before the jump.
@@ -72,12 +72,12 @@ class CanIntake {
     /// True while a node's readings have impossible times: a SYNC exchange would show whether its clock
     /// continues. False again after such an exchange.
     [[nodiscard]] bool wants_exchange() const;
-    /// What a node of the rig loses at `now`; empty if that is too little to report.
+    /// The readings that a node of the rig loses at `now`; empty if they are too few to report.
     [[nodiscard]] std::optional<NodeLosses::Loss> losses(wire::NodeId node, HostTime now) const {
         return losses_.at(node).worth_a_word(now);
     }
 
-    /// Result, in the map, of a reading that was accepted here; empty: it was used.
+    /// Result in the map of a reading that was accepted here; empty: it was used.
     void on_fate_in_map(const BeamSource& source, std::optional<ReadingReason> rejected) {
         ranges_.on_fate_in_map(source.node_id, source.sensor, rejected);
         losses_.at(source.node_id).on_fate(rejected);
@@ -85,7 +85,7 @@ class CanIntake {
     /// An accepted reading was rejected on its way into the map, through no fault of its sensor.
     void on_lost(wire::NodeId node, ReadingReason reason) { losses_.at(node).on_fate(reason); }
     /// Counters of all readings of a node of the rig; held readings are pending.
-    [[nodiscard]] AccountTable reading_table(wire::NodeId node) const { return losses_.at(node).table(); }
+    [[nodiscard]] CounterTable reading_table(wire::NodeId node) const { return losses_.at(node).table(); }
 
     /// Host time at the newest time stamp; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return host_clock_.now(); }

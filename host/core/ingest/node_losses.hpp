@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/time.hpp"
-#include "host/core/account/account.hpp"
+#include "host/core/counters/input_counters.hpp"
 #include "host/core/ingest/reasons.hpp"
 
 namespace octoskin {
@@ -24,7 +24,7 @@ class NodeLosses {
     /// A reading arrived while the host time was known. A repeated frame does not count.
     void on_reading(HostTime now) {
         tenth_of(now).readings += 1;
-        all_.take_in();
+        all_.count_in();
     }
     /// A reading was rejected, perhaps one that arrived earlier.
     void on_refused(HostTime now, ReadingReason reason);
@@ -34,7 +34,7 @@ class NodeLosses {
     }
     /// Counters of all readings that arrived while the host time was known; those without a result are
     /// pending.
-    [[nodiscard]] AccountTable table() const {
+    [[nodiscard]] CounterTable table() const {
         return tabulate("readings", all_, all_.in() - all_.used() - all_.rejected());
     }
 
@@ -57,7 +57,7 @@ class NodeLosses {
     [[nodiscard]] Tenth& tenth_of(HostTime now);
 
     std::array<Tenth, kTenths> tenths_{};  ///< ring buffer
-    Account<ReadingReason> all_;
+    InputCounters<ReadingReason> all_;
 };
 
 }  // namespace octoskin

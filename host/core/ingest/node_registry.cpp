@@ -180,7 +180,7 @@ NodeRegistry::Life NodeRegistry::on_heartbeat(wire::NodeId node, const wire::Hea
 
 void NodeRegistry::on_other_version(wire::NodeId node, std::uint8_t version, std::optional<HostTime> now) {
     NodeRecord& record = records_.at(node);
-    record.version_told = version;
+    record.version_reported = version;
     record.is_other_version = true;
     record.other_version = now;
     record.pages = {};
@@ -199,71 +199,72 @@ bool NodeRegistry::on_info(wire::NodeId node, const wire::NodeInfo& info, std::o
     return true;
 }
 
-NodeVerdict NodeRegistry::verdict(wire::NodeId node, std::optional<HostTime> now) const {
+NodeCondition NodeRegistry::verdict(wire::NodeId node, std::optional<HostTime> now) const {
     const NodeRecord& record = records_.at(node);
     if (is_held(record.is_other_version, record.other_version, now, kOtherVersionHold)) {
-        return NodeVerdict::other_version;
+        return NodeCondition::other_version;
     }
     if (is_held(record.is_in_conflict, record.conflict, now, kConflictHold)) {
-        return NodeVerdict::quarantined;
+        return NodeCondition::quarantined;
     }
     if (is_babbling(record, now)) {
-        return NodeVerdict::babbling;
+        return NodeCondition::babbling;
     }
     if (!record.heartbeat) {
-        return NodeVerdict::absent;
+        return NodeCondition::absent;
     }
     if (is_lost(record, now)) {
-        return NodeVerdict::lost;
+        return NodeCondition::lost;
     }
     if (is_suspect(record, now)) {
-        return NodeVerdict::time_suspect;
+        return NodeCondition::time_suspect;
     }
     if (!record.has_block) {
-        return NodeVerdict::usable;
+        return NodeCondition::usable;
     }
     if (record.mismatch()) {
-        return NodeVerdict::info_mismatch;
+        return NodeCondition::info_mismatch;
     }
     if (!record.is_info_complete()) {
-        return NodeVerdict::info_incomplete;
+        return NodeCondition::info_incomplete;
     }
     const auto& pinned = record.expected.pinned_build_id;
-    return pinned && *pinned != record.page<wire::InfoBuild>()->build_id ? NodeVerdict::build_refused
-                                                                         : NodeVerdict::usable;
+    return pinned && *pinned != record.page<wire::InfoBuild>()->build_id ? NodeCondition::build_refused
+                                                                         : NodeCondition::usable;
 }
 
 std::optional<NodeMismatch> NodeRegistry::reason(wire::NodeId node, std::optional<HostTime> now) const {
     const NodeRecord& record = records_.at(node);
-    const NodeVerdict judged = verdict(node, now);
-    if (judged == NodeVerdict::other_version) {
-        return NodeMismatch{"version", record.version_told, wire::kProtocolVersion, "this host uses"};
+    const NodeCondition judged = verdict(node, now);
+    if (judged == NodeCondition::other_version) {
+        return NodeMismatch{"version", record.version_reported, wire::kProtocolVersion, "this host uses"};
     }
-    if (judged == NodeVerdict::build_refused) {
+    if (judged == NodeCondition::build_refused) {
         return NodeMismatch{"build_id", record.page<wire::InfoBuild>()->build_id,
                             *record.expected.pinned_build_id, "the rig pins"};
     }
-    return judged == NodeVerdict::info_mismatch ? record.mismatch() : std::nullopt;
+    return judged == NodeCondition::info_mismatch ? record.mismatch() : std::nullopt;
 }
 
 std::string NodeRegistry::describe(wire::NodeId node, std::optional<HostTime> now) const {
-    const NodeVerdict judged = verdict(node, now);
+    const NodeCondition judged = verdict(node, now);
     const auto differs = reason(node, now);
     std::string why = differs ? differs->text() : std::string();
-    if (judged == NodeVerdict::info_mismatch) {
+    if (judged == NodeCondition::info_mismatch) {
         why += ": flash it with this rig, `octoskin flash --rig RIG --node " + std::to_string(node) +
                " --elf IMAGE` (`firmware/flash` of octoskin's sources builds the image, too), or start "
                "octoskin-node with its new block, `octoskin rig RIG --node " +
                std::to_string(node) + " --block FILE`";
     }
-    if (judged == NodeVerdict::quarantined) why = "two boards send under this node id: take one off the bus";
-    if (judged == NodeVerdict::babbling) {
+    if (judged == NodeCondition::quarantined)
+        why = "two boards send under this node id: take one off the bus";
+    if (judged == NodeCondition::babbling) {
         why = "over " + std::to_string(traffic_.at(node).frames_max()) +
               " frames within a second, twice the rig's rate for it: refused until a second after it stays "
               "below that";
     }
     return "node " + std::to_string(node) + " '" + records_.at(node).expected.name +
-           "': " + names_of(NodeVerdict{})[static_cast<std::size_t>(judged)] +
+           "': " + names_of(NodeCondition{})[static_cast<std::size_t>(judged)] +
            (why.empty() ? "" : " (" + why + ")");
 }
 

@@ -18,7 +18,7 @@
 namespace octoskin {
 
 /// The decision about a node: the first of these conditions that holds.
-enum class NodeVerdict : std::uint8_t {
+enum class NodeCondition : std::uint8_t {
     other_version,  ///< a heartbeat of another protocol version within the last second; nothing else is read
     quarantined,  ///< two unique ids, or two senders' readings, under one node id within the last two seconds
     babbling,     ///< more frames than NodeTraffic allows, within the last second
@@ -30,16 +30,16 @@ enum class NodeVerdict : std::uint8_t {
     build_refused,    ///< the rig pins another build
     usable,
 };
-[[nodiscard]] constexpr std::array<const char*, 10> names_of(NodeVerdict) {
+[[nodiscard]] constexpr std::array<const char*, 10> names_of(NodeCondition) {
     return {"other_version", "quarantined",     "babbling",      "absent",        "lost",
             "time_suspect",  "info_incomplete", "info_mismatch", "build_refused", "usable"};
 }
 
 /// Joint states need no NODE_INFO, and their node need not send heartbeats. True if the node's messages must
 /// not be used.
-[[nodiscard]] constexpr bool is_refused_for_joints(NodeVerdict verdict) {
-    return verdict == NodeVerdict::other_version || verdict == NodeVerdict::quarantined ||
-           verdict == NodeVerdict::babbling || verdict == NodeVerdict::time_suspect;
+[[nodiscard]] constexpr bool is_refused_for_joints(NodeCondition verdict) {
+    return verdict == NodeCondition::other_version || verdict == NodeCondition::quarantined ||
+           verdict == NodeCondition::babbling || verdict == NodeCondition::time_suspect;
 }
 
 /// A value that a node reports and that differs from the rig.
@@ -72,7 +72,7 @@ struct NodeRecord {
     bool sends_joints = false;
     std::optional<HostTime> suspected;  ///< the newest heartbeat with `is_time_suspect`
     bool is_suspected = false;
-    std::uint8_t version_told = 0;      ///< version in that heartbeat
+    std::uint8_t version_reported = 0;  ///< version in that heartbeat
     std::uint64_t restarts = 0;         ///< heartbeats with `starting` after one without
     std::optional<HostTime> restarted;  ///< time of the newest of them
 
@@ -130,7 +130,7 @@ class NodeRegistry {
     /// False if the page was refused: the node is quarantined, babbling or uses another protocol version.
     [[nodiscard]] bool on_info(wire::NodeId node, const wire::NodeInfo& info, std::optional<HostTime> now);
 
-    [[nodiscard]] NodeVerdict verdict(wire::NodeId node, std::optional<HostTime> now) const;
+    [[nodiscard]] NodeCondition verdict(wire::NodeId node, std::optional<HostTime> now) const;
     /// The reported and the expected value, if the decision rests on such a difference.
     [[nodiscard]] std::optional<NodeMismatch> reason(wire::NodeId node, std::optional<HostTime> now) const;
     /// Text for people: "node 7 'upper ring': info_mismatch (node_hash 1a2b3c4d, the rig has 5e6f7a8b: flash

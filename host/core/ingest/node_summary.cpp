@@ -25,12 +25,12 @@ std::optional<Loss> mendable(std::optional<Loss> loss) {
 }
 
 std::string verdict_text(const NodeSummary& node) {
-    if (node.verdict == NodeVerdict::usable && !node.has_time) return "no SYNC in the log";
-    if (node.verdict == NodeVerdict::usable && node.loss) {
+    if (node.verdict == NodeCondition::usable && !node.has_time) return "no SYNC in the log";
+    if (node.verdict == NodeCondition::usable && node.loss) {
         return "loses " + std::to_string(node.loss->rejected) + " of " + std::to_string(node.loss->of) + " " +
                node.loss->unit + ", most as " + node.loss->reason;
     }
-    return names_of(NodeVerdict{})[static_cast<std::size_t>(node.verdict)];
+    return names_of(NodeCondition{})[static_cast<std::size_t>(node.verdict)];
 }
 
 std::vector<std::string> registers_of(const NodeRecord& record) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/core/account/loss.hpp"
+#include "host/core/counters/loss.hpp"
 #include "host/core/ingest/can_intake.hpp"
 
 namespace octoskin {
@@ -23,7 +23,7 @@ struct NodeSummary {
     };
     std::optional<Readings> readings;
     std::uint64_t clock_relocks = 0;
-    NodeVerdict verdict = NodeVerdict::absent;
+    NodeCondition verdict = NodeCondition::absent;
     bool has_time = true;  ///< false: no SYNC gave the host a time; then nothing of the node is usable
     std::optional<NodeMismatch> reason;    ///< the reported and the expected value
     std::optional<Loss> loss{};            ///< the node works, but over half of what it sends is lost

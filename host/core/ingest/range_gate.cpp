@@ -96,8 +96,8 @@ void RangeGate::on_fate_in_map(wire::NodeId node, std::uint8_t sensor,
 }
 
 bool RangeGate::is_certain(const Sensor& sensor, const MappedTime& captured) const {
-    const auto& told = sensor.record.capture_bound;
-    return told && captured.error_bound + *told <= limits_.time_uncertainty_max;
+    const auto& reported = sensor.record.capture_bound;
+    return reported && captured.error_bound + *reported <= limits_.time_uncertainty_max;
 }
 
 /// Ranging windows of one sensor do not overlap. The sensor's oscillator may be 7 % fast, and each time has

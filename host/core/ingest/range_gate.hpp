@@ -27,7 +27,7 @@
 
 namespace octoskin {
 
-/// Everything that is known about one sensor, for people.
+/// Everything that is known about one sensor, for reports to the user.
 struct SensorRecord {
     std::uint64_t received = 0;                     ///< readings that arrived, each counted once
     std::optional<wire::RangeReading> newest;       ///< the newest of them, whatever its result
@@ -43,7 +43,7 @@ struct SensorRecord {
     std::uint64_t reflexes = 0;          ///< how often something came closer than the sensor's limit
     std::optional<wire::Reflex> reflex;  ///< the newest
     SentCount sent;                      ///< readings sent and lost
-    /// Its readings and SENSOR_HEALTH; begins when its node becomes usable (RangeGate::expect).
+    /// Arrivals of its readings and SENSOR_HEALTH; begins when its node becomes usable (RangeGate::expect).
     Stretch words;
     static constexpr Nanoseconds kUnheardAfter{3'000'000'000};
     /// Losses during complete silence do not predict the losses that follow.
@@ -82,8 +82,8 @@ class RangeGate {
                                                                 const MappedTime& captured, HostTime now,
                                                                 bool is_clock_questioned = false);
 
-    /// Until when an accepted reading is held because a second sender may send under its node's id: until the
-    /// true reading of the same number would have arrived. Empty: not held.
+    /// The time until which an accepted reading is held, because a second sender may use its node's id. By
+    /// then, the true reading with the same number would have arrived. Empty: the reading is not held.
     [[nodiscard]] std::optional<HostTime> held_until(const RangeMeasurement& measurement, HostTime now) const;
     /// The readings of a node are held for this time after a contradiction.
     static constexpr Nanoseconds kSuspicion{60'000'000'000};
@@ -91,8 +91,8 @@ class RangeGate {
     static constexpr Nanoseconds kHeldMax{240'000'000};
 
     /// Call after `on_arrival`, for a reading that cannot be checked: its node is not usable, or its time is
-    /// unknown. Its number is compared and recorded all the same. Otherwise another sender that makes the
-    /// node's readings refused could send its own under their numbers. Returns the fault of its number.
+    /// unknown. Its number is still compared and recorded. Otherwise, a second sender that causes the node's
+    /// readings to be refused could send its own under their numbers. Returns the fault of its number.
     /// `now`: empty while unknown; then nothing is compared.
     [[nodiscard]] std::optional<ReadingReason> skip(wire::NodeId node, const wire::RangeReading& reading,
                                                     std::optional<HostTime> now);
@@ -105,7 +105,7 @@ class RangeGate {
         return is_certain(sensors_.at({node, sensor}), MappedTime{});
     }
     void on_signal(wire::NodeId node, std::uint8_t sensor, const wire::SignalReading& signal);
-    /// Counted for every state of the node: it serves people and arms and does not affect the map.
+    /// Counted in every state of the node, because a REFLEX does not affect the map.
     void on_reflex(wire::NodeId node, const wire::Reflex& reflex);
     /// The node was not usable until now, or the host time has jumped: data of its sensors are expected from
     /// now on.
@@ -119,8 +119,8 @@ class RangeGate {
     /// An exchange disagrees: readings refused for their time do not show a second sender.
     void on_clock_contradicted(wire::NodeId node);
     /// The node's newest heartbeat: its sensors range at another period than configured (`is_overridden`), or
-    /// as configured. An override counts once all heartbeats of a second have reported it. A single one may
-    /// come from another sender that wants room for its readings between those of a slow sensor.
+    /// as configured. An override counts once all heartbeats of a second have reported it. A single heartbeat
+    /// may come from a second sender, whose readings would then fit between those of a slow sensor.
     void on_rate(wire::NodeId node, bool is_overridden, std::optional<HostTime> now);
     static constexpr Nanoseconds kOverriddenFor{1'000'000'000};
 
@@ -169,9 +169,9 @@ class RangeGate {
     bool uses_no_return_;
     Nanoseconds now_early_;
     SensorTable<Sensor> sensors_;
-    /// since when all heartbeats have reported an override
+    /// The time since which all heartbeats have reported an override.
     std::map<wire::NodeId, HostTime> rate_overridden_since_;
-    /// the newest contradiction of any of the node's sensors
+    /// The time of the newest contradiction of any of the node's sensors.
     std::map<wire::NodeId, HostTime> contradicted_;
 };
 

@@ -24,7 +24,7 @@ enum class FrameReason : std::uint8_t {
     invalid_field,
     unknown_node,       ///< a node id that is not in the rig
     unknown_sensor,     ///< health, signal or reflex of a sensor that the node does not have
-    for_nodes,          ///< a host command: the map does not use it
+    host_command,       ///< a host command: the map does not use it
     sync_unmatched,     ///< FOLLOW_UP or SYNC_REPORT without its SYNC
     sync_repeated,      ///< a second SYNC, FOLLOW_UP or SYNC_REPORT where only one belongs
     sync_contradicted,  ///< a second SYNC_REPORT of one node to one SYNC, with another time
@@ -33,15 +33,15 @@ enum class FrameReason : std::uint8_t {
     not_joint_source,    ///< joint states of a node that is not the rig's joint source
     joint_repeated,      ///< a joint frame that the sample already has
     joint_no_host_time,  ///< a joint frame while the host time is unknown
-    for_people,          ///< a diagnostic frame (black box, answer to a calibration): the map does not use it
+    diagnostic_frame,    ///< a diagnostic frame (black box, answer to a calibration): the map does not use it
     mark_ignored,        ///< a MARK where the map does not wait for one, or over 1 s from the host time
 };
 [[nodiscard]] constexpr std::array<const char*, 19> names_of(FrameReason) {
-    return {"foreign_format",     "unknown_type",    "wrong_length",     "wrong_crc",
-            "wrong_version",      "nonzero_padding", "invalid_field",    "unknown_node",
-            "unknown_sensor",     "for_nodes",       "sync_unmatched",   "sync_repeated",
-            "sync_contradicted",  "node_refused",    "not_joint_source", "joint_repeated",
-            "joint_no_host_time", "for_people",      "mark_ignored"};
+    return {"foreign_format",     "unknown_type",     "wrong_length",     "wrong_crc",
+            "wrong_version",      "nonzero_padding",  "invalid_field",    "unknown_node",
+            "unknown_sensor",     "host_command",     "sync_unmatched",   "sync_repeated",
+            "sync_contradicted",  "node_refused",     "not_joint_source", "joint_repeated",
+            "joint_no_host_time", "diagnostic_frame", "mark_ignored"};
 }
 static_assert(static_cast<std::size_t>(FrameReason::invalid_field) + 1 == wire::kDecodeErrors);
 [[nodiscard]] constexpr FrameReason reason_of(wire::DecodeError error) noexcept {

@@ -2,27 +2,27 @@
 
 namespace octoskin {
 
-std::optional<ReadingReason> reason_of(NodeVerdict verdict) {
+std::optional<ReadingReason> reason_of(NodeCondition verdict) {
     switch (verdict) {
-        case NodeVerdict::other_version:
+        case NodeCondition::other_version:
             return ReadingReason::node_version;
-        case NodeVerdict::quarantined:
+        case NodeCondition::quarantined:
             return ReadingReason::node_quarantined;
-        case NodeVerdict::babbling:
+        case NodeCondition::babbling:
             return ReadingReason::node_babbling;
-        case NodeVerdict::absent:
+        case NodeCondition::absent:
             return ReadingReason::node_absent;
-        case NodeVerdict::lost:
+        case NodeCondition::lost:
             return ReadingReason::node_lost;
-        case NodeVerdict::time_suspect:
+        case NodeCondition::time_suspect:
             return ReadingReason::node_time_suspect;
-        case NodeVerdict::info_incomplete:
+        case NodeCondition::info_incomplete:
             return ReadingReason::node_info_incomplete;
-        case NodeVerdict::info_mismatch:
+        case NodeCondition::info_mismatch:
             return ReadingReason::node_info_mismatch;
-        case NodeVerdict::build_refused:
+        case NodeCondition::build_refused:
             return ReadingReason::node_build_refused;
-        case NodeVerdict::usable:
+        case NodeCondition::usable:
             return std::nullopt;
     }
     return ReadingReason::node_absent;

@@ -11,7 +11,7 @@
 namespace octoskin {
 
 /// Empty: the node is usable.
-[[nodiscard]] std::optional<ReadingReason> reason_of(NodeVerdict verdict);
+[[nodiscard]] std::optional<ReadingReason> reason_of(NodeCondition verdict);
 [[nodiscard]] FrameReason reason_of(SyncFault fault);
 
 /// Times that no sensor can produce: the node's clock has jumped since the last exchange, or the reading is

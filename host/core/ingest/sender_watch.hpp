@@ -1,5 +1,5 @@
 // Decides whether two senders use one sensor's id. One sender's readings have consecutive numbers. Single
-// readings of a second sender cannot be told from them, but both cannot continue their numbers.
+// readings of a second sender look like them, but both cannot continue their numbers.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,8 @@ JointJump::JointJump(std::span<const JointLimits> limits, const JointJumpConfig&
     assert(std::ranges::all_of(limits_, [](const JointLimits& limit) { return limit.velocity_max > 0.0; }));
 }
 
-JointJump::Verdict JointJump::judge(HostTime sampled, std::span<const double> position, std::uint64_t clock) {
+JointJump::SampleFit JointJump::judge(HostTime sampled, std::span<const double> position,
+                                      std::uint64_t clock) {
     assert(position.size() == limits_.size());
     if (clock != clock_) forget();
     clock_ = clock;
@@ -24,12 +25,12 @@ JointJump::Verdict JointJump::judge(HostTime sampled, std::span<const double> po
         const bool is_used_silent = sampled - used_->sampled >= config_.heard_for;
         if (!is_used_silent) {
             note_jump(point);
-            return Verdict::jumped;
+            return SampleFit::jumped;
         }
         adopt(point);
     }
     if (sampled > used_->sampled) used_ = point;
-    return hears_two(sampled) ? Verdict::withheld : Verdict::fits;
+    return hears_two(sampled) ? SampleFit::withheld : SampleFit::fits;
 }
 
 void JointJump::forget() noexcept {

@@ -46,7 +46,7 @@ class JointJump {
     /// `limits`: one per joint, at most kJointsMax, each with a velocity above 0 (asserted).
     explicit JointJump(std::span<const JointLimits> limits, const JointJumpConfig& config = {});
 
-    enum class Verdict : std::uint8_t {
+    enum class SampleFit : std::uint8_t {
         fits,
         jumped,    ///< the sample is too far from the used track
         withheld,  ///< it is on the used track, but another track is active
@@ -54,7 +54,8 @@ class JointJump {
     /// Takes samples in the order of their times; the history rejects one that is not later than the newest.
     /// `position` has one finite value per joint (asserted). `clock` identifies the clock of the times: times
     /// of two clocks are not comparable, so a new clock resets the state. O(1), no allocation.
-    [[nodiscard]] Verdict judge(HostTime sampled, std::span<const double> position, std::uint64_t clock = 0);
+    [[nodiscard]] SampleFit judge(HostTime sampled, std::span<const double> position,
+                                  std::uint64_t clock = 0);
 
     /// Clears all samples.
     void forget() noexcept;

@@ -132,11 +132,11 @@ struct RobotModel::Impl {
             limits[joint].min = -kInfinity;
             limits[joint].max = kInfinity;
         }
-        const double told = description.limits.velocity_max;
-        const bool is_told = std::isfinite(told) && told > 0.0;
+        const double given = description.limits.velocity_max;
+        const bool is_given = std::isfinite(given) && given > 0.0;
         const double usual =
             description.kind == JointKind::prismatic ? kPrismaticVelocity : kRevoluteVelocity;
-        limits[joint].velocity_max = is_told ? told : usual;
+        limits[joint].velocity_max = is_given ? given : usual;
     }
 };
 

@@ -53,21 +53,22 @@ class ConfirmedRanges {
     };
     /// Takes a beam that goes into the map; call in the order of the map. A range is first confirmed while it
     /// is new: if none of the zone's `kBefore` readings before the window was from this place and as short.
-    /// It stays confirmed with each reading of its zone that agrees with it, and with those of other zones
-    /// that see further. It ends when `kBefore` readings in a row disagree. If that many are missing, all
-    /// readings of the zone are cleared. O(zones of the sensor), below 1 us. Throws std::bad_alloc.
+    /// Each later reading of its zone that agrees with it confirms it again, and so does each reading of
+    /// another zone that sees further. The confirmation ends when `kBefore` readings of the zone in a row
+    /// disagree. If that many are missing, all readings of the zone are cleared. O(zones of the sensor),
+    /// below 1 us. Throws std::bad_alloc.
     [[nodiscard]] Answer take(const Beam& beam, SensorHistories& histories);
 
     [[nodiscard]] const StationaryModel& model() const noexcept { return model_; }
-    /// Maximum number of readings stored for a zone, none later than the last one. A zone with a confirmed
-    /// range has at least one.
+    /// Maximum number of readings stored for a zone; none of them was captured after the last one. A zone
+    /// with a confirmed range has at least one.
     [[nodiscard]] static std::size_t readings_max(const StationaryModel& model) noexcept {
         return model.window() + kBefore;
     }
 
   private:
     using Reading = ZoneHistory::Reading;
-    /// The first reading of a zone in a window.
+    /// The zones that have readings in a window, each with the index of its first reading there.
     using Window = std::vector<std::pair<ZoneHistory*, std::size_t>>;
 
     void confirm(const Beam& newest, const Window& window);

@@ -9,11 +9,11 @@
 #include "host/core/bricks/brick_walk.hpp"
 #include "host/core/mapping/hit_bricks.hpp"
 #include "host/core/mapping/tally_grid.hpp"
+#include "host/core/traversal/brick_visibility.hpp"
 #include "host/core/traversal/end_voxels.hpp"
 #include "host/core/traversal/image_traversal.hpp"
-#include "host/core/traversal/mark_grid.hpp"
-#include "host/core/traversal/picture_test.hpp"
 #include "host/core/traversal/placed_voxels.hpp"
+#include "host/core/traversal/visited_grid.hpp"
 #include "host/core/traversal/voxel_rays.hpp"
 #include "host/core/voxels/ray_walk.hpp"
 
@@ -26,7 +26,7 @@ float mean_term(const VoxelTally& tally, float miss) {
     return static_cast<float>(sum / (static_cast<double>(tally.hits) + tally.passed));
 }
 
-KeyBox box_of(const PlacedImage& rays, const VoxelLattice& lattice) {
+KeyBox box_of(const ProjectedImage& rays, const VoxelLattice& lattice) {
     const auto lowest = lattice.key_of(rays.lowest.cast<double>());
     const auto highest = lattice.key_of(rays.highest.cast<double>());
     assert(lowest && highest);  // both are coordinates of ray ends and of the origin, which have keys
@@ -35,7 +35,7 @@ KeyBox box_of(const PlacedImage& rays, const VoxelLattice& lattice) {
 
 /// Calls visit(end, range) for each pixel that has a ray, row by row.
 template <class Visit>
-void for_each_ray(const PlacedImage& rays, Visit&& visit) {
+void for_each_ray(const ProjectedImage& rays, Visit&& visit) {
     for (std::size_t i = 0; i < rays.pixels(); ++i) {
         if (rays.reach_m[i] < 0.0F) continue;
         visit(Eigen::Vector3f(rays.end_x[i], rays.end_y[i], rays.end_z[i]), rays.range_m[i]);
@@ -44,7 +44,7 @@ void for_each_ray(const PlacedImage& rays, Visit&& visit) {
 
 /// Calls visit(key, range) for each ray that ends on a surface.
 template <class Visit>
-void for_each_hit(const PlacedImage& rays, const VoxelLattice& lattice, Visit&& visit) {
+void for_each_hit(const ProjectedImage& rays, const VoxelLattice& lattice, Visit&& visit) {
     for_each_ray(rays, [&](const Eigen::Vector3f& end, double range_m) {
         if (range_m >= 0.0) visit(*lattice.key_of(end.cast<double>()), range_m);
     });
@@ -93,10 +93,10 @@ struct alignas(64) PartTerms {
 /// Calls add_below(terms, cube) for each cube in the thread pool, and joins the results in the order of the
 /// cubes. `parts`: working memory.
 template <class AddBelow>
-void add_together(Crew& crew, const std::vector<VoxelCube>& cubes, const AddBelow& add_below,
+void add_together(ThreadPool& pool, const std::vector<VoxelCube>& cubes, const AddBelow& add_below,
                   std::vector<PartTerms>& parts, Evidence& terms) {
     if (parts.size() < cubes.size()) parts.resize(cubes.size());
-    crew.work(cubes.size(), [&](std::size_t i) {
+    pool.work(cubes.size(), [&](std::size_t i) {
         Evidence& own = parts[i].terms;
         own.clear();
         own.miss = terms.miss;
@@ -114,12 +114,12 @@ BrickMask without(BrickMask mask, const BrickMask& others) {
 
 /// Memory that stays allocated between frames.
 struct DepthIntegrator::Workspace {
-    PlacedImage rays;
+    ProjectedImage rays;
     ImageTraversal traversal;
-    MarkGrid marks;
+    VisitedGrid marks;
     HitBricks hits;
     EndVoxels ends;
-    ReachWindows reach;
+    RangePyramid reach;
     VoxelRays voxel_rays;
     TallyGrid tallies;
     std::vector<PartTerms> parts;   ///< the evidence of each cube, before it is joined
@@ -133,7 +133,7 @@ DepthIntegrator::DepthIntegrator(const MappingConfig& config, const CameraIntrin
       pixel_rays_(camera),
       lattice_(config.map.resolution_m),
       workspace_(std::make_unique<Workspace>()),
-      crew_(std::make_unique<Crew>(threads)) {}
+      pool_(std::make_unique<ThreadPool>(threads)) {}
 DepthIntegrator::DepthIntegrator(DepthIntegrator&&) noexcept = default;
 DepthIntegrator& DepthIntegrator::operator=(DepthIntegrator&&) noexcept = default;
 DepthIntegrator::~DepthIntegrator() = default;
@@ -159,9 +159,9 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
 
 Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera) {
-    PlacedImage& rays = workspace_->rays;
+    ProjectedImage& rays = workspace_->rays;
     const auto place = [&](auto& place_how) {
-        place_how(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, crew_.get());
+        place_how(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, pool_.get());
     };
     const bool takes_voxels =
         config_.depth_update == DepthUpdate::fast && pixel_rays_.camera().lens.is_none();
@@ -199,9 +199,9 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
 
 /// The paper's sets: a hit wins over any number of passing rays, and the largest hit counts. A hit with a
 /// term of 0 (too near to be reliable) is still a hit: it never becomes a miss.
-bool DepthIntegrator::take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
+bool DepthIntegrator::take_sets(const ProjectedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                 Evidence& terms) {
-    MarkGrid& marks = workspace_->marks;
+    VisitedGrid& marks = workspace_->marks;
     HitBricks& hits = workspace_->hits;
     const KeyBox box = box_of(rays, lattice_);
     if (!hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max) ||
@@ -221,7 +221,7 @@ bool DepthIntegrator::take_sets(const PlacedImage& rays, const Eigen::Isometry3d
     return true;
 }
 
-bool DepthIntegrator::take_means(const PlacedImage& rays, Evidence& terms) {
+bool DepthIntegrator::take_means(const ProjectedImage& rays, Evidence& terms) {
     TallyGrid& tallies = workspace_->tallies;
     if (!tallies.span(box_of(rays, lattice_), config_.depth_box_voxels_max)) return false;
     for_each_ray(rays, [&](const Eigen::Vector3f& end, double) {
@@ -240,21 +240,21 @@ bool DepthIntegrator::take_means(const PlacedImage& rays, Evidence& terms) {
     return true;
 }
 
-bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& view, Evidence& terms) {
+bool DepthIntegrator::take_nearest(const ProjectedImage& rays, const CertainView& view, Evidence& terms) {
     EndVoxels& ends = workspace_->ends;
     const KeyBox box = box_of(rays, lattice_);
-    ReachWindows& reach = workspace_->reach;
-    const std::size_t parts = crew_->size();
+    RangePyramid& reach = workspace_->reach;
+    const std::size_t parts = pool_->size();
     if (!ends.begin(box, config_.depth_box_voxels_max, parts)) return false;
     reach.begin(rays);
-    crew_->work(parts + 2, [&](std::size_t part) {
+    pool_->work(parts + 2, [&](std::size_t part) {
         if (part < parts) return ends.mark(rays, part);
         part == parts ? reach.take_shortest(rays) : reach.take_longest(rays);
     });
-    const PictureTest picture(view, reach);
+    const BrickVisibility picture(view, reach);
     VoxelRays& voxel_rays = workspace_->voxel_rays;
     voxel_rays.begin(view, rays, reach, lattice_);
-    const auto verdict_of = [&](const VoxelCube& cube) {
+    const auto coverage_of = [&](const VoxelCube& cube) {
         const int edge = 1 << cube.height;
         const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * (edge - 1) * lattice_.resolution_m());
         return picture.of_cube(view.T_camera_map * (lattice_.centre_of(cube.lowest) + half), edge);
@@ -280,14 +280,15 @@ bool DepthIntegrator::take_nearest(const PlacedImage& rays, const CertainView& v
     };
     const auto add_below = [&](Evidence& to, const VoxelCube& cube) {
         walk_bricks(
-            box, verdict_of, [&](MortonCode brick, bool is_all) { add_brick(to, brick, is_all); }, cube);
+            box, coverage_of, [&](MortonCode brick, bool is_all) { add_brick(to, brick, is_all); }, cube);
     };
-    if (crew_->size() == 1) {
+    if (pool_->size() == 1) {
         add_below(terms, kWholeOctree);
     } else {
         std::vector<VoxelCube> cubes;
-        walk_cubes(box, kPartHeight, verdict_of, [&](const VoxelCube& cube, bool) { cubes.push_back(cube); });
-        add_together(*crew_, cubes, add_below, workspace_->parts, terms);
+        walk_cubes(box, kPartHeight, coverage_of,
+                   [&](const VoxelCube& cube, bool) { cubes.push_back(cube); });
+        add_together(*pool_, cubes, add_below, workspace_->parts, terms);
     }
     return true;
 }

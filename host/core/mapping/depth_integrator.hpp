@@ -7,13 +7,13 @@
 #include <memory>
 
 #include "common/result.hpp"
-#include "host/core/crew/crew.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/depth/pixel_rays.hpp"
 #include "host/core/mapping/evidence.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "host/core/parallel/thread_pool.hpp"
 #include "host/core/traversal/certain_view.hpp"
-#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/projected_image.hpp"
 
 namespace octoskin {
 
@@ -35,8 +35,8 @@ class DepthIntegrator {
   public:
     /// Takes the map's resolution, the model, the strategy and the memory limit from `config`. Every pixel
     /// must have a ray (asserted by PixelRays). `threads`: number of threads that work on an image, including
-    /// the caller; the terms do not depend on it. `robust` runs in the caller only, as does `paper` except
-    /// for projecting the pixels.
+    /// the caller; the terms do not depend on it. The strategy `robust` runs in the caller only. So does
+    /// `paper`, except for the projection of the pixels.
     DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera, unsigned threads = 1);
     DepthIntegrator(DepthIntegrator&&) noexcept;
     DepthIntegrator& operator=(DepthIntegrator&&) noexcept;
@@ -57,17 +57,17 @@ class DepthIntegrator {
     [[nodiscard]] Result<DepthUpdates, DepthRejection> updates_of(const DepthImage& image,
                                                                   const Eigen::Isometry3d& T_map_camera);
     /// Each returns false if the rays span too many voxels.
-    [[nodiscard]] bool take_sets(const PlacedImage& rays, const Eigen::Isometry3d& T_map_camera,
+    [[nodiscard]] bool take_sets(const ProjectedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                  Evidence& terms);
-    [[nodiscard]] bool take_means(const PlacedImage& rays, Evidence& terms);
-    [[nodiscard]] bool take_nearest(const PlacedImage& rays, const CertainView& view, Evidence& terms);
+    [[nodiscard]] bool take_means(const ProjectedImage& rays, Evidence& terms);
+    [[nodiscard]] bool take_nearest(const ProjectedImage& rays, const CertainView& view, Evidence& terms);
 
     struct Workspace;
     MappingConfig config_;
     PixelRays pixel_rays_;
     VoxelLattice lattice_;
     std::unique_ptr<Workspace> workspace_;
-    std::unique_ptr<Crew> crew_;
+    std::unique_ptr<ThreadPool> pool_;
 };
 
 }  // namespace octoskin

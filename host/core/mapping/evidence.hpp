@@ -24,8 +24,8 @@ enum class EvidenceRule : std::uint8_t {
     /// VoxelRules::count: each of `voxels` gets `miss` misses. `cells` share `hit` hits in proportion to
     /// their term and to their probability of being occupied.
     counts,
-    /// VoxelRules::confirm: `voxels` become occupied, with at least `hit` hits, unless a voxel of `cells`
-    /// with a term is occupied, which explains the measurement.
+    /// VoxelRules::confirm: `voxels` become occupied, with at least `hit` hits. If a voxel of `cells` with a
+    /// term is already occupied, it explains the measurement, and nothing is changed.
     confirm,
     /// VoxelRules::withdraw: `voxels` that are not occupied lose their hits.
     withdraw,
@@ -45,7 +45,7 @@ struct BrickEvidence {
 struct Evidence {
     EvidenceRule rule = EvidenceRule::image;
     SensorKind sensor = SensorKind::camera;
-    bool prefers_occupied = false;  ///< for `counts`: only occupied voxels share the hits, if there are any
+    bool prefers_occupied = false;  ///< for `counts`: if cells are occupied, only those share the hits
     float miss = 0.0F;
     float hit = 0.0F;
     /// In the order of application. For an image: each brick once, in Morton order, each voxel at most once,

@@ -33,10 +33,10 @@ void FusedMap::apply(const Evidence& evidence, const EvidenceOptions& options) {
     CountWriter(editor, options).write(evidence);
 }
 
-void FusedMap::go_on(HostTime now) noexcept {
+void FusedMap::advance_time(HostTime now) noexcept {
     has_undated_ = has_undated_ || !layers_.ages.has_begun();
     try {
-        if (layers_.ages.go_on(now)) date_and_expire();
+        if (layers_.ages.advance_time(now)) date_and_expire();
     } catch (const std::bad_alloc&) {  // expiry and missing time stamps follow in a later second
         ++counters_.undated;
     }
@@ -65,7 +65,7 @@ void FusedMap::begin_to_wait() noexcept {
     has_undated_ = true;  // it may come from a configuration without expiry
 }
 
-void FusedMap::forget_times() noexcept {
+void FusedMap::clear_times() noexcept {
     layers_.ages = {};
     begin_to_wait();
 }
@@ -88,7 +88,7 @@ void FusedMap::limit(const MapConfig& config) {
     *this = std::move(next);
 }
 
-void FusedMap::forget_counts_of(const Evidence& terms) {
+void FusedMap::clear_counts_of(const Evidence& terms) {
     if (layers_.counts.empty()) return;
     for (const BrickEvidence& brick : terms.bricks) {
         BrickMask voxels = brick.voxels;

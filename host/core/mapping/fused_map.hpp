@@ -55,30 +55,30 @@ class FusedMap {
     /// sensor has seen for `age.unknown_after_s` expire at the next whole second. O(1) within a second. In a
     /// new second, if voxels expire, visits a 64th of the bricks and those that may have voxels that are too
     /// old: about 50 us for 10,000 bricks. The first time visits all bricks.
-    void go_on(HostTime now) noexcept;
+    void advance_time(HostTime now) noexcept;
     /// Time jump: from now on, times are from a clock that is ahead of the earlier one by `by` (behind, if
     /// negative). No age changes.
-    void leap(Nanoseconds by) noexcept { layers_.ages.leap(by); }
+    void jump_time(Nanoseconds by) noexcept { layers_.ages.jump_time(by); }
     /// For a map that was saved, or that was built before the machine slept: the next time is on another
     /// scale, and until then `wait` reports how much time has passed. In a map without a time, the time
     /// begins here, and voxels without a time stamp get one when the time advances. O(1).
     void begin_to_wait() noexcept;
     /// `seconds` in total have passed since `begin_to_wait`: every age grows by the part that was not added
     /// before, and voxels that are too old expire. True if ages grew. False if the map does not wait, or if
-    /// there is no memory; a later call then adds the time. Same cost as `go_on`.
+    /// there is no memory; a later call then adds the time. Same cost as `advance_time`.
     bool wait(std::int64_t seconds) noexcept;
     /// The ages are no longer known: all voxels count as measured before the map's time began. The time
     /// restarts and waits as after `begin_to_wait`, and voxels are stale until a sensor sees them. O(time
     /// stamps).
-    void forget_times() noexcept;
+    void clear_times() noexcept;
     /// Applies other limits at the same resolution (asserted). Log-odds beyond new clamps are clamped; bricks
-    /// beyond a smaller memory limit stay. If voxels expire only from now on, counts without a time stamp
-    /// count as from before the map's time. The counters restart. O(voxels) if the clamps change. Throws
-    /// std::bad_alloc if the clamps or the counts' model change and there is no memory for a second copy of
-    /// all voxels; nothing is changed then.
+    /// beyond a smaller memory limit stay. If voxels did not expire before and now do, counts without a time
+    /// stamp are treated as from before the map's time. The map's counters restart. O(voxels) if the clamps
+    /// change. Throws std::bad_alloc if the clamps or the counts' model change and there is no memory for a
+    /// second copy of all voxels; nothing is changed then.
     void limit(const MapConfig& config);
     /// Clears the counts of range sensors in the voxels of `terms`. Throws std::bad_alloc.
-    void forget_counts_of(const Evidence& terms);
+    void clear_counts_of(const Evidence& terms);
     /// Sets every voxel of a cube to this value, clamped; for building a map from a file. False if there was
     /// no room (part of the cube may then be set) or if the value is not finite.
     [[nodiscard]] bool set_cube(const VoxelCube& cube, float log_odds);

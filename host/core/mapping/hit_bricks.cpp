@@ -18,7 +18,7 @@
 #define OCTOSKIN_HIT_BRICKS_TYPES
 namespace octoskin {
 
-/// A row of PlacedImage, from its first pixel on.
+/// A row of ProjectedImage, from its first pixel on.
 struct RowOfEnds {
     const std::uint32_t* key_xy;
     const std::uint32_t* key_z;
@@ -81,7 +81,7 @@ HWY_EXPORT(find_row_runs);
 
 }  // namespace
 
-bool HitBricks::take(const PlacedImage& rays, const KeyBox& box, const HitModel& model,
+bool HitBricks::take(const ProjectedImage& rays, const KeyBox& box, const HitModel& model,
                      std::size_t voxels_max) {
     const BrickBox bricks = BrickBox::of(box);
     if (bricks.bricks() * kBrickVoxels > voxels_max) return false;
@@ -95,7 +95,7 @@ bool HitBricks::take(const PlacedImage& rays, const KeyBox& box, const HitModel&
     return true;
 }
 
-void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitModel& model) {
+void HitBricks::take_row(const ProjectedImage& rays, std::size_t first, const HitModel& model) {
     constexpr std::size_t kWordBits = 64;
     run_ends_.resize((rays.width + kWordBits - 1) / kWordBits);
     terms_.resize(run_ends_.size() * kWordBits);
@@ -110,7 +110,7 @@ void HitBricks::take_row(const PlacedImage& rays, std::size_t first, const HitMo
     for (std::size_t word = 0; word < run_ends_.size(); ++word) {
         for (std::uint64_t bits = run_ends_[word]; bits != 0; bits &= bits - 1) {
             const std::size_t last = kWordBits * word + static_cast<std::size_t>(std::countr_zero(bits));
-            if (key_z[last] != PlacedImage::kNoKey) {
+            if (key_z[last] != ProjectedImage::kNoKey) {
                 const VoxelKey key{static_cast<std::uint16_t>(key_xy[last]),
                                    static_cast<std::uint16_t>(key_xy[last] >> 16U),
                                    static_cast<std::uint16_t>(key_z[last])};

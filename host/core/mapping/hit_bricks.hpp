@@ -9,7 +9,7 @@
 #include "host/core/bricks/brick.hpp"
 #include "host/core/bricks/brick_box.hpp"
 #include "host/core/mapping/update_model.hpp"
-#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/projected_image.hpp"
 #include "host/core/voxels/key_box.hpp"
 
 namespace octoskin {
@@ -25,14 +25,14 @@ class HitBricks {
   public:
     /// Takes all rays that end on a surface; `box` contains them. False, with nothing done, if the box has
     /// over `voxels_max` voxels. O(pixels + bricks of the box). Throws std::bad_alloc.
-    [[nodiscard]] bool take(const PlacedImage& rays, const KeyBox& box, const HitModel& model,
+    [[nodiscard]] bool take(const ProjectedImage& rays, const KeyBox& box, const HitModel& model,
                             std::size_t voxels_max);
     /// The hits in a brick, in the order of pixels.
     [[nodiscard]] std::span<const CellHits> of(MortonCode brick) const noexcept;
     [[nodiscard]] BrickMask mask_of(MortonCode brick) const noexcept;
 
   private:
-    void take_row(const PlacedImage& rays, std::size_t first, const HitModel& model);
+    void take_row(const ProjectedImage& rays, std::size_t first, const HitModel& model);
     void sort();
 
     BrickBox box_;

@@ -46,7 +46,7 @@ struct MappingConfig {
     bool removes_robot_from_depth = true;
     bool removes_robot_from_ranges = true;
     /// Each range is compared with the camera's image. A sensor, or the camera, that contradicts the others
-    /// is reported (host/core/witness).
+    /// is reported (host/core/cross_check).
     bool reports_contradicting_sensors = true;
     /// The readings of a reported sensor are not put into the map. Requires `reports_contradicting_sensors`.
     bool refuses_contradicting_sensors = false;

@@ -33,7 +33,7 @@ class RangeModel {
 
     /// See StationarySensors.
     [[nodiscard]] SensorHistories histories() const { return stationary_.histories(); }
-    void go_on_with(SensorHistories histories) noexcept { stationary_.go_on_with(std::move(histories)); }
+    void resume_with(SensorHistories histories) noexcept { stationary_.resume_with(std::move(histories)); }
 
   private:
     [[nodiscard]] Status<BeamRejection> integrate_ray(const Beam& beam, EvidenceSink& sink);

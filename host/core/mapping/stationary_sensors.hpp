@@ -14,8 +14,9 @@
 
 namespace octoskin {
 
-/// Readings from one pose do not show where in its cone the surface is, so that shared hits mark and free
-/// slowly. Agreeing readings do both at once. Not for concurrent use by two threads.
+/// Readings from one pose do not show where in the cone the surface is. The hits that the voxels of the cap
+/// share therefore mark and free them slowly. Readings that agree do both at once. Not for concurrent use by
+/// two threads.
 class StationarySensors {
   public:
     explicit StationarySensors(const MappingConfig& config)
@@ -36,8 +37,8 @@ class StationarySensors {
 
     /// A copy of the histories. Throws std::bad_alloc.
     [[nodiscard]] SensorHistories histories() const { return histories_; }
-    /// Continues as if these readings had been taken.
-    void go_on_with(SensorHistories histories) noexcept { histories_ = std::move(histories); }
+    /// Continues from these histories, as if their readings had been taken here.
+    void resume_with(SensorHistories histories) noexcept { histories_ = std::move(histories); }
 
   private:
     void clear_seen_through(const Beam& beam, EvidenceSink& sink);

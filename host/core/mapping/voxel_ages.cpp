@@ -55,7 +55,7 @@ bool VoxelAges::is_possible(std::uint16_t stamp, const Clock& clock) noexcept {
     return then >= 1 && then <= clock.now && (kind == SensorKind::range || kind == SensorKind::camera);
 }
 
-bool VoxelAges::go_on(HostTime now) {
+bool VoxelAges::advance_time(HostTime now) {
     const std::int64_t second = whole_seconds(now);
     if (!clock_.has_begun) {
         clock_ = {.has_begun = true, .zero_s = second - kAgeMax_s, .now = kAgeMax_s};
@@ -91,7 +91,7 @@ bool VoxelAges::wait(std::int64_t seconds) {
     return true;
 }
 
-void VoxelAges::leap(Nanoseconds by) noexcept {
+void VoxelAges::jump_time(Nanoseconds by) noexcept {
     clock_.zero_s += whole_seconds(HostTime{by.count() + kNanosecondsPerSecond / 2});
 }
 

@@ -50,8 +50,8 @@ class VoxelAges {
     [[nodiscard]] const Clock& clock() const noexcept { return clock_; }
     /// True if a clock can be in this state. O(1).
     [[nodiscard]] static bool is_possible(const Clock& clock) noexcept;
-    /// True if a voxel can have this time stamp by that clock, which is possible. 0 means none and is
-    /// possible.
+    /// True if a voxel can have this time stamp by that clock, which must be possible. A time stamp of 0
+    /// means none, and is possible.
     [[nodiscard]] static bool is_possible(std::uint16_t stamp, const Clock& clock) noexcept;
 
     [[nodiscard]] bool has_begun() const noexcept { return clock_.has_begun; }
@@ -59,11 +59,11 @@ class VoxelAges {
     /// if `now` is earlier by up to `kBackMax_s`, the clock keeps its value. If it is earlier by more, the
     /// scale has changed, and ages continue from their values. True if the second changed. Throws
     /// std::bad_alloc at most once in kAgeMax_s seconds; the clock then keeps its value.
-    bool go_on(HostTime now);
+    bool advance_time(HostTime now);
     static constexpr std::int64_t kBackMax_s = 10;
     /// Time jump: the next time is ahead of the earlier scale by `by`, and no time has passed. Rounded to
     /// whole seconds.
-    void leap(Nanoseconds by) noexcept;
+    void jump_time(Nanoseconds by) noexcept;
     /// For a map that was saved: the next time is on a new scale, and ages continue from their values plus
     /// what `wait` adds. A clock that has not begun begins here.
     void begin_to_wait() noexcept {
@@ -72,7 +72,7 @@ class VoxelAges {
         clock_.waited_s = 0;
     }
     /// `seconds` in total have passed since `begin_to_wait`. Does nothing unless the clock has begun and
-    /// waits, or if as many seconds were added before. True if ages grew. Throws as `go_on`.
+    /// waits, or if as many seconds were added before. True if ages grew. Throws as `advance_time`.
     bool wait(std::int64_t seconds);
     /// The time stamp of a voxel that is confirmed now. Lower values are earlier or, in the same second, of
     /// another kind.
@@ -90,7 +90,7 @@ class VoxelAges {
     [[nodiscard]] std::int64_t runs_for_s() const noexcept { return clock_.runs_for_s; }
 
     /// Confirms voxels of a brick. Throws std::bad_alloc; nothing is changed then. About 50 ns. If a copy
-    /// shares the brick and anything changes, plus the cost of copying the brick.
+    /// shares the brick and anything changes, the brick is copied, too.
     void confirm(MortonCode brick, const BrickMask& voxels, SensorKind kind);
     /// Bricks with a time stamp for each voxel, for a caller that writes `stamp(kind)` itself. Valid until a
     /// brick is confirmed in another way.
@@ -132,7 +132,8 @@ class VoxelAges {
   private:
     static constexpr unsigned kKindBits = 2;
     static constexpr std::uint32_t kNowMax = (1U << (16 - kKindBits)) - 1;
-    /// Changes every time stamp; `change` keeps their order. Throws std::bad_alloc; nothing is changed then.
+    /// Changes every time stamp; `change` must preserve their order. Throws std::bad_alloc; nothing is
+    /// changed then.
     template <class Change>
     void change_stamps(const Change& change);
     void bring_up(std::uint32_t by);

@@ -42,8 +42,8 @@ class VoxelRules {
     void count(VoxelState& voxel, float hits, float misses) const noexcept;
     /// Makes the voxel occupied, with at least `hits` hits and no misses.
     void confirm(VoxelState& voxel, float hits) const noexcept;
-    /// Removes the hits. From one place, hits do not show where in its cap a range ended, and they would
-    /// accumulate with each object that appears and leaves there.
+    /// Removes the hits. Hits from one place do not show where in its cap a range ended. Without this rule,
+    /// they would accumulate with each object that appears and leaves there.
     void withdraw(VoxelState& voxel) const noexcept;
     /// Makes the voxel free, without hits and without the camera's earlier evidence that it is occupied.
     void clear(VoxelState& voxel) const noexcept;
@@ -94,9 +94,9 @@ class VoxelRules {
     [[nodiscard]] float misses_known(float prior) const noexcept {
         return model_.prior_misses + (prior < 0.0F ? misses_per_log_odds_ * prior : 0.0F);
     }
-    /// Slightly more than the fewest hits that mark a voxel without misses.
+    /// Slightly more than the fewest hits that make a voxel without misses occupied.
     [[nodiscard]] float hits_that_mark(float prior) const noexcept;
-    /// Slightly more than the fewest misses that free a known voxel without hits.
+    /// Slightly more than the fewest misses that make a known voxel without hits free.
     [[nodiscard]] float misses_that_free(float prior) const noexcept;
 
     CountModel model_;

@@ -52,7 +52,7 @@ class CommitListener {
     virtual void on_maps(std::span<const FedMap>) {}
     /// Time jump: later inputs are from before the earlier ones or far ahead of them, or the machine slept. A
     /// replay in this order ends here.
-    virtual void on_time_leap() {}
+    virtual void on_time_jump() {}
 };
 
 }  // namespace octoskin

@@ -7,14 +7,14 @@
 
 #include "common/result.hpp"
 #include "host/core/beams/robot_pose.hpp"
+#include "host/core/cross_check/certain_pixels.hpp"
+#include "host/core/cross_check/cross_check.hpp"
 #include "host/core/depth/depth_filter.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/mapping/depth_integrator.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/rig/host_rig.hpp"
-#include "host/core/witness/certain_pixels.hpp"
-#include "host/core/witness/sensor_witness.hpp"
 
 namespace octoskin {
 

@@ -13,11 +13,11 @@ Status<JointReason> JointGate::check(const JointMeasurement& joints) {
         return unexpected(JointReason::out_of_limits);
     }
     switch (jump_.judge(joints.sampled, position, joints.relocks)) {
-        case JointJump::Verdict::jumped:
+        case JointJump::SampleFit::jumped:
             return unexpected(JointReason::joint_jump);
-        case JointJump::Verdict::withheld:
+        case JointJump::SampleFit::withheld:
             return unexpected(JointReason::second_sender);
-        case JointJump::Verdict::fits:
+        case JointJump::SampleFit::fits:
             break;
     }
     return Done{};

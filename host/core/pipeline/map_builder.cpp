@@ -94,8 +94,8 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
         depth_stage_.emplace(rig, mapping, depth_threads, compares);
     }
     if (compares) {
-        witness_.emplace(rig, WitnessConfig{.camera_sigma_m = mapping.depth_filter.sigma_m,
-                                            .is_filtered = mapping.depth_filter.is_enabled});
+        cross_check_.emplace(rig, CrossCheckConfig{.camera_sigma_m = mapping.depth_filter.sigma_m,
+                                                   .is_filtered = mapping.depth_filter.is_enabled});
         refuses_contradicting_ = mapping.refuses_contradicting_sensors;
     }
 }
@@ -108,7 +108,7 @@ void MapBuilder::begin_with(FusedMap map) {
 std::size_t MapBuilder::begin_with(MapState state) {
     begin_with(std::move(state.map));
     const std::size_t left_out = leave_out_others(state.histories, beams_);
-    ranges_.go_on_with(std::move(state.histories));
+    ranges_.resume_with(std::move(state.histories));
     return left_out;
 }
 
@@ -138,14 +138,14 @@ Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
     return added;
 }
 
-void MapBuilder::forget_motion(Nanoseconds leapt) {
+void MapBuilder::clear_motion(Nanoseconds jumped_by) {
     if (listener_ != nullptr) {
-        listener_->on_time_leap();
+        listener_->on_time_jump();
     }
-    for (FedMap& fed : maps_) fed.map.leap(leapt);
+    for (FedMap& fed : maps_) fed.map.jump_time(jumped_by);
     ranges_.forget();
-    if (witness_) {
-        witness_->forget_beams();
+    if (cross_check_) {
+        cross_check_->forget_beams();
     }
     robot_.forget();
 }
@@ -163,9 +163,9 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     const bool is_out = is_refused(source.node_id, source.sensor);
     const Status<ReadingReason> added =
         is_out ? unexpected(ReadingReason::contradicts_camera) : add_range(measurement, *beam);
-    if (witness_ && (added || is_out)) {
-        witness_->on_beam(*beam, beams_.T_map_sensor(source, *robot),
-                          beams_.twists_map(source, *robot, robot_.robot()));
+    if (cross_check_ && (added || is_out)) {
+        cross_check_->on_beam(*beam, beams_.T_map_sensor(source, *robot),
+                              beams_.twists_map(source, *robot, robot_.robot()));
     }
     return added;
 }
@@ -219,9 +219,9 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
         return unexpected(DepthReason::late);
     }
     MapFeeder(maps_, depth.frame.captured, nullptr, listener_).apply(depth.updates->terms, nullptr);
-    if (witness_) {
+    if (cross_check_) {
         depth_stage_->swap_images(seen_);
-        witness_->on_depth(seen_, depth_stage_->T_map_camera_of(depth.frame), depth.frame.captured);
+        cross_check_->on_depth(seen_, depth_stage_->T_map_camera_of(depth.frame), depth.frame.captured);
     }
     if (listener_ != nullptr) {
         listener_->on_depth(depth.frame, depth.updates->terms);

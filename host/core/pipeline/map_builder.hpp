@@ -12,6 +12,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/core/beams/beam_builder.hpp"
+#include "host/core/cross_check/cross_check.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
@@ -25,7 +26,6 @@
 #include "host/core/pipeline/map_feeder.hpp"
 #include "host/core/pipeline/robot_tracker.hpp"
 #include "host/core/rig/host_rig.hpp"
-#include "host/core/witness/sensor_witness.hpp"
 
 namespace octoskin {
 
@@ -52,22 +52,22 @@ class MapBuilder {
     /// The sensors' histories of that state. Throws std::bad_alloc.
     [[nodiscard]] SensorHistories histories() const { return ranges_.histories(); }
     /// The map of all sensors waits for its next measurement: FusedMap::begin_to_wait. A replay does not
-    /// reproduce this: call it after `forget_motion`.
+    /// reproduce this: call it after `clear_motion`.
     void begin_to_wait() noexcept { own_map().begin_to_wait(); }
-    /// FusedMap::forget_times of the map of all sensors.
-    void forget_times() noexcept { own_map().forget_times(); }
-    /// FusedMap::wait of a map that waits for the time to advance.
+    /// FusedMap::clear_times of the map of all sensors.
+    void clear_times() noexcept { own_map().clear_times(); }
+    /// FusedMap::wait of the map of all sensors; the listener is notified if ages grew.
     void wait(std::int64_t seconds);
-    /// Applies other limits to it, at the same resolution (asserted).
+    /// Applies other limits to the map of all sensors, at the same resolution (asserted).
     void limit_map(const MapConfig& config) { own_map().limit(config); }
     /// Moves that map out, for another builder to continue. Later calls with inputs are not allowed.
     [[nodiscard]] FusedMap take_map() { return std::move(own_map()); }
     /// `listener` is notified of each later input; null: none.
-    void tell(CommitListener* listener) noexcept { listener_ = listener; }
+    void set_listener(CommitListener* listener) noexcept { listener_ = listener; }
 
-    /// From now on, readings of a sensor that contradicts the camera also go into the map: a replay of a
-    /// map's inputs does not contain the readings that were refused.
-    void refuse_nobody() noexcept { refuses_contradicting_ = false; }
+    /// From now on, readings of a sensor that contradicts the camera also go into the map. For a replay of a
+    /// map's inputs, from which refused readings are already missing.
+    void accept_contradicting() noexcept { refuses_contradicting_ = false; }
 
     /// Takes joint samples in the order of their times.
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
@@ -89,8 +89,8 @@ class MapBuilder {
     [[nodiscard]] Status<DepthReason> finish(const DepthWork& depth);
 
     /// Time jump: clears the robot's motion; the maps stay. Later times are ahead of the earlier scale by
-    /// `leapt`, or behind, if negative.
-    void forget_motion(Nanoseconds leapt);
+    /// `jumped_by`, or behind, if negative.
+    void clear_motion(Nanoseconds jumped_by);
 
     /// True if the rig has this sensor and zone. Other readings must not be added (asserted).
     [[nodiscard]] bool has(const BeamSource& source) const { return beams_.has(source); }
@@ -122,10 +122,12 @@ class MapBuilder {
     }
     /// The cross-check of the range sensors against the camera. Null without a camera, if the robot stays in
     /// its image, and if the mapping disables the reports.
-    [[nodiscard]] const SensorWitness* witness() const noexcept { return witness_ ? &*witness_ : nullptr; }
+    [[nodiscard]] const CrossCheck* cross_check() const noexcept {
+        return cross_check_ ? &*cross_check_ : nullptr;
+    }
     /// True if the readings of a sensor of the rig are refused because it contradicts the camera.
     [[nodiscard]] bool is_refused(std::uint8_t node_id, std::uint8_t sensor) const {
-        return refuses_contradicting_ && witness_ && witness_->is_to_be_refused(node_id, sensor);
+        return refuses_contradicting_ && cross_check_ && cross_check_->is_to_be_refused(node_id, sensor);
     }
 
   private:
@@ -139,7 +141,7 @@ class MapBuilder {
     BeamBuilder beams_;
     RangeModel ranges_;
     std::optional<DepthStage> depth_stage_;
-    std::optional<SensorWitness> witness_;
+    std::optional<CrossCheck> cross_check_;
     bool refuses_contradicting_ = false;
     SeenImages seen_;  ///< memory swapped with the depth stage
     std::vector<FedMap> maps_;

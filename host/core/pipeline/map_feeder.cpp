@@ -7,7 +7,7 @@ namespace octoskin {
 
 void MapFeeder::apply(const Evidence& evidence, const std::function<bool(VoxelKey)>* spares) {
     if (!has_begun_) {
-        for (FedMap& fed : maps_) fed.map.go_on(now_);
+        for (FedMap& fed : maps_) fed.map.advance_time(now_);
         if (listener_ != nullptr) listener_->on_time(now_, maps_);
     }
     std::vector<VoxelUpdate> changes;

@@ -24,8 +24,8 @@ enum class Release : std::uint8_t {
     once_placed,
 };
 
-/// Maximum number of waiting inputs. Beyond it, an input is counted and dropped: the oldest one, but the
-/// newest depth frame, because waiting frames already have their joint samples.
+/// Maximum number of waiting inputs. Beyond it, the oldest input is dropped and counted. Of depth frames, the
+/// newest is dropped, because those that wait already have their joint samples.
 struct QueueLimits {
     std::size_t readings = 4096;
     std::size_t depth_frames = 16;
@@ -59,9 +59,10 @@ class MeasurementQueue {
     [[nodiscard]] DepthFrame take_depth() { return depth_frames_.pop(); }
     [[nodiscard]] std::optional<ReleaseKey> oldest_depth() const { return depth_frames_.front(); }
 
-    /// It is in the maps: with release by capture time, older ones are late from now on.
+    /// This measurement is in the maps. With release by capture time, older ones are late from now on.
     void on_used(const ReleaseKey& key) { newest_used_ = key; }
-    /// The same for a reading: another one of its source with about the same capture time is a duplicate.
+    /// This reading is in the maps: another one of its source with about the same capture time is a
+    /// duplicate.
     void on_used_reading(const BeamSource& source, HostTime captured) { used_[source] = captured; }
 
     /// Time jump while nothing waits (asserted): clears what was used before. `begin`: earlier captures are
@@ -86,7 +87,7 @@ class MeasurementQueue {
     std::optional<ReleaseKey> newest_used_;
     std::map<BeamSource, HostTime> used_;   ///< the newest reading of each source in the maps
     std::optional<HostTime> newest_depth_;  ///< the newest that arrived
-    std::optional<HostTime> begin_;         ///< after a jump ahead: earlier captures are from before it
+    std::optional<HostTime> begin_;         ///< after a jump ahead: earlier captures are from before the jump
 };
 
 }  // namespace octoskin

@@ -39,14 +39,14 @@ class Committer {
     }
     std::optional<HostTime> operator()(const JointMeasurement& joints) {
         outcome_.joint_samples.now_at(joints.sampled.ns);
-        outcome_.joint_samples.take_in();
+        outcome_.joint_samples.count_in();
         outcome_.joint_samples.settle(builder_.add(joints));
         return joints.sampled;
     }
     std::optional<HostTime> operator()(const RangeMeasurement& reading) {
         const bool is_of_rig = builder_.has(reading.source);
         outcome_.readings.now_at(reading.captured.ns);
-        outcome_.readings.take_in();
+        outcome_.readings.count_in();
         outcome_.readings.settle(is_of_rig ? builder_.integrate(reading)
                                            : unexpected(ReadingReason::unknown_sensor));
         return reading.captured;
@@ -56,7 +56,7 @@ class Committer {
         if (frame) {
             frame->captured = commit.captured;  // recorded depth frames have whole microseconds
             outcome_.depth_frames.now_at(commit.captured.ns);
-            outcome_.depth_frames.take_in();
+            outcome_.depth_frames.count_in();
             outcome_.depth_frames.settle(builder_.integrate(std::move(*frame)));
         } else {
             ++outcome_.depth_missing;
@@ -77,7 +77,7 @@ OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSo
     OrderedOutcome outcome;
     outcome.begin = begin;
     Committer committer(builder, depth, outcome);
-    builder.refuse_nobody();
+    builder.accept_contradicting();
     const auto tell = [&] {
         if (report) report({outcome.commits, outcome.depth_frames.in(), outcome.begin, outcome.now});
     };

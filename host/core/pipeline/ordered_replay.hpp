@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/result.hpp"
-#include "host/core/account/account.hpp"
+#include "host/core/counters/input_counters.hpp"
 #include "host/core/depth/depth_source.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/pipeline/commit.hpp"
@@ -29,9 +29,9 @@ class CommitSource {
 
 struct OrderedOutcome {
     std::uint64_t commits = 0;
-    Account<ReadingReason> readings;
-    Account<JointReason> joint_samples;
-    Account<DepthReason> depth_frames;
+    InputCounters<ReadingReason> readings;
+    InputCounters<JointReason> joint_samples;
+    InputCounters<DepthReason> depth_frames;
     std::uint64_t depth_missing = 0;  ///< committed by the daemon, but not recorded
     std::optional<HostTime> begin;    ///< of the recording
     std::optional<HostTime> now;      ///< of the newest commit

@@ -47,30 +47,30 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
     }
 }
 
-void Pipeline::go_on_from(Pipeline& ended) {
+void Pipeline::resume_from(Pipeline& ended) {
     assert(ended.is_finished_);
     begin_with(ended.take_map());
-    time_leap_.go_on_from(ended.time_leap_, ended.intake_.host_clock());
+    time_jump_.resume_from(ended.time_jump_, ended.intake_.host_clock());
     waiting_.begin_at(ended.waiting_.begin());
 }
 
 void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
     assert(!is_finished_);
-    accounts_.now_at(stamp.ns);
-    accounts_.frames.take_in();
-    told_beside_.reset();
+    inputs_.now_at(stamp.ns);
+    inputs_.frames.count_in();
+    external_time_.reset();
     just_used_.clear();
     FrameOutcome outcome = intake_.on_frame(frame, stamp);
     queue(outcome.joint_samples_of_before);
     if (const auto now_known = now()) {
-        if (const auto leap = time_leap_.notice(*now_known, intake_.host_clock())) on_leap(*leap);
+        if (const auto jump = time_jump_.notice(*now_known, intake_.host_clock())) on_jump(*jump);
     }
     const auto fate = outcome.mark ? marks_.take(*outcome.mark, now()) : MarkGate::Fate::taken;
     if (fate == MarkGate::Fate::ignored) {
         outcome.rejected = FrameReason::mark_ignored;
     }
     if (fate != MarkGate::Fate::waits) {
-        outcome.rejected ? accounts_.frames.reject(*outcome.rejected) : accounts_.frames.use();
+        outcome.rejected ? inputs_.frames.reject(*outcome.rejected) : inputs_.frames.use();
     }
     queue(outcome);
     if (const auto now_known = now()) {
@@ -81,16 +81,16 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
 }
 
 /// Clears everything remembered from before the time jump; the maps stay, and do not age.
-void Pipeline::on_leap(const TimeLeap::Leap& leap) {
+void Pipeline::on_jump(const TimeJump::Jump& jump) {
     settle_waiting();
-    builder_.forget_motion(leap.by);
+    builder_.clear_motion(jump.by);
     joint_gate_.forget();
-    waiting_.forget_time(leap.begin);
+    waiting_.forget_time(jump.begin);
     just_used_.clear();  // from before the jump: their age is unknown
 }
 
-void Pipeline::go_on_after_sleep() {
-    on_leap({Nanoseconds{0}, now()});
+void Pipeline::jump_over_sleep() {
+    on_jump({Nanoseconds{0}, now()});
     builder_.begin_to_wait();
 }
 
@@ -102,14 +102,14 @@ void Pipeline::settle_waiting() {
     queue(intake_.settle_joints());
     release_joints(kEndOfTime);
     if (beside_.is_at_work()) finish_depth();
-    // A live map does not stop for waiting images.
+    // A live map does not wait for queued images.
     while (beside_.has_worker() && waiting_.depth_frames() > 0) drop_oldest_depth();
     release_measurements(kEndOfTime);
 }
 
 void Pipeline::drop_oldest_depth() {
     (void)waiting_.take_depth();
-    accounts_.depth_frames.reject(DepthReason::queue_overflow);
+    inputs_.depth_frames.reject(DepthReason::queue_overflow);
 }
 
 void Pipeline::work_beside(DepthWorker* worker) {
@@ -124,60 +124,61 @@ void Pipeline::on_worker_done() {
 }
 
 void Pipeline::finish_depth() {
-    accounts_.depth_frames.settle(beside_.finish(builder_));
+    inputs_.depth_frames.settle(beside_.finish(builder_));
 }
 
 void Pipeline::settle_marks(HostTime now) {
     for (const MarkGate::Settled& settled : marks_.settle(now)) {
-        settled.is_taken ? accounts_.frames.use() : accounts_.frames.reject(FrameReason::mark_ignored);
+        settled.is_taken ? inputs_.frames.use() : inputs_.frames.reject(FrameReason::mark_ignored);
     }
 }
 
 void Pipeline::queue(const FrameOutcome& outcome) {
-    accounts_.joint_samples.take_in(outcome.joint_samples_begun);
+    inputs_.joint_samples.count_in(outcome.joint_samples_begun);
     queue(outcome.joint_samples);
-    accounts_.readings.take_in(outcome.readings.size() + outcome.readings_held);
+    inputs_.readings.count_in(outcome.readings.size() + outcome.readings_held);
     for (const ReadingReason reason : outcome.readings_given_up) {
-        accounts_.readings.reject(reason);
+        inputs_.readings.reject(reason);
     }
     for (const auto& reading : outcome.readings) {
-        reading ? queue(*reading) : accounts_.readings.reject(reading.error());
+        reading ? queue(*reading) : inputs_.readings.reject(reading.error());
     }
 }
 
 void Pipeline::queue(const RangeMeasurement& measurement) {
     const auto rejected = waiting_.put(measurement);
     if (!rejected) return;
-    accounts_.readings.reject(*rejected);
+    inputs_.readings.reject(*rejected);
     intake_.on_lost(measurement.source.node_id, *rejected);
 }
 
 void Pipeline::queue(const JointSenderCheck::Ended& joint_samples) {
     for (const auto& joints : joint_samples) {
-        joints ? queue(*joints) : accounts_.joint_samples.reject(joints.error());
+        joints ? queue(*joints) : inputs_.joint_samples.reject(joints.error());
     }
 }
 
 void Pipeline::queue(const JointMeasurement& joints) {
-    if (const auto rejected = waiting_.put(joints)) accounts_.joint_samples.reject(*rejected);
+    if (const auto rejected = waiting_.put(joints)) inputs_.joint_samples.reject(*rejected);
 }
 
 void Pipeline::on_depth(DepthFrame frame) {
     assert(!is_finished_);
-    if (!has_can_time_) accounts_.now_at(frame.captured.ns);
-    accounts_.depth_frames.take_in();
+    if (!has_can_time_) inputs_.now_at(frame.captured.ns);
+    inputs_.depth_frames.count_in();
     just_used_.clear();
-    const auto known = told_beside_ ? told_beside_ : now();
+    const auto known = external_time_ ? external_time_ : now();
     const auto refused =
         builder_.has_camera() ? waiting_.check_arrival(frame, known) : std::optional(DepthReason::no_camera);
     if (refused) {
-        accounts_.depth_frames.reject(*refused);
+        inputs_.depth_frames.reject(*refused);
         return;
     }
-    // A rig without a bus, or with a silent one, has no clock but its camera. Due measurements make room.
+    // A rig without a bus, or with a silent one, has no clock but its camera. Integrating what is due first
+    // makes room for the frame.
     const std::optional<HostTime> now_known = has_can_time_ ? now() : frame.captured;
     if (now_known) advance(*now_known);
-    if (const auto full = waiting_.put(std::move(frame))) accounts_.depth_frames.reject(*full);
+    if (const auto full = waiting_.put(std::move(frame))) inputs_.depth_frames.reject(*full);
     if (now_known && config_.release == Release::once_placed) advance(*now_known);
     while (beside_.is_at_work() && waiting_.depth_frames() > kBesideWorkMax &&
            is_placed(*waiting_.oldest_depth(), true)) {
@@ -204,7 +205,7 @@ bool Pipeline::is_placed(const ReleaseKey& key, bool is_depth) const {
 void Pipeline::release_joints(HostTime until) {
     while (const auto joints = waiting_.take_joints(until)) {
         const auto checked = joint_gate_.check(*joints);
-        accounts_.joint_samples.settle(checked ? builder_.add(*joints) : checked);
+        inputs_.joint_samples.settle(checked ? builder_.add(*joints) : checked);
     }
 }
 
@@ -214,7 +215,7 @@ void Pipeline::release_measurements(HostTime until) {
         const auto next = waiting_.next(!beside_.is_at_work());
         if (!next || (next->key.captured > until && !is_placed(next->key, next->is_depth))) return;
         const bool is_used = next->is_depth ? take_depth(waiting_.take_depth())
-                                            : accounts_.readings.settle(integrate(waiting_.take_reading()));
+                                            : inputs_.readings.settle(integrate(waiting_.take_reading()));
         if (is_used) waiting_.on_used(next->key);
     }
 }
@@ -235,18 +236,18 @@ Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
 
 bool Pipeline::take_depth(DepthFrame frame) {
     if (!marks_.contains(frame.captured)) {
-        accounts_.depth_frames.reject(DepthReason::outside_marks);
+        inputs_.depth_frames.reject(DepthReason::outside_marks);
         return false;
     }
-    if (!beside_.has_worker()) return accounts_.depth_frames.settle(builder_.integrate(std::move(frame)));
+    if (!beside_.has_worker()) return inputs_.depth_frames.settle(builder_.integrate(std::move(frame)));
     const auto begun = beside_.begin(builder_, std::move(frame));
-    if (!begun) accounts_.depth_frames.reject(begun.error());
+    if (!begun) inputs_.depth_frames.reject(begun.error());
     return false;
 }
 
 void Pipeline::on_silence(HostTime now) {
     has_can_time_ = false;
-    told_beside_ = now;
+    external_time_ = now;
     just_used_.clear();
     queue(intake_.joints_due(now));
     advance(now);
@@ -260,11 +261,11 @@ void Pipeline::finish_can() {
 
 void Pipeline::finish() {
     for (std::size_t i = marks_.give_up(); i > 0; --i) {
-        accounts_.frames.reject(FrameReason::mark_ignored);
+        inputs_.frames.reject(FrameReason::mark_ignored);
     }
     settle_waiting();
     for (std::uint64_t i = intake_.joint_samples_pending(); i > 0 && !is_finished_; --i) {
-        accounts_.joint_samples.reject(JointReason::incomplete);
+        inputs_.joint_samples.reject(JointReason::incomplete);
     }
     is_finished_ = true;
 }
@@ -278,24 +279,24 @@ bool Pipeline::is_camera_stale() const {
     return !newest || *now_known - *newest > *camera_patience_;
 }
 
-std::vector<AccountTable> Pipeline::account_tables() const {
+std::vector<CounterTable> Pipeline::counter_tables() const {
     const std::uint64_t samples_open = is_finished_ ? 0 : intake_.joint_samples_pending();
     return {
-        tabulate("CAN frames", accounts_.frames, marks_.waiting(), seconds_text),
-        tabulate("readings", accounts_.readings, waiting_.readings() + intake_.readings_held(), seconds_text),
-        tabulate("joint samples", accounts_.joint_samples, waiting_.joint_samples() + samples_open,
+        tabulate("CAN frames", inputs_.frames, marks_.waiting(), seconds_text),
+        tabulate("readings", inputs_.readings, waiting_.readings() + intake_.readings_held(), seconds_text),
+        tabulate("joint samples", inputs_.joint_samples, waiting_.joint_samples() + samples_open,
                  seconds_text),
-        tabulate("depth frames", accounts_.depth_frames,
+        tabulate("depth frames", inputs_.depth_frames,
                  waiting_.depth_frames() + (beside_.is_at_work() ? 1U : 0U), seconds_text)};
 }
 
 bool Pipeline::is_balanced() const {
-    return std::ranges::all_of(account_tables(), &AccountTable::is_balanced);
+    return std::ranges::all_of(counter_tables(), &CounterTable::is_balanced);
 }
 
-std::string Pipeline::account_text() const {
+std::string Pipeline::inputs_text() const {
     std::string text;
-    for (const AccountTable& table : account_tables()) text += to_text(table);
+    for (const CounterTable& table : counter_tables()) text += to_text(table);
     return text;
 }
 

@@ -10,7 +10,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
-#include "host/core/account/account.hpp"
+#include "host/core/counters/input_counters.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
@@ -24,7 +24,7 @@
 #include "host/core/pipeline/mark_gate.hpp"
 #include "host/core/pipeline/mark_window.hpp"
 #include "host/core/pipeline/measurement_queue.hpp"
-#include "host/core/pipeline/time_leap.hpp"
+#include "host/core/pipeline/time_jump.hpp"
 #include "host/core/rig/host_rig.hpp"
 
 namespace octoskin {
@@ -42,14 +42,14 @@ struct PipelineConfig {
     unsigned depth_threads = 1;  ///< threads that work on a depth image; the map does not depend on it
 };
 
-/// Input counters: the result of every input, by the kinds of `reasons.hpp`.
-struct PipelineAccounts {
-    Account<FrameReason> frames;
-    Account<ReadingReason> readings;
-    Account<JointReason> joint_samples;
-    Account<DepthReason> depth_frames;
-    /// Nanoseconds: the time stamp or, without a bus, the capture time with which later rejections are
-    /// recorded.
+/// The result of every input, for each kind of input in `reasons.hpp`.
+struct PipelineInputs {
+    InputCounters<FrameReason> frames;
+    InputCounters<ReadingReason> readings;
+    InputCounters<JointReason> joint_samples;
+    InputCounters<DepthReason> depth_frames;
+    /// Sets the time with which later rejections are recorded, in nanoseconds: a frame's time stamp or,
+    /// without a bus, the capture time of an image.
     void now_at(std::int64_t ns) noexcept {
         frames.now_at(ns);
         readings.now_at(ns);
@@ -70,15 +70,15 @@ class Pipeline {
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
     /// The same with the sensors' histories: MapBuilder::begin_with.
     [[nodiscard]] std::size_t begin_with(MapState state) { return builder_.begin_with(std::move(state)); }
-    /// Makes all of the fused map stale until it is seen again: FusedMap::forget_times.
-    void forget_times() noexcept { builder_.forget_times(); }
-    /// For a map that was saved, until its first measurement: FusedMap::wait.
+    /// Makes all of the fused map stale until it is seen again: FusedMap::clear_times.
+    void clear_times() noexcept { builder_.clear_times(); }
+    /// For a saved map that still waits for its first measurement: FusedMap::wait.
     void wait(std::int64_t seconds) { builder_.wait(seconds); }
-    /// The machine slept, and the clocks of later inputs stood still or are other ones. As at a time jump:
-    /// waiting inputs are resolved, the state from before is cleared, a listener is notified that its order
-    /// ends, and late inputs captured before are not used. The fused map waits like a saved one: `wait`
-    /// reports how much time has passed.
-    void go_on_after_sleep();
+    /// Call after the machine slept, because the clocks of later inputs stood still or are different clocks.
+    /// As at a time jump, waiting inputs are resolved, the state from before is cleared, a listener is
+    /// notified that its order ends, and late inputs captured before are not used. The fused map waits like a
+    /// saved one; report with `wait` how much time has passed.
+    void jump_over_sleep();
     /// Applies other limits to the fused map, at the same resolution (asserted): FusedMap::limit. Throws
     /// std::bad_alloc; nothing is changed then.
     void limit_map(const MapConfig& config) { builder_.limit_map(config); }
@@ -86,28 +86,28 @@ class Pipeline {
     [[nodiscard]] FusedMap take_map() { return builder_.take_map(); }
     /// Continues the fused map of another pipeline, which has ended (`finish`) and has the same resolution
     /// (asserted), and its time: time that passes meanwhile ages the map, except across a time jump.
-    void go_on_from(Pipeline& ended);
+    void resume_from(Pipeline& ended);
     /// `listener` is notified of each later input of the maps; null: none.
-    void tell(CommitListener* listener) noexcept { builder_.tell(listener); }
+    void set_listener(CommitListener* listener) noexcept { builder_.set_listener(listener); }
 
     /// Takes frames in order of arrival. `stamp`: time of reception; it does not place measurements.
     void on_can(const wire::CanFrame& frame, WallTime stamp);
     /// Takes depth frames in the order of capture, at about the time of their arrival among the CAN frames.
     void on_depth(DepthFrame frame);
     /// From now on, `worker` converts depth frames to terms, and later measurements may go into the maps
-    /// before a frame; a listener gets the order. While a frame is in work, two more wait, and the oldest is
-    /// dropped (`queue_overflow`). If waiting inputs must be resolved at once, waiting frames are dropped,
-    /// too. Null: the call that releases a frame converts it, and everything waits for it. Requires
-    /// `Release::once_placed` (asserted). The pipeline must not be moved while a frame is in work; the worker
-    /// must live until it is replaced.
+    /// before a frame; a listener gets the order. While the worker has a frame, two more wait. A further one
+    /// displaces the oldest of them (`queue_overflow`). If waiting inputs must be resolved at once, waiting
+    /// frames are dropped, too. Null: the call that releases a frame converts it, and everything waits for
+    /// it. Requires `Release::once_placed` (asserted). The pipeline must not be moved while the worker has a
+    /// frame. The worker must live until it is replaced.
     void work_beside(DepthWorker* worker);
     /// The worker may have finished a frame: if so, the frame goes into the maps, and the next one begins.
     void on_worker_done();
     /// No CAN frame arrives at present, and the host time is `now`, known from a source other than the bus.
-    /// Integrates what need not wait longer. Until the next CAN frame, the camera gives the time, up to
-    /// `now`.
+    /// Integrates what need not wait longer. Until the next CAN frame, time advances with the captures of
+    /// depth frames, and a frame captured well after `now` is rejected.
     void on_silence(HostTime now);
-    /// No further CAN frame will come: from now on, the camera gives the time.
+    /// No further CAN frame will come: from now on, time advances with the captures of depth frames.
     void finish_can();
     /// Nothing more will come: waiting inputs are integrated or counted. No input may be added afterwards.
     void finish();
@@ -117,32 +117,32 @@ class Pipeline {
     [[nodiscard]] const FusedMap& map(MapFeed feed = MapFeed::both) const noexcept {
         return builder_.map(feed);
     }
-    [[nodiscard]] const PipelineAccounts& accounts() const noexcept { return accounts_; }
-    /// True if in = used + rejected + waiting, for each kind of input counter.
+    [[nodiscard]] const PipelineInputs& inputs() const noexcept { return inputs_; }
+    /// True if in = used + rejected + waiting, for each kind of input.
     [[nodiscard]] bool is_balanced() const;
-    /// One table for each kind of input counter.
-    [[nodiscard]] std::vector<AccountTable> account_tables() const;
+    /// One table for each kind of input.
+    [[nodiscard]] std::vector<CounterTable> counter_tables() const;
     /// The tables as text.
-    [[nodiscard]] std::string account_text() const;
+    [[nodiscard]] std::string inputs_text() const;
 
     /// The host time; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return intake_.now(); }
     /// Number of time jumps back by over 0.15 s: the host that sends SYNC restarted, or another host sends
     /// it. Waiting inputs were resolved, and the state from before was cleared; the maps stay.
-    [[nodiscard]] std::uint64_t times_back() const noexcept { return time_leap_.times_back(); }
+    [[nodiscard]] std::uint64_t times_back() const noexcept { return time_jump_.times_back(); }
     /// Number of time jumps ahead by over a second more than the time that passed: another host sends SYNC,
     /// or its clock was set. Handled in the same way; the maps do not age.
-    [[nodiscard]] std::uint64_t times_ahead() const noexcept { return time_leap_.times_ahead(); }
+    [[nodiscard]] std::uint64_t times_ahead() const noexcept { return time_jump_.times_ahead(); }
     /// Capture times of the readings that the last `on_can`, `on_depth` or `on_silence` put into the maps.
     [[nodiscard]] std::span<const HostTime> just_used() const noexcept { return just_used_; }
     /// True if the host time is known and three of the rig's frame periods have passed without a depth frame.
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
-    /// The check for joint samples that the arm cannot have.
+    /// The check that rejects positions that the arm cannot have.
     [[nodiscard]] const JointGate& joint_gate() const noexcept { return joint_gate_; }
     /// Null if the rig has no camera.
     [[nodiscard]] const DepthStage* depth_stage() const noexcept { return builder_.depth_stage(); }
-    /// Converts measurements to maps. A recording needs its joint samples at the start.
+    /// Converts measurements to maps. A recording that begins now also needs the joint samples stored there.
     [[nodiscard]] const MapBuilder& builder() const noexcept { return builder_; }
     /// For a replay in a daemon's order, which bypasses the pipeline's own inputs.
     [[nodiscard]] MapBuilder& builder() noexcept { return builder_; }
@@ -152,7 +152,7 @@ class Pipeline {
              const PipelineConfig& config);
 
     void settle_marks(HostTime now);
-    void on_leap(const TimeLeap::Leap& leap);  ///< also for a sleep, as a jump by 0
+    void on_jump(const TimeJump::Jump& jump);  ///< also for a sleep, as a jump by 0
     /// Integrates or counts all waiting inputs, by what is known.
     void settle_waiting();
     void queue(const FrameOutcome& outcome);
@@ -163,7 +163,7 @@ class Pipeline {
     /// Integrates what need not wait any longer.
     void advance(HostTime now);
     void release_joints(HostTime until);
-    /// Releases measurements captured at or before `until`, and placed ones if that is sufficient.
+    /// Releases measurements captured at or before `until` and, with `Release::once_placed`, all placed ones.
     void release_measurements(HostTime until);
     [[nodiscard]] bool is_placed(const ReleaseKey& key, bool is_depth) const;
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
@@ -176,9 +176,9 @@ class Pipeline {
     // From frames to measurements in host time.
     CanIntake intake_;
     MarkGate marks_;
-    TimeLeap time_leap_;
-    bool has_can_time_ = false;            ///< the bus gives the time, and may continue to
-    std::optional<HostTime> told_beside_;  ///< time of `on_silence`, since the newest CAN frame
+    TimeJump time_jump_;
+    bool has_can_time_ = false;              ///< the bus gives the time, and may continue to
+    std::optional<HostTime> external_time_;  ///< time of `on_silence`, since the newest CAN frame
     // Order of the measurements.
     MeasurementQueue waiting_;
     HostTime released_until_;
@@ -187,7 +187,7 @@ class Pipeline {
     MapBuilder builder_;
     DepthBeside beside_;
 
-    PipelineAccounts accounts_;
+    PipelineInputs inputs_;
     std::vector<HostTime> just_used_;             ///< by the current call, or the last one
     std::optional<Nanoseconds> camera_patience_;  ///< three frame periods; empty without a camera
     bool is_finished_ = false;

@@ -81,8 +81,8 @@ NearestSearch clearance_search(const FusedMap& map, const PosedCapsule& capsule,
              SearchFor::both}};
 }
 
-CapsuleClearance clearance_told(const NearestSearch& search, const FusedMap& map, const PosedCapsule& capsule,
-                                const ClearanceReach& reach) noexcept {
+CapsuleClearance clearance_reported(const NearestSearch& search, const FusedMap& map,
+                                    const PosedCapsule& capsule, const ClearanceReach& reach) noexcept {
     const double radius_m = capsule.radius_m + kDistanceStep_m;
     const auto from_surface = [&](double distance_m) { return std::max(0.0, distance_m - capsule.radius_m); };
     CapsuleClearance clearance;
@@ -117,7 +117,7 @@ Result<CapsuleClearance, CapsuleFault> clearance(const FusedMap& map, const Pose
                                   within(found.not_free_m, reach.not_free_m)};
         NearestSearch search = clearance_search(map, capsule, next);
         search.run();
-        found = clearance_told(search, map, capsule, next);
+        found = clearance_reported(search, map, capsule, next);
         const bool has_occupied = found.occupied_m || !(step_m < reach.occupied_m);
         const bool has_not_free = found.not_free_m || !(step_m < reach.not_free_m);
         if (has_occupied && has_not_free) return found;

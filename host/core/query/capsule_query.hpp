@@ -79,8 +79,8 @@ struct ClearanceReach {
 /// shows the near candidates, and its result.
 [[nodiscard]] NearestSearch clearance_search(const FusedMap& map, const PosedCapsule& capsule,
                                              const ClearanceReach& reach) noexcept;
-[[nodiscard]] CapsuleClearance clearance_told(const NearestSearch& search, const FusedMap& map,
-                                              const PosedCapsule& capsule,
-                                              const ClearanceReach& reach) noexcept;
+[[nodiscard]] CapsuleClearance clearance_reported(const NearestSearch& search, const FusedMap& map,
+                                                  const PosedCapsule& capsule,
+                                                  const ClearanceReach& reach) noexcept;
 
 }  // namespace octoskin

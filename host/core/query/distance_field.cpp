@@ -119,7 +119,7 @@ void DistanceField::take(const FusedMap& now, const MapBrick& brick, Update& upd
     update.changed += (not_free_.set_sites(place, slices_of(both(sites))) || is_changed) ? 1U : 0U;
 }
 
-std::optional<double> DistanceField::told_by(const DistanceLayer& layer, VoxelKey key) const noexcept {
+std::optional<double> DistanceField::distance_by(const DistanceLayer& layer, VoxelKey key) const noexcept {
     assert(region_.holds(BrickPlace::of(key)));
     const auto squared = layer.squared(key);
     if (!squared) return std::nullopt;
@@ -127,11 +127,11 @@ std::optional<double> DistanceField::told_by(const DistanceLayer& layer, VoxelKe
 }
 
 std::optional<double> DistanceField::occupied_m(VoxelKey key) const noexcept {
-    return told_by(occupied_, key);
+    return distance_by(occupied_, key);
 }
 
 std::optional<double> DistanceField::not_free_m(VoxelKey key) const noexcept {
-    return told_by(not_free_, key);
+    return distance_by(not_free_, key);
 }
 
 bool DistanceField::tells_of(const PosedCapsule& capsule) const noexcept {
@@ -221,11 +221,11 @@ Result<CapsuleClearance, CapsuleFault> DistanceField::clearance(const PosedCapsu
 
 Result<CapsuleClearance, CapsuleFault> DistanceField::clearance(const PosedCapsule& capsule,
                                                                 const ClearanceReach& reach) const noexcept {
-    const auto is_told = [&](double reach_m) {
+    const auto is_within = [&](double reach_m) {
         return reach_m >= 0.0 && capsule.radius_m + reach_m <= axis_reach_m() + kDistanceStep_m;
     };
     Samples samples;
-    if (fault_of(capsule) || !is_told(reach.occupied_m) || !is_told(reach.not_free_m) ||
+    if (fault_of(capsule) || !is_within(reach.occupied_m) || !is_within(reach.not_free_m) ||
         !samples.take(*this, capsule))
         return octoskin::clearance(map_, capsule, reach);
     const auto within = [&](const Samples::Bound& bound, double reach_m) {
@@ -236,7 +236,7 @@ Result<CapsuleClearance, CapsuleFault> DistanceField::clearance(const PosedCapsu
                                 within(samples.not_free(), reach.not_free_m)};
     NearestSearch search = clearance_search(map_, capsule, nearer);
     look_about(samples, search);
-    return clearance_told(search, map_, capsule, nearer);
+    return clearance_reported(search, map_, capsule, nearer);
 }
 
 void DistanceField::look_at_nearest(const std::optional<VoxelKey>& site, NearestSearch& search) const {

@@ -74,7 +74,7 @@ class DistanceField {
     void take(const FusedMap& now, const MapBrick& brick, Update& update);
     void look_about(const Samples& samples, NearestSearch& search) const;
     /// Distance between centres, metres.
-    [[nodiscard]] std::optional<double> told_by(const DistanceLayer& layer, VoxelKey key) const noexcept;
+    [[nodiscard]] std::optional<double> distance_by(const DistanceLayer& layer, VoxelKey key) const noexcept;
     void look_at_nearest(const std::optional<VoxelKey>& site, NearestSearch& search) const;
 
     FusedMap map_;

@@ -94,7 +94,7 @@ std::optional<std::size_t> free_region(FusedMap& map, const Region& region,
             updates.clear();
             list_own(map, region, capsule, *box, z, z_last, updates);
             const Evidence is_free = evidence_of(updates, SensorKind::none);
-            map.forget_counts_of(is_free);  // otherwise counts from ranges could mark it occupied again
+            map.clear_counts_of(is_free);  // otherwise counts from ranges could mark it occupied again
             map.apply(is_free);
             freed += updates.size();
         }

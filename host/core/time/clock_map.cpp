@@ -111,19 +111,19 @@ bool ClockMap::is_consistent(const SyncSample& sample) const {
     return std::chrono::abs(sample.host - known.at(node_us)) <= allowed;
 }
 
-SampleVerdict ClockMap::add(const SyncSample& sample) {
+SampleEffect ClockMap::add(const SyncSample& sample) {
     if (!points_.empty() && sample.host - points_.back().host > kForgetAfter) {
         forget();
     }
-    SampleVerdict verdict = SampleVerdict::used;
+    SampleEffect verdict = SampleEffect::used;
     if (!points_.empty() && !is_consistent(sample)) {
         if (!suspect_ || !is_plausible_step(*suspect_, sample)) {
             suspect_ = sample;
-            return SampleVerdict::contradicts;
+            return SampleEffect::contradicts;
         }
         points_ = {{suspect_->heard.us, suspect_->host}};
         heard_last_ = suspect_->heard;
-        verdict = SampleVerdict::relocked;
+        verdict = SampleEffect::relocked;
         ++relocks_;
     }
     const std::int64_t node_us = points_.empty()

@@ -40,7 +40,7 @@ enum class ClockFault : std::uint8_t {
 };
 
 /// Effect of an exchange on the map.
-enum class SampleVerdict : std::uint8_t {
+enum class SampleEffect : std::uint8_t {
     used,
     contradicts,  ///< the map is in doubt until the next exchange
     relocked,  ///< the second in a row that contradicts the map, and it agrees with the first: starts a new
@@ -58,7 +58,7 @@ class ClockMap {
     explicit ClockMap(const ClockMapConfig& config = {}) : config_(config) {}
 
     /// Adds an exchange of the node, in the order of host times. O(window).
-    SampleVerdict add(const SyncSample& sample);
+    SampleEffect add(const SyncSample& sample);
     /// True if the exchange continues the known ones. False if none is known, and while the clock is in
     /// doubt.
     [[nodiscard]] bool fits(const SyncSample& sample) const {

@@ -48,7 +48,7 @@ class ForeignClock {
     void settle();
 
     std::optional<Open> open_;
-    std::deque<Nanoseconds> told_;  ///< the last kKept measurements
+    std::deque<Nanoseconds> reported_;  ///< the last kKept measurements
     std::optional<Nanoseconds> settled_;
     HostTime newest_;  ///< time of the newest exchange on this machine's clock
     std::uint64_t outliers_ = 0;

@@ -7,7 +7,7 @@
 namespace octoskin {
 
 CertainView::CertainView(const CameraIntrinsics& intrinsics, const VoxelLattice& lattice,
-                         const Eigen::Isometry3d& T_map_camera, const PlacedImage& image)
+                         const Eigen::Isometry3d& T_map_camera, const ProjectedImage& image)
     : camera(intrinsics),
       T_camera_map(T_map_camera.inverse()),
       resolution_m(lattice.resolution_m()),

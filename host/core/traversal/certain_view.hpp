@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "host/core/depth/depth_frame.hpp"
-#include "host/core/traversal/mark_grid.hpp"
-#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/projected_image.hpp"
+#include "host/core/traversal/range_pyramid.hpp"
 #include "host/core/traversal/ray_pieces.hpp"
-#include "host/core/traversal/reach_windows.hpp"
+#include "host/core/traversal/visited_grid.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
@@ -25,7 +25,7 @@ struct CertainView {
     /// `depth_max_m` is 0 and no voxel is certain for a camera with a lens, and for coordinates so large that
     /// single precision is not much finer than a voxel.
     CertainView(const CameraIntrinsics& camera, const VoxelLattice& lattice,
-                const Eigen::Isometry3d& T_map_camera, const PlacedImage& image);
+                const Eigen::Isometry3d& T_map_camera, const ProjectedImage& image);
 
     CameraIntrinsics camera;
     Eigen::Isometry3d T_camera_map;
@@ -46,11 +46,11 @@ struct CertainView {
 using EndsOfBrick = std::function<BrickMask(MortonCode brick)>;
 
 /// Marks voxels that a ray passes or ends in: all voxels up to `depth_max_m` for which the rays within
-/// `WalkLadder`'s square continue from the voxel's centre (PlacedImage::passed_m), and others. Adds to
+/// `RaySegments`'s square continue from the voxel's centre (ProjectedImage::passed_m), and others. Adds to
 /// `pieces` the pieces of rays that possibly pass a voxel that no other ray certainly passes. The grid spans
 /// the image's rays and is clear. About 1 ns per voxel.
-void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
-                         const VoxelLattice& lattice, const EndsOfBrick& ends, MarkGrid& grid,
+void mark_certain_voxels(const CertainView& view, const ProjectedImage& image, const RangePyramid& reach,
+                         const VoxelLattice& lattice, const EndsOfBrick& ends, VisitedGrid& grid,
                          std::vector<RayPiece>& pieces);
 
 }  // namespace octoskin

@@ -2,9 +2,9 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "host/core/traversal/certain_voxels.cpp"
 // clang-format off: foreach_target.h comes before highway.h
+#include "host/core/traversal/brick_visibility.hpp"
 #include "host/core/traversal/certain_view.hpp"
 #include "host/core/traversal/open_voxels.hpp"
-#include "host/core/traversal/picture_test.hpp"
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
@@ -49,7 +49,7 @@ struct LayerBits {
     std::uint64_t open = 0;  ///< the nearest pixel gives no decision
 };
 
-inline constexpr int kBrick = MarkGrid::kBrick;
+inline constexpr int kBrick = VisitedGrid::kBrick;
 
 }  // namespace octoskin
 #endif
@@ -58,7 +58,7 @@ HWY_BEFORE_NAMESPACE();
 namespace octoskin::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F = hn::CappedTag<float, MarkGrid::kBrick>;
+using F = hn::CappedTag<float, VisitedGrid::kBrick>;
 using I = hn::RebindToSigned<F>;
 using V = hn::Vec<F>;
 
@@ -184,14 +184,14 @@ namespace {
 HWY_EXPORT(test_brick);
 
 void mark_all(std::uint8_t* marks, std::ptrdiff_t y_stride, std::ptrdiff_t z_stride) {
-    constexpr std::uint64_t kEight = MarkGrid::kPassed * 0x0101010101010101ULL;
+    constexpr std::uint64_t kEight = VisitedGrid::kPassed * 0x0101010101010101ULL;
     for (int z = 0; z < kBrick; ++z) {
         for (int y = 0; y < kBrick; ++y)
             std::memcpy(marks + y * y_stride + z * z_stride, &kEight, sizeof(kEight));
     }
 }
 
-CertainTest test_of(const CertainView& view, const PlacedImage& image, const ReachWindows& reach) {
+CertainTest test_of(const CertainView& view, const ProjectedImage& image, const RangePyramid& reach) {
     const CameraIntrinsics& camera = view.camera;
     CertainTest test{.passed_m = image.passed_m.data(),
                      .width = static_cast<float>(camera.width),
@@ -237,12 +237,12 @@ void leave_out(const EndsOfBrick& ends, const std::array<int, 3>& lowest, OpenRo
 
 }  // namespace
 
-void mark_certain_voxels(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
-                         const VoxelLattice& lattice, const EndsOfBrick& ends, MarkGrid& grid,
+void mark_certain_voxels(const CertainView& view, const ProjectedImage& image, const RangePyramid& reach,
+                         const VoxelLattice& lattice, const EndsOfBrick& ends, VisitedGrid& grid,
                          std::vector<RayPiece>& pieces) {
     if (!(view.depth_max_m > 0.0)) return;
     const CertainTest test = test_of(view, image, reach);
-    const PictureTest picture(view, reach);
+    const BrickVisibility picture(view, reach);
     OpenVoxels open_voxels(view, image, lattice, picture);
     const auto corner = grid.corner();
     const auto size = grid.size();
@@ -258,11 +258,11 @@ void mark_certain_voxels(const CertainView& view, const PlacedImage& image, cons
                                             centre_of(corner[2] + z));
                 const Eigen::Vector3d middle = view.T_camera_map * (first + to_middle);
                 if (middle.z() - kBrick * view.half_depth_m > view.depth_max_m) continue;
-                const CubeVerdict verdict = picture.of_cube(middle, kBrick);
-                if (verdict == CubeVerdict::none) continue;
+                const CubeCoverage verdict = picture.of_cube(middle, kBrick);
+                if (verdict == CubeCoverage::none) continue;
                 std::uint8_t* const marks =
                     grid.marks() + grid.index_of(corner[0] + x, corner[1] + y, corner[2] + z);
-                if (verdict == CubeVerdict::all) {
+                if (verdict == CubeCoverage::all) {
                     mark_all(marks, stride[1], stride[2]);
                     continue;
                 }
@@ -278,7 +278,7 @@ void mark_certain_voxels(const CertainView& view, const PlacedImage& image, cons
                         const auto k = static_cast<int>(row / kBrick);
                         const Eigen::Vector3d centre = first + edge_m * Eigen::Vector3d(i, j, k);
                         if (open_voxels.is_passed(centre, pieces)) {
-                            marks[i + j * stride[1] + k * stride[2]] = MarkGrid::kPassed;
+                            marks[i + j * stride[1] + k * stride[2]] = VisitedGrid::kPassed;
                         }
                     }
                 }

@@ -52,7 +52,7 @@ void find_places(const WordGrid& grid, const std::uint32_t* key_xy, const std::u
         const auto brick = hn::Add(hn::Add(words_to(x, 0), words_to(y, 1)), words_to(z, 2));
         const auto word =
             hn::Or(hn::Or(hn::ShiftRight<2>(mask(x, 4)), hn::ShiftRight<1>(mask(y, 4))), mask(z, 4));
-        const auto has_end = hn::Ne(z, hn::Set(k, PlacedImage::kNoKey));
+        const auto has_end = hn::Ne(z, hn::Set(k, ProjectedImage::kNoKey));
         hn::StoreU(hn::IfThenElse(has_end, hn::Add(brick, word), hn::Set(k, grid.nowhere)), k, places + i);
         hn::StoreU(hn::Or(hn::Or(spread(x), hn::ShiftLeft<1>(spread(y))), hn::ShiftLeft<2>(spread(z))), k,
                    bits + i);
@@ -81,7 +81,7 @@ bool EndVoxels::begin(const KeyBox& box, std::size_t voxels_max, std::size_t par
     return true;
 }
 
-void EndVoxels::mark(const PlacedImage& rays, std::size_t part) {
+void EndVoxels::mark(const ProjectedImage& rays, std::size_t part) {
     Part& own = parts_[part];
     own.places.resize(rays.width + kLanesMax);
     own.bits.resize(own.places.size());

@@ -7,7 +7,7 @@
 
 #include "host/core/bricks/brick.hpp"
 #include "host/core/bricks/brick_box.hpp"
-#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/projected_image.hpp"
 #include "host/core/voxels/key_box.hpp"
 
 namespace octoskin {
@@ -21,7 +21,7 @@ class EndVoxels {
     [[nodiscard]] bool begin(const KeyBox& box, std::size_t voxels_max, std::size_t parts);
     /// Adds the rays of one part of the image that end at a surface. Several threads may each take a part;
     /// about 0.2 ms for 512 x 424. Throws std::bad_alloc.
-    void mark(const PlacedImage& rays, std::size_t part);
+    void mark(const ProjectedImage& rays, std::size_t part);
 
     [[nodiscard]] BrickMask of(MortonCode brick) const noexcept;
 

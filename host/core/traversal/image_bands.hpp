@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/core/crew/crew.hpp"
-#include "host/core/traversal/placed_image.hpp"
+#include "host/core/parallel/thread_pool.hpp"
+#include "host/core/traversal/projected_image.hpp"
 
 namespace octoskin {
 
@@ -40,18 +40,18 @@ struct ImageBands {
     return {rows, (height + rows - 1) / rows};
 }
 
-/// Calls work(band, first row, row behind the last) for each band, on the thread pool `crew` if there is one.
+/// Calls work(band, first row, row behind the last) for each band, on the thread pool `pool` if there is one.
 template <class Work>
-void for_each_band(const ImageBands& bands, std::uint32_t height, Crew* crew, Work&& work) {
-    Crew alone(1);
-    (crew == nullptr ? alone : *crew).work(bands.count, [&](std::size_t band) {
+void for_each_band(const ImageBands& bands, std::uint32_t height, ThreadPool* pool, Work&& work) {
+    ThreadPool alone(1);
+    (pool == nullptr ? alone : *pool).work(bands.count, [&](std::size_t band) {
         const auto begin = static_cast<std::uint32_t>(band) * bands.rows;
         work(band, begin, std::min(begin + bands.rows, height));
     });
 }
 
 /// Combines the sums of all bands; the bounds also include `placed.origin`.
-inline void take_sums(const std::vector<RowSums>& bands, PlacedImage& placed) {
+inline void take_sums(const std::vector<RowSums>& bands, ProjectedImage& placed) {
     RowSums all{{}, placed.origin, placed.origin};
     for (const RowSums& band : bands) {
         all.counts += band.counts;

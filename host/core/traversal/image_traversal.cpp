@@ -6,9 +6,9 @@
 
 namespace octoskin {
 
-void ImageTraversal::mark_passed(const PlacedImage& image, const PixelRays& pixel_rays,
+void ImageTraversal::mark_passed(const ProjectedImage& image, const PixelRays& pixel_rays,
                                  const VoxelLattice& lattice, const Eigen::Isometry3d& T_map_camera,
-                                 const EndsOfBrick& ends, MarkGrid& grid) {
+                                 const EndsOfBrick& ends, VisitedGrid& grid) {
     const CertainView view(pixel_rays.camera(), lattice, T_map_camera, image);
     pieces_.clear();
     reach_.take(image);

@@ -9,11 +9,11 @@
 
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/depth/pixel_rays.hpp"
-#include "host/core/traversal/mark_grid.hpp"
-#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/projected_image.hpp"
+#include "host/core/traversal/range_pyramid.hpp"
 #include "host/core/traversal/ray_pieces.hpp"
-#include "host/core/traversal/reach_windows.hpp"
-#include "host/core/traversal/walk_ladder.hpp"
+#include "host/core/traversal/ray_segments.hpp"
+#include "host/core/traversal/visited_grid.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
@@ -23,12 +23,12 @@ namespace octoskin {
 /// Keeps its working memory between images.
 class ImageTraversal {
   public:
-    void mark_passed(const PlacedImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
-                     const Eigen::Isometry3d& T_map_camera, const EndsOfBrick& ends, MarkGrid& grid);
+    void mark_passed(const ProjectedImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
+                     const Eigen::Isometry3d& T_map_camera, const EndsOfBrick& ends, VisitedGrid& grid);
 
   private:
-    ReachWindows reach_;
-    WalkLadder ladder_;
+    RangePyramid reach_;
+    RaySegments ladder_;
     std::vector<RayPiece> pieces_;
     std::vector<std::uint32_t> undecided_;
 };

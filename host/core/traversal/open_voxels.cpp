@@ -83,14 +83,14 @@ HWY_INLINE Meeting meeting_of(const AskedVoxel& voxel, const Directions& directi
 }
 
 /// Result of some rays for a voxel: whether one certainly passes it, else which possibly do.
-struct Told {
+struct RayCoverage {
     bool is_passed = false;
     WideMask perhaps;
 };
 
 /// For rays that end near the voxel, and for voxels near the camera.
-HWY_INLINE Told tell_by_distance(const AskedVoxel& voxel, const Directions& directions, WideMask asked,
-                                 WideVec reach) {
+HWY_INLINE RayCoverage coverage_by_distance(const AskedVoxel& voxel, const Directions& directions,
+                                            WideMask asked, WideVec reach) {
     const Wide f;
     const WideVec margin = hn::Set(f, voxel.margin_m);
     auto in_smaller = margin;
@@ -139,18 +139,18 @@ HWY_INLINE bool is_passed_in_row(const RayField& rays, const AskedVoxel& voxel, 
         Directions directions;
         for (std::size_t axis = 0; axis < 3; ++axis)
             directions[axis] = hn::Add(first[axis], hn::Mul(at, next[axis]));
-        Told told{false, reaches};
+        RayCoverage coverage{false, reaches};
         if (voxel.nearest_m > 0.0F) {
             const Meeting meeting = meeting_of(voxel, directions);
             const WideMask goes_on = hn::Gt(reach, hn::Set(f, voxel.furthest_m));
-            told.is_passed = !hn::AllFalse(f, hn::And(hn::And(reaches, meeting.surely), goes_on));
-            told.perhaps = hn::And(reaches, meeting.perhaps);
+            coverage.is_passed = !hn::AllFalse(f, hn::And(hn::And(reaches, meeting.surely), goes_on));
+            coverage.perhaps = hn::And(reaches, meeting.perhaps);
         }
-        if (!told.is_passed && !hn::AllFalse(f, told.perhaps))
-            told = tell_by_distance(voxel, directions, told.perhaps, reach);
-        if (told.is_passed) return true;
-        if (hn::AllFalse(f, told.perhaps)) continue;
-        WideMask may_pass = told.perhaps;
+        if (!coverage.is_passed && !hn::AllFalse(f, coverage.perhaps))
+            coverage = coverage_by_distance(voxel, directions, coverage.perhaps, reach);
+        if (coverage.is_passed) return true;
+        if (hn::AllFalse(f, coverage.perhaps)) continue;
+        WideMask may_pass = coverage.perhaps;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             constexpr float kStill = -1e-5F;  // with the error of single precision
             may_pass = hn::And(may_pass, hn::Ge(hn::Mul(directions[axis], hn::Set(f, voxel.side[axis])),
@@ -245,8 +245,8 @@ AlongAxes along_axes(const Eigen::Vector3d& p) {
 
 }  // namespace
 
-OpenVoxels::OpenVoxels(const CertainView& view, const PlacedImage& image, const VoxelLattice& lattice,
-                       const PictureTest& picture)
+OpenVoxels::OpenVoxels(const CertainView& view, const ProjectedImage& image, const VoxelLattice& lattice,
+                       const BrickVisibility& picture)
     : view_(view),
       image_(image),
       picture_(picture),

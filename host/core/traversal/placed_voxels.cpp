@@ -133,7 +133,7 @@ HWY_INLINE hn::Mask<Tag> count(const Placed& placed, Lanes depth, hn::Mask<Tag> 
 }
 
 HWY_INLINE void store(const Placed& placed, hn::Mask<Tag> is_used, float half_depth_m, std::size_t at,
-                      PlacedImage& image) {
+                      ProjectedImage& image) {
     const Tag f;
     const hn::RebindToSigned<Tag> i;
     const hn::RebindToUnsigned<Tag> k;
@@ -146,7 +146,7 @@ HWY_INLINE void store(const Placed& placed, hn::Mask<Tag> is_used, float half_de
     hn::StoreU(key_xy, k, image.key_xy.data() + at);
     const auto ends_in_something = hn::AndNot(placed.is_beyond, is_used);
     hn::StoreU(hn::IfThenElse(hn::RebindMask(k, ends_in_something), key_of(placed.scaled[2]),
-                              hn::Set(k, PlacedImage::kNoKey)),
+                              hn::Set(k, ProjectedImage::kNoKey)),
                k, image.key_z.data() + at);
     hn::StoreU(hn::IfThenElse(is_used, placed.reach_m, none), f, image.reach_m.data() + at);
     const Lanes less = hn::IfThenElseZero(placed.is_beyond, hn::Set(f, half_depth_m));
@@ -155,7 +155,7 @@ HWY_INLINE void store(const Placed& placed, hn::Mask<Tag> is_used, float half_de
 
 /// Projects the pixels with a certain result, and sets a bit, in whole words, for each other pixel of the
 /// row.
-void place_sure(const VoxelPlacement& to, const RowOfDepths& row, PlacedImage& image, RowSums& sums,
+void place_sure(const VoxelPlacement& to, const RowOfDepths& row, ProjectedImage& image, RowSums& sums,
                 std::uint64_t* unsure) {
     const Tag f;
     Lanes lowest[3], highest[3];
@@ -193,7 +193,7 @@ HWY_EXPORT(place_sure);
 class Placer {
   public:
     Placer(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
-           const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed)
+           const Eigen::Isometry3d& T_map_camera, double range_max_m, ProjectedImage& placed)
         : image_(image),
           pixel_rays_(pixel_rays),
           lattice_(lattice),
@@ -269,7 +269,7 @@ class Placer {
         ++sums.counts.used;
         sums.bound(end);
         placed_.key_xy[at] = key->x | std::uint32_t{key->y} << 16U;
-        placed_.key_z[at] = is_beyond ? PlacedImage::kNoKey : key->z;
+        placed_.key_z[at] = is_beyond ? ProjectedImage::kNoKey : key->z;
         placed_.reach_m[at] = reach_m;
         placed_.passed_m[at] = is_beyond || is_at_face(end) ? reach_m - to_.half_depth_m : reach_m;
     }
@@ -283,11 +283,11 @@ class Placer {
     const PixelRays& pixel_rays_;
     const VoxelLattice& lattice_;
     const Eigen::Isometry3d& T_map_camera_;
-    PlacedImage& placed_;
+    ProjectedImage& placed_;
     VoxelPlacement to_;
 };
 
-void resize(PlacedImage& image, std::size_t entries) {
+void resize(ProjectedImage& image, std::size_t entries) {
     for (auto* values : {&image.end_x, &image.end_y, &image.end_z}) values->clear();
     image.range_m.clear();
     image.reach_m.resize(entries);
@@ -299,8 +299,8 @@ void resize(PlacedImage& image, std::size_t entries) {
 }  // namespace
 
 void place_voxels(const DepthImage& image, const PixelRays& pixel_rays, const VoxelLattice& lattice,
-                  const Eigen::Isometry3d& T_map_camera, double range_max_m, PlacedImage& placed,
-                  Crew* crew) {
+                  const Eigen::Isometry3d& T_map_camera, double range_max_m, ProjectedImage& placed,
+                  ThreadPool* pool) {
     const std::size_t pixels = std::size_t{image.width} * image.height;
     assert(image.width == pixel_rays.camera().width && image.height == pixel_rays.camera().height);
     assert(image.depth_m.size() == pixels && pixel_rays.camera().lens.is_none());
@@ -312,7 +312,7 @@ void place_voxels(const DepthImage& image, const PixelRays& pixel_rays, const Vo
     const Placer placer(image, pixel_rays, lattice, T_map_camera, range_max_m, placed);
     const ImageBands bands = bands_of(image.width, image.height);
     std::vector<RowSums> sums(bands.count, {{}, placed.origin, placed.origin});
-    for_each_band(bands, image.height, crew, [&](std::size_t band, std::uint32_t begin, std::uint32_t end) {
+    for_each_band(bands, image.height, pool, [&](std::size_t band, std::uint32_t begin, std::uint32_t end) {
         placer.place_rows(begin, end, sums[band]);
     });
     take_sums(sums, placed);

@@ -100,7 +100,7 @@ HWY_INLINE void mark(Double index, std::uint8_t* marks) {
     HWY_ALIGN std::array<double, hn::MaxLanes(Doubles())> shifted;
     hn::Store(hn::Add(index, hn::Set(d, kIntegerShift)), d, shifted.data());
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-        marks[std::bit_cast<std::uint64_t>(shifted[lane]) & kIntegerBits] = MarkGrid::kPassed;
+        marks[std::bit_cast<std::uint64_t>(shifted[lane]) & kIntegerBits] = VisitedGrid::kPassed;
     }
 }
 
@@ -210,8 +210,8 @@ HWY_INLINE void Walkers::step(const Walk& walk) {
     is_walking_ = hn::And(is_walking_, hn::Le(nearest_, to_));
 }
 
-void tell_undecided(const Walkers& walkers, const RayPiece* pieces, std::size_t count,
-                    std::vector<std::uint32_t>& undecided) {
+void report_undecided(const Walkers& walkers, const RayPiece* pieces, std::size_t count,
+                      std::vector<std::uint32_t>& undecided) {
     const Doubles d;
     if (hn::AllFalse(d, walkers.is_undecided())) return;
     for_each_set(d, walkers.is_undecided(), [&](std::size_t lane) {
@@ -235,8 +235,8 @@ void walk_all(const Walk& walk, std::span<const RayPiece> pieces, std::vector<st
             a.step(walk);
             b.step(walk);
         }
-        tell_undecided(a, some, count, undecided);
-        if (left > lanes) tell_undecided(b, others, other_count, undecided);
+        report_undecided(a, some, count, undecided);
+        if (left > lanes) report_undecided(b, others, other_count, undecided);
     }
 }
 
@@ -251,8 +251,8 @@ HWY_EXPORT(walk_all);
 
 }  // namespace
 
-void walk_pieces(const PlacedImage& image, const VoxelLattice& lattice, std::span<const RayPiece> pieces,
-                 MarkGrid& grid, std::vector<std::uint32_t>& undecided) {
+void walk_pieces(const ProjectedImage& image, const VoxelLattice& lattice, std::span<const RayPiece> pieces,
+                 VisitedGrid& grid, std::vector<std::uint32_t>& undecided) {
     const auto origin = lattice.key_of(image.origin.cast<double>());
     assert(origin.has_value());
     const std::array<const float*, 3> ends = {image.end_x.data(), image.end_y.data(), image.end_z.data()};

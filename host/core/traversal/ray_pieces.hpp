@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "host/core/traversal/mark_grid.hpp"
-#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/projected_image.hpp"
+#include "host/core/traversal/visited_grid.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
@@ -23,7 +23,7 @@ struct RayPiece {
 /// arithmetic, with the same rounding errors. A walk that begins later has other rounding errors: if two
 /// faces are crossed at almost the same distance, their order is uncertain. The pixel is then added to
 /// `undecided`; the voxels marked for it so far are correct. The grid spans all rays. About 1 ns per voxel.
-void walk_pieces(const PlacedImage& image, const VoxelLattice& lattice, std::span<const RayPiece> pieces,
-                 MarkGrid& grid, std::vector<std::uint32_t>& undecided);
+void walk_pieces(const ProjectedImage& image, const VoxelLattice& lattice, std::span<const RayPiece> pieces,
+                 VisitedGrid& grid, std::vector<std::uint32_t>& undecided);
 
 }  // namespace octoskin

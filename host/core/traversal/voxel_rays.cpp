@@ -13,7 +13,7 @@
 #include <numbers>
 
 #include "host/core/traversal/lanes-inl.hpp"
-#include "host/core/traversal/word_verdicts-inl.hpp"
+#include "host/core/traversal/word_coverage-inl.hpp"
 
 #ifndef OCTOSKIN_VOXEL_RAYS_TYPES
 #define OCTOSKIN_VOXEL_RAYS_TYPES
@@ -238,7 +238,7 @@ HWY_INLINE bool is_any_passing(const Kernel& rays, const Centre& centre, const S
 /// VoxelRays::passed() for the brick whose first voxel's centre is at `first`.
 void find_passed(const Kernel& rays, const SquareOfPixels& square, const Centre& first, const BrickMask& ends,
                  BrickMask& mask) {
-    const WordVerdicts verdicts = judge_words(rays, first);
+    const WordCoverage verdicts = judge_words(rays, first);
     for (std::size_t number = 0; number < mask.size(); ++number) {
         std::uint64_t& word = mask[number];
         const bool is_all = (verdicts.all >> number & 1U) != 0;
@@ -319,7 +319,7 @@ constexpr double kNearCentre = 0.45;
 
 }  // namespace
 
-void VoxelRays::begin(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
+void VoxelRays::begin(const CertainView& view, const ProjectedImage& image, const RangePyramid& reach,
                       const VoxelLattice& lattice) {
     view_ = &view;
     reach_ = &reach;
@@ -365,7 +365,7 @@ void VoxelRays::begin(const CertainView& view, const PlacedImage& image, const R
     }
     kernel_.depth_max_m = static_cast<float>(view.depth_max_m);
     kernel_.blocks_width = reach.columns();
-    for (std::uint32_t k = 0; k < ReachWindows::kLevels; ++k) {
+    for (std::uint32_t k = 0; k < RangePyramid::kLevels; ++k) {
         kernel_.shortest_m[k] = reach.level(k).shortest.data();
         kernel_.longest_m[k] = reach.level(k).longest.data();
     }

@@ -8,8 +8,8 @@
 
 #include "host/core/bricks/brick.hpp"
 #include "host/core/traversal/certain_view.hpp"
-#include "host/core/traversal/placed_image.hpp"
-#include "host/core/traversal/reach_windows.hpp"
+#include "host/core/traversal/projected_image.hpp"
+#include "host/core/traversal/range_pyramid.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
 
 namespace octoskin {
@@ -20,12 +20,13 @@ struct RayVote {
     std::uint32_t go_on = 0;  ///< end further away; their surface may be behind the voxel
 };
 
-/// The rays of one image in one lattice; docs/concepts/sensor-models.md has the figure. All values are in the camera's frame
-/// and in single precision. Keeps references to its arguments, and keeps its memory.
+/// The rays of one image in one lattice; docs/concepts/sensor-models.md has the figure. All values are in the
+/// camera's frame and in single precision. Keeps references to its arguments. Reuses its memory for the next
+/// image.
 class VoxelRays {
   public:
-    /// The view must have a `depth_max_m`: a camera without a lens.
-    void begin(const CertainView& view, const PlacedImage& image, const ReachWindows& reach,
+    /// The view must have a `depth_max_m`, as that of a camera without lens distortion has.
+    void begin(const CertainView& view, const ProjectedImage& image, const RangePyramid& reach,
                const VoxelLattice& lattice);
 
     /// Centre of a brick's first voxel in the camera's frame, metres.
@@ -33,11 +34,11 @@ class VoxelRays {
         float x = 0.0F, y = 0.0F, z = 0.0F;
     };
     [[nodiscard]] Brick brick_at(VoxelKey lowest) const;
-    /// The voxels of a brick that one of their rays passes or ends in, except for some of those in `ends`,
-    /// where rays end at a surface. The eight cubes of 4 x 4 x 4 are tested together first: for most of them
-    /// the result is all or none. In the others most voxels take one look-up, of the pixel nearest to the
-    /// centre; all rays of a voxel are tested only if that gives no decision. All of these voxels are among
-    /// the free or occupied ones of OctoMap's computeUpdate. About 1 us.
+    /// The voxels of a brick that at least one of their rays passes or ends in. Some of those in `ends`,
+    /// where rays end at a surface, are left out. The eight cubes of 4 x 4 x 4 are tested together first: for
+    /// most of them the result is all or none. In the others most voxels take one look-up, of the pixel
+    /// nearest to the centre; all rays of a voxel are tested only if that gives no decision. All of these
+    /// voxels are among the free or occupied ones of OctoMap's computeUpdate. About 1 us.
     [[nodiscard]] BrickMask passed(const Brick& brick, const BrickMask& ends) const;
     /// Sets the votes of the given voxels, by cell; other votes are left unchanged. A voxel that is not
     /// completely in front of the camera gets no votes.
@@ -48,7 +49,7 @@ class VoxelRays {
     /// Data of the vector code.
     struct Kernel {
         std::array<std::array<float, kBrickVoxels>, 3> offsets;  ///< from the first voxel's centre to each
-        std::array<std::array<float, 8>, 3> middles;  ///< and to the middle of each word of a BrickMask
+        std::array<std::array<float, 8>, 3> middles;  ///< from there to the middle of each word of a mask
         /// Map-axis components of the camera's x and y.
         std::array<std::array<float, 2>, 3> across;
         const float* passed_m = nullptr;
@@ -70,13 +71,13 @@ class VoxelRays {
         float margin_m = 0.0F;
         float depth_max_m = 0.0F;
         std::uint32_t blocks_width = 0;
-        std::array<const float*, ReachWindows::kLevels> shortest_m{};
-        std::array<const float*, ReachWindows::kLevels> longest_m{};
+        std::array<const float*, RangePyramid::kLevels> shortest_m{};
+        std::array<const float*, RangePyramid::kLevels> longest_m{};
     };
 
   private:
     const CertainView* view_ = nullptr;
-    const ReachWindows* reach_ = nullptr;
+    const RangePyramid* reach_ = nullptr;
     const VoxelLattice* lattice_ = nullptr;
     Kernel kernel_;
 };

@@ -94,8 +94,8 @@ Result<LogReader, LogError> LogReader::open(const FilePlace& file) {
 }
 
 void LogReader::note(LineFault fault) {
-    account_.now_at(static_cast<std::int64_t>(lines_.number()));
-    account_.reject(fault);
+    inputs_.now_at(static_cast<std::int64_t>(lines_.number()));
+    inputs_.reject(fault);
     if (fault != LineFault::blank && !first_fault_)
         first_fault_ = FirstFault{lines_.number(), fault, shown(lines_.line())};
 }
@@ -108,7 +108,7 @@ Result<std::optional<LogEntry>, LogError> LogReader::next() {
                 LogError{file_, "reading failed after line " + std::to_string(lines_.number())});
         }
         if (end == LineStream::End::nothing_left) return std::optional<LogEntry>{};
-        account_.take_in();
+        inputs_.count_in();
         if (lines_.is_cut()) {
             note(LineFault::too_long);
             continue;
@@ -123,7 +123,7 @@ Result<std::optional<LogEntry>, LogError> LogReader::next() {
             entry->stamp = newest_ = {newest_.ns + entry->stamp.ns};
         }
         if (entry) {
-            account_.use();
+            inputs_.use();
             return std::optional<LogEntry>(std::move(entry).value());
         }
         // A line that is cut off may look like a shorter frame; its checksum decides that later. If it cannot
@@ -134,7 +134,7 @@ Result<std::optional<LogEntry>, LogError> LogReader::next() {
 }
 
 std::optional<LogError> LogReader::foreign_file() const {
-    if (account_.used() > 0 || !first_fault_) return std::nullopt;
+    if (inputs_.used() > 0 || !first_fault_) return std::nullopt;
     const std::string name = file_.filename().string();
     if (const ForeignFormat* const format = foreign_format_of(begin_)) {
         return LogError{file_,

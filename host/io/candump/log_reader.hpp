@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/result.hpp"
-#include "host/core/account/account.hpp"
+#include "host/core/counters/input_counters.hpp"
 #include "host/io/candump/log_line.hpp"
 #include "host/io/candump/stamp_kind.hpp"
 #include "host/io/folder/file_place.hpp"
@@ -34,10 +34,10 @@ class LogReader {
     [[nodiscard]] Result<std::optional<LogEntry>, LogError> next();
 
     /// Counters of the lines.
-    [[nodiscard]] const Account<LineFault>& account() const noexcept { return account_; }
+    [[nodiscard]] const InputCounters<LineFault>& inputs() const noexcept { return inputs_; }
     /// The number, from 1, of the first line with this fault; 0 if there is none.
     [[nodiscard]] std::uint64_t first_line(LineFault fault) const noexcept {
-        return account_.rejected(fault) == 0 ? 0 : static_cast<std::uint64_t>(account_.first_place(fault));
+        return inputs_.rejected(fault) == 0 ? 0 : static_cast<std::uint64_t>(inputs_.first_place(fault));
     }
 
     /// For a file that was read to its end and has lines, but no frame: the fault of the first line, and the
@@ -63,7 +63,7 @@ class LogReader {
     StampKind stamps_;
     WallTime newest_;  ///< sum of the differences so far
     std::optional<FirstFault> first_fault_;
-    Account<LineFault> account_;  ///< counters; the places are line numbers
+    InputCounters<LineFault> inputs_;  ///< counters; the places are line numbers
 };
 
 }  // namespace octoskin::candump

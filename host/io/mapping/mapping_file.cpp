@@ -87,7 +87,7 @@ void check_filter(const Table& table, const MappingConfig& config) {
     if (filter.is_enabled && filter.min_support >= pixels) {
         table.fail("min_support",
                    fmt::format("expected at most {} with window_px {}, found {}: a value needs more pixels "
-                               "than that, its window has {}, so none would be left; lower it, widen "
+                               "than that, its window has {}, so none would remain; lower it, widen "
                                "window_px, or set is_enabled: false",
                                pixels - 1, filter.window, filter.min_support, pixels));
     }
@@ -95,7 +95,7 @@ void check_filter(const Table& table, const MappingConfig& config) {
 
 void check_standing(const Table& table, const MappingConfig& config) {
     if (config.standing.readings == 1)
-        table.fail("readings", "expected 2 or more, or 0 (never), found 1: one reading alone may be wrong");
+        table.fail("readings", "expected 2 or more, or 0 (never), found 1: a single reading may be wrong");
 }
 
 void check_counts(const Table& table, const MappingConfig& config) {
@@ -110,7 +110,8 @@ void check_top(const Table& table, const MappingConfig& config) {
     if (config.refuses_contradicting_sensors && !config.reports_contradicting_sensors)
         table.fail(
             "refuses_contradicting_sensors",
-            "expected false where reports_contradicting_sensors is: a sensor is refused once it is named");
+            "expected false because reports_contradicting_sensors is: a sensor is refused only after it "
+            "was reported");
 }
 
 /// The rules between the keys of one table, which hold where the file has the table.

@@ -24,7 +24,7 @@ Result<OniReader, DepthSourceError> OniReader::open(const FilePlace& oni, const 
     if (!reader) return reader;
     if (!epoch) return unexpected(epoch.error());
     reader->first_frame_ = epoch->first_frame;
-    reader->frames_told_ = epoch->frames;
+    reader->frames_reported_ = epoch->frames;
     return reader;
 }
 
@@ -65,7 +65,7 @@ Result<OniReader, DepthSourceError> OniReader::start(const FilePlace& oni,
 }
 
 Unexpected<DepthSourceError> OniReader::fail(const std::string& what) {
-    const std::string of_all = frames_told_ ? " of " + std::to_string(*frames_told_) : "";
+    const std::string of_all = frames_reported_ ? " of " + std::to_string(*frames_reported_) : "";
     failure_ = DepthSourceError{file_.string() + ": " + what + " after " + std::to_string(frames_read_) +
                                 of_all + " frames"};
     return unexpected(*failure_);
@@ -77,9 +77,9 @@ Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
     auto piped = FramePipe(helper_.descriptor(), kReadPatience).read_frame(header_.size);
     if (!piped) return fail(with_end(name(piped.error()), helper_.wait(kEndPatience)));
     if (!piped->has_value()) {
-        const std::uint64_t told = frames_told_.value_or(frames_read_);
-        const bool is_short = frames_read_ < told && !header_.is_salvaged;
-        if (is_short || frames_read_ > told) return fail("the recording ends");
+        const std::uint64_t reported = frames_reported_.value_or(frames_read_);
+        const bool is_short = frames_read_ < reported && !header_.is_salvaged;
+        if (is_short || frames_read_ > reported) return fail("the recording ends");
         is_ended_ = true;
         return std::optional<DepthFrame>{};
     }
@@ -98,10 +98,10 @@ Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
 std::optional<std::string> OniReader::loss() const {
     if (!header_.is_salvaged) return std::nullopt;
     const std::string read = std::to_string(frames_read_);
-    if (!frames_told_) return file_.string() + ": was cut off; " + read + " frames are complete and used";
-    return file_.string() + ": was cut off; " + read + " of its " + std::to_string(*frames_told_) +
+    if (!frames_reported_) return file_.string() + ": was cut off; " + read + " frames are complete and used";
+    return file_.string() + ": was cut off; " + read + " of its " + std::to_string(*frames_reported_) +
            " frames are complete and used, " +
-           std::to_string(*frames_told_ - std::min(*frames_told_, frames_read_)) + " are lost";
+           std::to_string(*frames_reported_ - std::min(*frames_reported_, frames_read_)) + " are lost";
 }
 
 }  // namespace octoskin::openni2

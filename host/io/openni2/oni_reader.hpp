@@ -47,7 +47,7 @@ class OniReader final : public DepthSource {
 
     std::filesystem::path file_;
     HostTime first_frame_{};
-    std::optional<std::uint64_t> frames_told_;  ///< from the sidecar
+    std::optional<std::uint64_t> frames_reported_;  ///< from the sidecar
     HelperProcess helper_;
     StreamHeader header_;
     std::uint64_t frames_read_ = 0;

@@ -1,7 +1,7 @@
 #include <cassert>
 #include <nlohmann/json.hpp>
 
-#include "host/apps/choosing/named_mapping.hpp"
+#include "host/apps/profile/named_mapping.hpp"
 #include "host/lab/evaluation/results.hpp"
 
 namespace octoskin::evaluation {

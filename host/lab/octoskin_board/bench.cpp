@@ -91,7 +91,7 @@ Result<std::unique_ptr<Bench>, AppError> Bench::build(const Arguments& arguments
         const BusFault parsed = parse_i2c_fault(text);
         bench->board_->wire(parsed.bus).inject(parsed.fault);
     }
-    if (arguments.is_alone_on_bus) bench->board_->can().set_link(sim::stm32::CanLink::nobody_acknowledges);
+    if (arguments.is_alone_on_bus) bench->board_->can().set_link(sim::stm32::CanLink::unacknowledged);
     return bench;
 }
 

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/shipped_file.hpp"
@@ -13,6 +12,7 @@
 #include "host/apps/playback/data_set_playback.hpp"
 #include "host/apps/playback/map_provenance.hpp"
 #include "host/apps/playback/playback.hpp"
+#include "host/apps/profile/named_mapping.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"

@@ -6,21 +6,21 @@
 namespace octoskin::report {
 namespace {
 
-std::string account_rows(const Account& account) {
+std::string counter_rows(const ReportCounters& inputs) {
     std::uint64_t rejected = 0;
     std::string rows;
-    for (const auto& [counter, count] : account.rejected) {
+    for (const auto& [counter, count] : inputs.rejected) {
         rejected += count;
         if (count > 0) {
             rows += fmt::format("<tr><td class=\"name\">&emsp;{}</td><td></td><td></td><td>{}</td></tr>\n",
                                 escaped(counter), count_text(static_cast<double>(count)));
         }
     }
-    const bool is_balanced = account.received == account.used + rejected;
+    const bool is_balanced = inputs.received == inputs.used + rejected;
     return fmt::format(
-               "<tr><th>{}{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n", escaped(account.input),
-               is_balanced ? "" : " (does not balance)", count_text(static_cast<double>(account.received)),
-               count_text(static_cast<double>(account.used)), count_text(static_cast<double>(rejected))) +
+               "<tr><th>{}{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n", escaped(inputs.input),
+               is_balanced ? "" : " (does not balance)", count_text(static_cast<double>(inputs.received)),
+               count_text(static_cast<double>(inputs.used)), count_text(static_cast<double>(rejected))) +
            rows;
 }
 
@@ -32,8 +32,8 @@ std::string seeds_text(const std::vector<std::uint64_t>& seeds) {
     return text;
 }
 
-constexpr std::string_view kAccountText =
-    R"(<section id="account">
+constexpr std::string_view kInputsText =
+    R"(<section id="inputs">
 <h2>Input counters</h2>
 <p>Each input is used or adds one to exactly one named counter: in = used + sum of rejected. Seed {}.</p>
 <div class="table"><table>
@@ -62,10 +62,10 @@ constexpr std::string_view kTimesCaveat =
 
 }  // namespace
 
-std::string account_section(const ReportInput& input) {
-    std::string html = fmt::format(fmt::runtime(kAccountText), input.picture_seed);
-    for (const auto& account : input.accounts) {
-        html += account_rows(account);
+std::string inputs_section(const ReportInput& input) {
+    std::string html = fmt::format(fmt::runtime(kInputsText), input.picture_seed);
+    for (const auto& inputs : input.inputs) {
+        html += counter_rows(inputs);
     }
     return html + "</tbody></table></div>\n</section>\n";
 }

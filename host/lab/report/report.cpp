@@ -22,7 +22,7 @@ std::string report_html(const ReportInput& input) {
     html += metrics_section(input);
     html += update_section(input);
     html += calibration_section(input);
-    html += account_section(input);
+    html += inputs_section(input);
     html += idealisations_section(input);
     html += times_section(input);
     html += reproduce_section(input);

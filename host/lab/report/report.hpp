@@ -23,7 +23,7 @@ struct PicturePair {
 };
 
 /// The input counters of one kind of input: received = used + sum of rejected.
-struct Account {
+struct ReportCounters {
     std::string input;  ///< "ranges"
     std::uint64_t received = 0;
     std::uint64_t used = 0;
@@ -47,7 +47,7 @@ struct ReportInput {
     std::vector<PicturePair> pictures;  ///< scene first, then the maps
     UpdateModel update_model;
     RangeCounting range_counting;
-    std::vector<Account> accounts;
+    std::vector<ReportCounters> inputs;
     std::vector<std::string> hidden_objects;  ///< what the scenario names as hidden: "cone", "crate"
     std::vector<std::string> idealisations;   ///< one sentence each
     std::vector<std::string> reproduce;       ///< shell commands

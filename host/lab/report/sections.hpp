@@ -15,7 +15,7 @@ namespace octoskin::report {
 [[nodiscard]] std::string metrics_section(const ReportInput& input);
 [[nodiscard]] std::string update_section(const ReportInput& input);
 [[nodiscard]] std::string calibration_section(const ReportInput& input);
-[[nodiscard]] std::string account_section(const ReportInput& input);
+[[nodiscard]] std::string inputs_section(const ReportInput& input);
 [[nodiscard]] std::string idealisations_section(const ReportInput& input);
 [[nodiscard]] std::string times_section(const ReportInput& input);
 [[nodiscard]] std::string reproduce_section(const ReportInput& input);

@@ -31,7 +31,7 @@ Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     const auto lock = lock_reading();
     auto scene = read_scene(request.scenario, request.world);
     if (!scene) return unexpected(scene.error());
-    tell_world_warnings(request, scene->world);
+    report_world_warnings(request, scene->world);
     auto rig = read_given_rig(request.rig, request.robot);
     if (!rig) return unexpected(rig.error());
     auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
@@ -108,7 +108,7 @@ Result<std::optional<std::uint32_t>, AppError> record_scene(const Scene& scene, 
 
 }  // namespace
 
-void tell_world_warnings(const SimulationRequest& request, const sim::World& world) {
+void report_world_warnings(const SimulationRequest& request, const sim::World& world) {
     if (!request.on_world_warning) return;
     for (const std::string& warning : world.warnings()) request.on_world_warning(warning);
 }

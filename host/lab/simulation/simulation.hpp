@@ -34,11 +34,11 @@ struct SimulationRequest {
 };
 
 /// Calls on_world_warning, if set, with each of the world's warnings.
-void tell_world_warnings(const SimulationRequest& request, const sim::World& world);
+void report_world_warnings(const SimulationRequest& request, const sim::World& world);
 
 /// Simulates and records. On failure `out` is unchanged. The recording's rig has the seed's shift in
-/// T_map_base. Several threads may each make a recording. state: not to be called while another thread reads
-/// a rig, world or robot, except for `read_lock` below.
+/// T_map_base. Several threads may each make a recording. Not to be called while another thread reads
+/// a rig, world or robot, except under lock_reading().
 [[nodiscard]] Result<sim::ExperimentSummary, AppError> simulate_recording(
     const SimulationRequest& request, const std::function<void(double)>& on_progress = {});
 

@@ -82,14 +82,14 @@ std::set<std::string> names_in(const NamedFolder& named) {
 /// A map that does not match the maps.yaml beside it, or a maps.yaml that cannot be read.
 std::optional<std::string> foreign_map(const NamedFolder& folder) {
     const auto origin = read_map_origin(folder);
-    const bool is_told = origin && *origin;
+    const bool is_described = origin && *origin;
     for (const std::string& name : map_file_names()) {
         const FilePlace map(folder, name);
         if (!map.is_there()) continue;
-        const bool is_ours = is_told && (*origin)->maps.contains(name) && !fault_of_map(map, **origin);
+        const bool is_ours = is_described && (*origin)->maps.contains(name) && !fault_of_map(map, **origin);
         if (!is_ours) return name;
     }
-    if (FilePlace(folder, kMapOriginFile).is_there() && !is_told) return kMapOriginFile;
+    if (FilePlace(folder, kMapOriginFile).is_there() && !is_described) return kMapOriginFile;
     return std::nullopt;
 }
 
@@ -138,7 +138,7 @@ Status<AppError> check_results_folder(const OpenFolder& folder) {
     if (foreign) {
         return cannot_create(
             folder.shown(),
-            fmt::format("has a {} that is not an unchanged result of an experiment: nothing is "
+            fmt::format("contains {}, which is not an unchanged result of an experiment: nothing is "
                         "overwritten; move it away, or give another directory",
                         *foreign));
     }

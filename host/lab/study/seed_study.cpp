@@ -180,7 +180,7 @@ Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const Study
             }
             judge(*playback, configuration.name, *outcome.truth, outcome);
             if (is_main) {
-                playback->pipeline.tell(nullptr);
+                playback->pipeline.set_listener(nullptr);
                 outcome.unknown_space = watch->finish(playback->pipeline.maps());
                 outcome.main.emplace(std::move(*playback));
             }

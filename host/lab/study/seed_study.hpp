@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/result.hpp"
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/playback/playback.hpp"
+#include "host/apps/profile/named_mapping.hpp"
 #include "host/lab/evaluation/aggregate.hpp"
 #include "host/lab/evaluation/results.hpp"
 #include "host/lab/evaluation/survey.hpp"

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <set>
 
-#include "host/apps/choosing/named_mapping.hpp"
 #include "host/apps/playback/map_folder.hpp"
+#include "host/apps/profile/named_mapping.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/version/version.hpp"
@@ -41,7 +41,7 @@ Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double 
     auto scene = read_scene(inputs.scenario, inputs.world);
     if (!scene) return unexpected(scene.error());
     if (const auto still = check_stands_still(*scene); !still) return unexpected(still.error());
-    tell_world_warnings(inputs, scene->world);
+    report_world_warnings(inputs, scene->world);
     const auto rig = read_given_rig(inputs.rig, inputs.robot);
     if (!rig) return unexpected(rig.error());
     evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);
@@ -167,10 +167,10 @@ std::vector<evaluation::PartTime> total_times(const std::vector<SeedOutcome>& ou
     return totals;
 }
 
-report::Account report_account(const AccountTable& table) {
-    report::Account account{table.unit, table.in, table.used, {}};
-    for (const auto& row : table.rejected) account.rejected.emplace_back(row.name, row.count);
-    return account;
+report::ReportCounters report_counters(const CounterTable& table) {
+    report::ReportCounters inputs{table.unit, table.in, table.used, {}};
+    for (const auto& row : table.rejected) inputs.rejected.emplace_back(row.name, row.count);
+    return inputs;
 }
 
 Status<AppError> write_report(const StudyRequest& request, const OpenFolder& folder, const StudyWorld& world,
@@ -184,13 +184,13 @@ Status<AppError> write_report(const StudyRequest& request, const OpenFolder& fol
                                                         main.pipeline.maps(), *first.truth),
                               .update_model = main_configuration.mapping.model,
                               .range_counting = range_counting_of(main.rig, main_configuration.mapping),
-                              .accounts = {},
+                              .inputs = {},
                               .hidden_objects = world.scene.scenario.hidden_models,
                               .idealisations = idealisations_of(main.rig, world.scene.scenario),
                               .reproduce = {command_of(request)}};
     if (!main.rig.camera) input.title = "octoskin: what the range sensors see";
-    for (const AccountTable& table : main.accounts) {
-        if (table.in > 0) input.accounts.push_back(report_account(table));
+    for (const CounterTable& table : main.inputs) {
+        if (table.in > 0) input.inputs.push_back(report_counters(table));
     }
     return write_text({folder, "report.html"}, report::report_html(input));
 }

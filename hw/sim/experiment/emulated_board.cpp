@@ -76,17 +76,17 @@ EmulatedBoard::~EmulatedBoard() {
 void EmulatedBoard::note(BusEventKind kind, SimTime time, const wire::CanFrame& frame) {
     // A frame may begin and end within one turn: the board must still be notified of its begin.
     if (kind != BusEventKind::received) {
-        if (!has_told_start_) turn_.events.push_back({BusEventKind::started, turn_.time, frame});
-        has_told_start_ = false;
+        if (!has_reported_start_) turn_.events.push_back({BusEventKind::started, turn_.time, frame});
+        has_reported_start_ = false;
         offered_.reset();
     }
     turn_.events.push_back({kind, time, frame});
 }
 
 void EmulatedBoard::begin_turn(SimTime now) {
-    if (const wire::CanFrame* sending = seat_->under_way(); sending != nullptr && !has_told_start_) {
+    if (const wire::CanFrame* sending = seat_->under_way(); sending != nullptr && !has_reported_start_) {
         turn_.events.push_back({BusEventKind::started, now, *sending});
-        has_told_start_ = true;
+        has_reported_start_ = true;
     }
     turn_.time = now;
     process_->begin(turn_);

@@ -46,7 +46,7 @@ class EmulatedBoard final : public RigBoard {
     std::unique_ptr<BoardProcess> process_;
     CanSeat* seat_ = nullptr;
     std::optional<wire::CanFrame> offered_;
-    bool has_told_start_ = false;
+    bool has_reported_start_ = false;
     RunUntil turn_;
     std::optional<BoardSummary> summary_;
 };

@@ -75,8 +75,8 @@ class RigInOneProcess {
         for (const rig::Node& node : input.rig.nodes) {
             const NodeClock clock = draw_clock(random, boards_.empty());
             const SceneOfSensor scene = [&](std::uint8_t sensor) {
-                return told(ranging_scene(surroundings_, mount_of(node, sensor)), node.config.node_id,
-                            sensor);
+                return reported(ranging_scene(surroundings_, mount_of(node, sensor)), node.config.node_id,
+                                sensor);
             };
             boards_.push_back(make_board(input, node.config, clock, scene));
         }
@@ -123,7 +123,7 @@ class RigInOneProcess {
 
   private:
     /// The same scene, which also reports each ranging to the caller's handler.
-    RangingScene told(RangingScene scene, std::uint8_t node_id, std::uint8_t sensor) const {
+    RangingScene reported(RangingScene scene, std::uint8_t node_id, std::uint8_t sensor) const {
         if (!output_.on_ranging) return scene;
         return [this, scene = std::move(scene), node_id, sensor](std::uint32_t index, SimTime middle,
                                                                  const Roi& roi) {

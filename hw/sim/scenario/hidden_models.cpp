@@ -3,6 +3,7 @@
 #include <set>
 
 #include "hw/rigfile/joined.hpp"
+#include "hw/sim/scenario/scenario_keys.hpp"
 
 namespace octoskin::sim {
 
@@ -11,8 +12,9 @@ Status<rig::RigError> check_hidden_models(const Scenario& scenario, const World&
     for (const Solid& solid : world.solids()) models.insert(solid.model);
     for (const std::string& hidden : scenario.hidden_models) {
         if (models.contains(hidden)) continue;
-        return unexpected(scenario.error("hidden_models", "expected models of the world, found '" + hidden +
-                                                              "'; it has " + rig::joined(models)));
+        return unexpected(scenario.error(
+            keys::kHiddenModels.path,
+            "expected models of the world, found '" + hidden + "'; it has " + rig::joined(models)));
     }
     return Done{};
 }

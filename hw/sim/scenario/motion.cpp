@@ -6,25 +6,23 @@
 
 #include "hw/rigfile/pose.hpp"
 #include "hw/rigfile/table.hpp"
+#include "hw/sim/scenario/scenario_keys.hpp"
 
 namespace octoskin::sim {
 namespace {
 
-constexpr double kLongest_s = 600.0;
-constexpr double kFurthest_m = 20.0;  ///< a larger value is probably in millimetres
-
 ModelPlace read_place(const rig::Value& value, const std::string& path, const ModelPlace* before) {
-    const rig::Table table(value, path, {"at_s", "is_there", "offset_m", "moves_on"});
+    const rig::Table table(value, path, keys::kPlace);
     ModelPlace place;
-    place.from_s = table.number("at_s", {-kLongest_s, kLongest_s});
-    place.is_there = table.flag("is_there", true);
-    place.moves_on = table.flag("moves_on", false);
-    if (table.find("offset_m") != nullptr)
-        place.offset_m =
-            rig::read_position(table.require("offset_m"), table.path_of("offset_m"), kFurthest_m);
+    place.from_s = table.number(keys::world_motion::kAt);
+    place.is_there = table.flag(keys::world_motion::kIsThere);
+    place.moves_on = table.flag(keys::world_motion::kMovesOn);
+    if (table.find(keys::world_motion::kOffset) != nullptr)
+        place.offset_m = rig::read_position(table, keys::world_motion::kOffset);
     if (before != nullptr && place.from_s <= before->from_s)
-        table.fail("at_s", fmt::format("expected later than the place before, {} s, found {}", before->from_s,
-                                       place.from_s));
+        table.fail(keys::world_motion::kAt,
+                   fmt::format("expected later than the place before, {} s, found {}", before->from_s,
+                               place.from_s));
     if (before != nullptr && before->moves_on && !place.is_there)
         rig::fail(value, path,
                   "the place before moves on to here, but the model is not there; give it a place first");
@@ -32,32 +30,35 @@ ModelPlace read_place(const rig::Value& value, const std::string& path, const Mo
 }
 
 ModelMotion read_model(const rig::Value& value, const std::string& path, const std::vector<Solid>& solids) {
-    const rig::Table table(value, path, {"model", "places"});
+    const rig::Table table(value, path, keys::kModel);
     ModelMotion motion;
-    motion.model = table.element_name("model");
+    motion.model = table.text(keys::world_motion::kModel);
     if (std::ranges::find(solids, motion.model, &Solid::model) == solids.end())
-        table.fail("model", "the world has no model '" + motion.model + "'");
-    const auto& places = rig::read_list(table.require("places"), table.path_of("places"));
+        table.fail(keys::world_motion::kModel, "the world has no model '" + motion.model + "'");
+    const auto& places = table.list(keys::world_motion::kPlaces);
+    const std::string places_path = table.path_of(keys::world_motion::kPlaces);
     for (std::size_t i = 0; i < places.size(); ++i) {
-        motion.places.push_back(read_place(places[i], fmt::format("{}[{}]", table.path_of("places"), i),
+        motion.places.push_back(read_place(places[i], fmt::format("{}[{}]", places_path, i),
                                            i > 0 ? &motion.places.back() : nullptr));
     }
-    if (motion.places.empty()) table.fail("places", "expected at least one place");
+    if (motion.places.empty()) table.fail(keys::world_motion::kPlaces, "expected at least one place");
     const auto has_no_way = [](const ModelPlace& place) { return place.moves_on && !place.is_there; };
     if (motion.places.back().moves_on || std::ranges::any_of(motion.places, has_no_way))
-        table.fail("places", "a model that moves on must be there, and needs a next place");
+        table.fail(keys::world_motion::kPlaces,
+                   "a model that moves on must be there, and needs a next place");
     return motion;
 }
 
 std::vector<ModelMotion> read_checked_motion(const FilePlace& file, const std::vector<Solid>& solids) {
     const rig::Value document = rig::load_document(file, rig::Quotes::withheld);
-    const rig::Table top(document, "", {"models"});
-    const auto& models = rig::read_list(top.require("models"), "models");
+    const rig::Table top(document, "", keys::kWorldMotion);
+    const auto& models = top.list(keys::world_motion::kModels);
     std::vector<ModelMotion> motions;
     for (std::size_t i = 0; i < models.size(); ++i) {
-        ModelMotion motion = read_model(models[i], fmt::format("models[{}]", i), solids);
+        const std::string path = fmt::format("{}[{}]", top.path_of(keys::world_motion::kModels), i);
+        ModelMotion motion = read_model(models[i], path, solids);
         if (std::ranges::find(motions, motion.model, &ModelMotion::model) != motions.end())
-            rig::fail(models[i], fmt::format("models[{}]", i), "model '" + motion.model + "' comes twice");
+            rig::fail(models[i], path, "model '" + motion.model + "' comes twice");
         motions.push_back(std::move(motion));
     }
     return motions;

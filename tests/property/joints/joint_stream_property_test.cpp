@@ -123,7 +123,7 @@ TEST(JointStreams, of_one_sound_driver_at_its_velocity_limit_never_jump) {
             for (const Sent& sample : send(arm, stream, random)) {
                 if (!thinned.frames(sample.sampled, sample.position)) continue;
                 ++judged;
-                ASSERT_EQ(jump.judge(sample.sampled, sample.position), JointJump::Verdict::fits)
+                ASSERT_EQ(jump.judge(sample.sampled, sample.position), JointJump::SampleFit::fits)
                     << 1e-9 * static_cast<double>(sample.sampled.ns);
             }
         }

@@ -30,7 +30,7 @@ class VoxelByVoxel {
   public:
     explicit VoxelByVoxel(const MapConfig& config) : config_(config), rules_(config) {}
 
-    void go_on(std::int64_t now_s) {
+    void advance_time(std::int64_t now_s) {
         now_s_ = now_s;
         if (config_.age.unknown_after_s == 0) return;
         std::erase_if(voxels_, [&](const auto& entry) {
@@ -40,7 +40,7 @@ class VoxelByVoxel {
     }
 
     /// When anything was seen is not known any more: it is as old as this.
-    void forget_times() {
+    void clear_times() {
         for (auto& [code, voxel] : voxels_) voxel = {voxel.state, now_s_, SensorKind::none, true, false};
     }
 
@@ -272,12 +272,12 @@ TEST_P(VoxelRulesProperty, are_what_the_map_does_to_every_voxel) {
         std::int64_t now_s = 100;
         for (int step = 0; step < 150; ++step) {
             now_s += random.below(3) == 0 ? 1 : 0;
-            map.go_on(HostTime{now_s * 1'000'000'000});
-            expected.go_on(now_s);
+            map.advance_time(HostTime{now_s * 1'000'000'000});
+            expected.advance_time(now_s);
             if (random.below(20) == 0) {
-                map.forget_times();
-                map.go_on(HostTime{now_s * 1'000'000'000});
-                expected.forget_times();
+                map.clear_times();
+                map.advance_time(HostTime{now_s * 1'000'000'000});
+                expected.clear_times();
             }
             const Evidence evidence = random.next(GetParam().withdraws);
             map.apply(evidence, {.spares = &spares});

@@ -74,7 +74,7 @@ TEST(RoughBus, repeats_and_delays_frames_and_flips_up_to_three_of_their_bits) {
         }
         const Pipeline pipeline = play(scene, by_arrival(rough));
         expect_hits_where_shots_ended(pipeline, 0);
-        used += pipeline.accounts().readings.used();
+        used += pipeline.inputs().readings.used();
     }
     EXPECT_GT(used, 40U * 40U) << "of 149 each: else this tests little";
 }
@@ -111,7 +111,7 @@ TEST(RoughBus, carries_frames_of_a_stranger_who_knows_the_checksums_without_losi
             }
         }
         const Pipeline pipeline = play(scene, crowded);
-        EXPECT_EQ(pipeline.accounts().frames.in(), crowded.size());
+        EXPECT_EQ(pipeline.inputs().frames.in(), crowded.size());
     }
     EXPECT_GT(decoded, 10'000U);
 }

@@ -99,7 +99,7 @@ class LegProperty : public testing::Test {
 TEST_F(LegProperty, is_free_only_if_all_of_the_way_is_and_if_all_that_is_near_it_is_too) {
     const FusedMap room = free_room();
     unsigned touched = 0;
-    unsigned told_free = 0;
+    unsigned reported_free = 0;
     for (unsigned i = 0; i < testing_support::cases(150); ++i) {
         const std::vector<double> from = anywhere();
         const std::vector<double> to = near(from, i % 2 == 0 ? 0.3 : 1.5);
@@ -112,14 +112,14 @@ TEST_F(LegProperty, is_free_only_if_all_of_the_way_is_and_if_all_that_is_near_it
         const double least_m = least_on_way(map, voxel, from, to);
         const bool is_free = answer->worst.state == PostureState::free;
         touched += least_m > 0.0 ? 0U : 1U;
-        told_free += is_free ? 1U : 0U;
-        const double told_m = answer->clearance.occupied_m.value_or(kReach_m);
-        EXPECT_EQ(is_free, told_m > 0.0) << i;
-        EXPECT_LE(told_m, least_m + 1e-9) << "leg " << i << " says it is further away than it comes";
-        EXPECT_GE(told_m, least_m - 0.25 * kEdge_m - 5e-4) << "leg " << i << " says it is nearer";
+        reported_free += is_free ? 1U : 0U;
+        const double reported_m = answer->clearance.occupied_m.value_or(kReach_m);
+        EXPECT_EQ(is_free, reported_m > 0.0) << i;
+        EXPECT_LE(reported_m, least_m + 1e-9) << "leg " << i << " says it is further away than it comes";
+        EXPECT_GE(reported_m, least_m - 0.25 * kEdge_m - 5e-4) << "leg " << i << " says it is nearer";
     }
     EXPECT_GT(touched, testing_support::cases(150) / 4);
-    EXPECT_GT(told_free, testing_support::cases(150) / 8);
+    EXPECT_GT(reported_free, testing_support::cases(150) / 8);
 }
 
 TEST_F(LegProperty, has_for_each_capsule_on_the_way_a_larger_one_that_holds_it) {

@@ -113,7 +113,7 @@ class MovingWorldBeforeCamera : public testing::TestWithParam<std::pair<const ch
         HostSetup setup = make_host_setup(rig_).value();
         MapBuilder builder =
             MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {}, {MapFeed::both}).value();
-        builder.tell(&passes_);
+        builder.set_listener(&passes_);
         for (int frame = 0; frame < kFramesInAll; ++frame) {
             const double time_s = kFramePeriod_s * frame;
             if (frame < kBlindFrom || frame >= kBlindUntil) {

@@ -159,7 +159,7 @@ TEST_P(BoxBeforeRangeSensor, is_on_the_map_and_off_it_in_time) {
                     MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {}, {MapFeed::both})
                         .value();
                 PassesOfReadings passes(mapping);
-                builder.tell(&passes);
+                builder.set_listener(&passes);
                 int reading = 0;
                 const auto read = [&](const sim::World& world) {
                     const auto index = static_cast<std::uint32_t>(reading++);

@@ -104,7 +104,7 @@ AttackedBus::AttackedBus(const BusSetup& setup)
         heard_.push_back(0);
     }
     pipeline_ = std::make_unique<Pipeline>(make_pipeline(setup_));
-    pipeline_->tell(this);
+    pipeline_->set_listener(this);
     run();
 }
 
@@ -124,7 +124,7 @@ void AttackedBus::run() {
         }
     }
     pipeline_->finish();
-    EXPECT_TRUE(pipeline_->is_balanced()) << pipeline_->account_text();
+    EXPECT_TRUE(pipeline_->is_balanced()) << pipeline_->inputs_text();
 }
 
 /// As the daemon does: SYNC, asked for early where a clock is in question, and the joint states of this host.
@@ -216,9 +216,9 @@ void AttackedBus::look() {
         }
         if (intake.answers(node).hears_two(*now)) named_clocks_.try_emplace(node, now_s());
         if (intake.self_reports(node).hears_two(*now)) named_words_.try_emplace(node, now_s());
-        const NodeVerdict verdict = intake.nodes().verdict(node, now);
-        if (now_s() > kSettled_s && verdict != NodeVerdict::usable) refused_.try_emplace(node, verdict);
-        if (const auto loss = intake.losses(node, *now); loss && verdict == NodeVerdict::usable) {
+        const NodeCondition verdict = intake.nodes().verdict(node, now);
+        if (now_s() > kSettled_s && verdict != NodeCondition::usable) refused_.try_emplace(node, verdict);
+        if (const auto loss = intake.losses(node, *now); loss && verdict == NodeCondition::usable) {
             losing_s_.try_emplace(node, now_s());
             losses_.insert_or_assign(node, *loss);
         }

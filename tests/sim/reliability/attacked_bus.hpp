@@ -90,7 +90,7 @@ class AttackedBus final : private CommitListener {
     [[nodiscard]] const std::map<wire::NodeId, NodeLosses::Loss>& losses() const noexcept { return losses_; }
     [[nodiscard]] const std::map<wire::NodeId, double>& losing_s() const noexcept { return losing_s_; }
     /// Nodes that were not usable at some time after kSettled_s.
-    [[nodiscard]] const std::map<wire::NodeId, NodeVerdict>& refused() const noexcept { return refused_; }
+    [[nodiscard]] const std::map<wire::NodeId, NodeCondition>& refused() const noexcept { return refused_; }
     /// Voxels that differ from those of a bus without attacker, but for those of one untrue reading.
     [[nodiscard]] std::uint64_t wrong_voxels(const AttackedBus& clean) const;
     /// The map that a replay of what went into this one, in its order, makes: byte for byte as a file.
@@ -137,7 +137,7 @@ class AttackedBus final : private CommitListener {
     std::map<wire::NodeId, double> named_words_;
     std::map<wire::NodeId, NodeLosses::Loss> losses_;
     std::map<wire::NodeId, double> losing_s_;
-    std::map<wire::NodeId, NodeVerdict> refused_;
+    std::map<wire::NodeId, NodeCondition> refused_;
 };
 
 /// A RANGE frame of this reading, with a right checksum.

@@ -258,12 +258,12 @@ TEST(ReliabilityReflex, C8_an_event_in_bus_off_is_told_afterwards_by_a_reading_o
     const auto is_far = [&] { return !rig.truth(0).empty() && rig.truth(0).back().range_mm > 4'360; };
     while (!is_far()) rig.run_for(kMillisecond);
     const std::uint32_t before = rig.node().counts().bus_off;
-    const std::size_t told = rig.said_of<wire::Reflex>().size();
+    const std::size_t reported = rig.said_of<wire::Reflex>().size();
     rig.can().add_fault({.kind = CanFaultKind::disturb, .count = 32 * 4});
     while (is_far()) rig.run_for(kMillisecond);
     ASSERT_GT(rig.node().counts().bus_off, before);
     rig.run_for(3 * kSecond);
-    ASSERT_EQ(rig.said_of<wire::Reflex>().size(), told + 1) << "one frame an event all the same";
+    ASSERT_EQ(rig.said_of<wire::Reflex>().size(), reported + 1) << "one frame an event all the same";
     const auto& ranges = rig.truth(0);
     const std::int64_t said_us = rig.times_of<wire::Reflex>().back().us;
     const auto truth = std::find_if(ranges.rbegin(), ranges.rend(), [&](const TrueRange& range) {

@@ -112,7 +112,7 @@ TEST(ReliabilityI11, every_status_and_every_distance_goes_on_the_wire_as_it_is) 
             measurement.stream_count = stream;
             const auto verdict =
                 acceptance.judge({.measurement = measurement, .ready_seen = now, .read_end = now}, zones);
-            ASSERT_EQ(verdict, node::Verdict::accepted);
+            ASSERT_EQ(verdict, node::Admission::accepted);
             const bool is_unchecked = stream == 0 && status == 9;
             ASSERT_EQ(acceptance.reading().device_status, is_unchecked ? 19 : status);
             ASSERT_EQ(acceptance.reading().range_mm, range_mm);

@@ -143,7 +143,7 @@ class Placed final : public CommitListener {
 
 struct Played {
     Placed placed;
-    PipelineAccounts accounts;
+    PipelineInputs inputs;
     std::uint64_t contradictions = 0;
     std::optional<WallTime> named;  ///< when two senders, or a jump, were first told of
     std::optional<WallTime> named_last;
@@ -152,8 +152,8 @@ struct Played {
     std::string map;
 };
 
-std::uint64_t told_of(const Pipeline& pipeline) {
-    const auto& joints = pipeline.accounts().joint_samples;
+std::uint64_t reported_of(const Pipeline& pipeline) {
+    const auto& joints = pipeline.inputs().joint_samples;
     return pipeline.intake().joint_senders().contradictions() + joints.rejected(JointReason::second_sender) +
            joints.rejected(JointReason::joint_jump);
 }
@@ -165,22 +165,22 @@ Played play(const std::vector<StampedFrame>& frames, Release release) {
     config.maps = {MapFeed::both};
     Pipeline pipeline = Pipeline::build(setup.rig, setup.robot, robust_mapping(), config).value();
     Played played;
-    pipeline.tell(&played.placed);
-    std::uint64_t told = 0;
+    pipeline.set_listener(&played.placed);
+    std::uint64_t reported = 0;
     for (const StampedFrame& entry : frames) {
         pipeline.on_can(entry.frame, entry.stamp);
         const CanIntake& intake = pipeline.intake();
         if (!played.refused &&
             is_refused_for_joints(intake.nodes().verdict(setup.rig.joints.node_id, intake.now())))
             played.refused = entry.stamp;
-        if (told_of(pipeline) == told) continue;
-        told = told_of(pipeline);
+        if (reported_of(pipeline) == reported) continue;
+        reported = reported_of(pipeline);
         if (!played.named) played.named = entry.stamp;
         played.named_last = entry.stamp;
     }
     pipeline.finish();
-    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
-    played.accounts = pipeline.accounts();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
+    played.inputs = pipeline.inputs();
     played.contradictions = pipeline.intake().joint_senders().contradictions();
     played.map = encode_ot(pipeline.map());
     return played;
@@ -242,7 +242,7 @@ double seconds_between(WallTime from, WallTime to) {
 }
 
 /// For what is known before a pose is: the rest is joints_missing where there is none.
-std::uint64_t rejected_without_pose(const Account<ReadingReason>& readings) {
+std::uint64_t rejected_without_pose(const InputCounters<ReadingReason>& readings) {
     std::uint64_t rejected = readings.rejected();
     for (const ReadingReason reason :
          {ReadingReason::joints_missing, ReadingReason::self_hit, ReadingReason::beam_not_valid,
@@ -263,8 +263,8 @@ void expect_no_wrong_place(const Played& played, const Played& expected, const F
     }
     EXPECT_LE(apart, apart_max_m);
     for (const auto& [key, beam] : expected.placed.beams) lost += played.placed.beams.contains(key) ? 0U : 1U;
-    const auto& before = expected.accounts.readings;
-    const auto& after = played.accounts.readings;
+    const auto& before = expected.inputs.readings;
+    const auto& after = played.inputs.readings;
     EXPECT_EQ(after.used() + lost, before.used());
     EXPECT_GE(after.rejected(ReadingReason::joints_missing),
               before.rejected(ReadingReason::joints_missing) + lost);
@@ -318,10 +318,10 @@ TEST(SecondJointSender, under_the_joint_node_moves_no_voxel_and_is_named_within_
 wire::Heartbeat own_heartbeat() {
     for (const StampedFrame& entry : recorded().frames) {
         const auto decoded = wire::decode(entry.frame);
-        const auto* told = decoded ? std::get_if<wire::Heartbeat>(&decoded->message) : nullptr;
-        if (told != nullptr && told->state == wire::NodeState::ranging &&
+        const auto* reported = decoded ? std::get_if<wire::Heartbeat>(&decoded->message) : nullptr;
+        if (reported != nullptr && reported->state == wire::NodeState::ranging &&
             decoded->node_id == recorded().setup.rig.joints.node_id)
-            return *told;
+            return *reported;
     }
     return {.state = wire::NodeState::ranging};
 }
@@ -340,11 +340,11 @@ Forged forge_with_refused_samples() {
         if (at_s < kAttackBeginS || at_s > kAttackEndS) continue;
         if (forged.begin.ns == 0) forged.begin = first;
         forged.end = last;
-        wire::Heartbeat told = own_heartbeat();
-        told.is_time_suspect = true;
-        forged.frames.push_back({{first.ns - 1'000}, wire::encode(told, node)});
-        told.is_time_suspect = false;
-        forged.frames.push_back({{last.ns + 1'000}, wire::encode(told, node)});
+        wire::Heartbeat reported = own_heartbeat();
+        reported.is_time_suspect = true;
+        forged.frames.push_back({{first.ns - 1'000}, wire::encode(reported, node)});
+        reported.is_time_suspect = false;
+        forged.frames.push_back({{last.ns + 1'000}, wire::encode(reported, node)});
         if (++count % 2 != 0) continue;
         auto position = sample.position_urad;
         position[0] += static_cast<std::int32_t>(std::lround(1e6 * 0.3 * (at_s - kAttackBeginS)));

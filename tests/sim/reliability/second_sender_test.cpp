@@ -172,13 +172,13 @@ TEST_P(SecondSender, marks_one_reading_at_most_is_named_and_costs_nobody_else_an
     setup.on_reading = attack_on(scenario.sensors, scenario.forge);
     const AttackedBus bus(setup);
     EXPECT_EQ(clean.untrue(), 0U);
-    EXPECT_LE(bus.untrue(), 1U) << bus.pipeline().account_text();
+    EXPECT_LE(bus.untrue(), 1U) << bus.pipeline().inputs_text();
     EXPECT_EQ(bus.wrong_voxels(clean), 0U);
     EXPECT_TRUE(bus.replayed_map() == bus.map());
     expect_others_whole(clean, {});
     expect_others_whole(bus, scenario.sensors);
     EXPECT_FALSE(bus.losing_s().contains(kOther));
-    if (HasFailure()) std::printf("%s", bus.pipeline().account_text().c_str());
+    if (HasFailure()) std::printf("%s", bus.pipeline().inputs_text().c_str());
     for (const auto& sensor : scenario.sensors) {
         const auto named_s = bus.named_s(sensor);
         const bool is_node_refused = bus.refused().contains(sensor.first);
@@ -208,10 +208,10 @@ struct Heard {
 
     void note(const wire::Decoded& said) {
         if (said.node_id != kAttacked.first) return;
-        if (const auto* told = std::get_if<wire::Heartbeat>(&said.message)) heartbeat = *told;
+        if (const auto* reported = std::get_if<wire::Heartbeat>(&said.message)) heartbeat = *reported;
         if (const auto* page = std::get_if<wire::NodeInfo>(&said.message)) pages[page->index()] = *page;
-        const auto* told = std::get_if<wire::SensorHealth>(&said.message);
-        if (told != nullptr && told->sensor == kAttacked.second) health = *told;
+        const auto* reported = std::get_if<wire::SensorHealth>(&said.message);
+        if (reported != nullptr && reported->sensor == kAttacked.second) health = *reported;
     }
 };
 
@@ -247,13 +247,15 @@ std::vector<Switch> switches() {
         other.capture_bound_64us = 255;
         return {other, *heard.health};
     };
-    return {{"capture_bound", by_bound},
-            by_heartbeat("is_time_suspect", [](wire::Heartbeat& told) { told.is_time_suspect = true; }),
-            by_heartbeat("node_hash_low", [](wire::Heartbeat& told) { told.node_hash_low ^= 1U; }),
-            by_page("node_hash", wire::InfoPage::identity,
-                    [](wire::NodeInfo& told) { std::get<wire::InfoIdentity>(told).node_hash ^= 1U << 31U; }),
-            by_page("unique_id", wire::InfoPage::uid_low,
-                    [](wire::NodeInfo& told) { std::get<wire::InfoUidLow>(told).uid[0] ^= 1U; })};
+    return {
+        {"capture_bound", by_bound},
+        by_heartbeat("is_time_suspect", [](wire::Heartbeat& reported) { reported.is_time_suspect = true; }),
+        by_heartbeat("node_hash_low", [](wire::Heartbeat& reported) { reported.node_hash_low ^= 1U; }),
+        by_page(
+            "node_hash", wire::InfoPage::identity,
+            [](wire::NodeInfo& reported) { std::get<wire::InfoIdentity>(reported).node_hash ^= 1U << 31U; }),
+        by_page("unique_id", wire::InfoPage::uid_low,
+                [](wire::NodeInfo& reported) { std::get<wire::InfoUidLow>(reported).uid[0] ^= 1U; })};
 }
 
 class SwitchedOff : public testing::TestWithParam<std::tuple<Switch, Release>> {};
@@ -282,7 +284,7 @@ TEST_P(SwitchedOff, a_sensor_s_own_readings_leave_no_room_for_another_s) {
         BusSetup setup = with_switch(off, is_each);
         setup.release = release;
         const AttackedBus bus(setup);
-        EXPECT_EQ(bus.untrue(), 0U) << bus.pipeline().account_text();
+        EXPECT_EQ(bus.untrue(), 0U) << bus.pipeline().inputs_text();
         EXPECT_EQ(bus.wrong_voxels(clean), 0U);
         EXPECT_TRUE(bus.replayed_map() == bus.map());
         expect_others_whole(bus, {kAttacked});
@@ -397,7 +399,7 @@ TEST(ClockJumps, of_a_node_place_no_reading_wrong_and_are_over_after_two_exchang
             setup.clock_jumps_at_s = at_s;
             setup.clock_jump_us = 1'000 * jump_ms;
             const AttackedBus bus(setup);
-            EXPECT_EQ(bus.untrue(), 0U) << bus.pipeline().account_text();
+            EXPECT_EQ(bus.untrue(), 0U) << bus.pipeline().inputs_text();
             EXPECT_EQ(bus.pipeline().intake().clock(kFirst).relocks(), 1U);
             EXPECT_TRUE(bus.named().empty());
             for (const auto& [sensor, count] : bus.counts())
@@ -424,7 +426,7 @@ TEST(ForgedAnswersToSync, place_no_reading_wrong_cost_nobody_anything_and_are_na
             SCOPED_TRACE(std::to_string(ahead_ms) + " ms, " + std::to_string(delay_us) + " us");
             const AttackedBus bus(
                 {.nodes = 2, .run_s = 12.0, .on_answer = answers_ahead(ahead_ms, delay_us)});
-            EXPECT_EQ(bus.untrue(), 0U) << bus.pipeline().account_text();
+            EXPECT_EQ(bus.untrue(), 0U) << bus.pipeline().inputs_text();
             EXPECT_EQ(bus.wrong_voxels(clean), 0U);
             EXPECT_TRUE(bus.replayed_map() == bus.map());
             expect_others_whole(bus, {});  // the attacked node's as well
@@ -485,7 +487,7 @@ TEST_P(HonestBus, has_nobody_named_and_loses_only_what_the_bus_does) {
         const AttackedBus bus(setup);
         for (const auto& [sensor, at_s] : bus.named())
             ADD_FAILURE() << int{sensor.first} << '.' << int{sensor.second} << " named at " << at_s
-                          << bus.pipeline().account_text();
+                          << bus.pipeline().inputs_text();
         EXPECT_TRUE(bus.named_clocks().empty());
         EXPECT_TRUE(bus.named_words().empty());
         EXPECT_TRUE(bus.losing_s().empty());

@@ -30,14 +30,14 @@ Microseconds pause(std::mt19937& random) {
 }
 
 /// Bounds that were told of a sensor, in steps of 64 us.
-std::vector<std::pair<sim::SimTime, std::int64_t>> bounds_told(const NodeRig& rig, std::uint8_t sensor) {
-    std::vector<std::pair<sim::SimTime, std::int64_t>> told;
+std::vector<std::pair<sim::SimTime, std::int64_t>> bounds_reported(const NodeRig& rig, std::uint8_t sensor) {
+    std::vector<std::pair<sim::SimTime, std::int64_t>> reported;
     for (const SaidMessage& item : rig.said()) {
         const auto* health = std::get_if<wire::SensorHealth>(&item.message);
         if (health != nullptr && health->sensor == sensor)
-            told.emplace_back(item.end, health->capture_bound_64us * std::int64_t{64});
+            reported.emplace_back(item.end, health->capture_bound_64us * std::int64_t{64});
     }
-    return told;
+    return reported;
 }
 
 /// One that was put together before the reading may still come between it and the one that tells of it.
@@ -46,20 +46,20 @@ constexpr Microseconds kToldLateMax{50'000};
 /// Readings whose capture time is further from the truth than the sensor told: last before the range or
 /// since, for the reading may have waited, or first after the reading, when the loop came to that.
 int beyond_their_bounds(const NodeRig& rig, std::uint8_t sensor) {
-    const auto told = bounds_told(rig, sensor);
+    const auto reported = bounds_reported(rig, sensor);
     int beyond = 0;
     for (const SaidReading& said : rig.readings_of(sensor)) {
         const TrueRange* truth = truth_of(rig, sensor, said);
         if (truth == nullptr) continue;  // expect_only_the_truth says so
-        const auto first_at = [&told](sim::SimTime time) {
-            return std::ranges::find_if(told, [time](const auto& item) { return item.first >= time; });
+        const auto first_at = [&reported](sim::SimTime time) {
+            return std::ranges::find_if(reported, [time](const auto& item) { return item.first >= time; });
         };
         const auto after = first_at({said.end.us + kToldLateMax.count()});
         const auto since = first_at(said.end);
-        const auto before = since - std::min<std::ptrdiff_t>(since - told.begin(), 2);
+        const auto before = since - std::min<std::ptrdiff_t>(since - reported.begin(), 2);
         std::int64_t bound_us = 0;
         for (auto item = std::min(before, first_at(truth->window_middle));
-             item != told.end() && item <= after; ++item)
+             item != reported.end() && item <= after; ++item)
             bound_us = std::max(bound_us, item->second);
         const std::int64_t error_us = std::abs(capture_error_us(rig, said, *truth));
         if (error_us <= bound_us) continue;

@@ -158,7 +158,7 @@ void transfer_combined(fuse_req_t request, const void* argument, const void* in,
     }
 }
 
-void tell_functions(fuse_req_t request, const void* argument, std::size_t out_size) {
+void report_functions(fuse_req_t request, const void* argument, std::size_t out_size) {
     const unsigned long functions = I2C_FUNC_I2C;
     if (out_size < sizeof functions) {
         const iovec out = caller_memory(argument, sizeof functions);
@@ -189,7 +189,7 @@ void control_file(fuse_req_t request, int command, void* argument, fuse_file_inf
             transfer_combined(request, argument, in, in_size, out_size);
             return;
         case I2C_FUNCS:
-            tell_functions(request, argument, out_size);
+            report_functions(request, argument, out_size);
             return;
         case I2C_SLAVE:
         case I2C_SLAVE_FORCE:

@@ -95,13 +95,13 @@ wire::CanFrame EndlessLog::in_this_round(const wire::CanFrame& frame) const {
         return found != counts.end() ? found->second : 0U;
     };
     const auto readings = [&](std::uint8_t sensor) { return of(per_round_.readings, Sensor{node, sensor}); };
-    const auto go_on = [&](wire::RangeReading& reading) {
+    const auto advance_time = [&](wire::RangeReading& reading) {
         reading.sequence = advance(reading.sequence, readings(reading.sensor), wire::kSequenceCount);
         reading.capture = advance(reading.capture);
     };
-    if (auto* range = std::get_if<wire::Range>(&decoded.message)) go_on(range->reading);
+    if (auto* range = std::get_if<wire::Range>(&decoded.message)) advance_time(range->reading);
     if (auto* range = std::get_if<wire::RangeFd>(&decoded.message))
-        for (std::size_t i = 0; i < range->count; ++i) go_on(range->entries[i].reading);
+        for (std::size_t i = 0; i < range->count; ++i) advance_time(range->entries[i].reading);
     if (auto* aux = std::get_if<wire::RangeAux>(&decoded.message))
         aux->sequence = advance(aux->sequence, readings(aux->sensor), wire::kSequenceCount);
     if (auto* health = std::get_if<wire::SensorHealth>(&decoded.message))

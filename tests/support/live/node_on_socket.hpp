@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "host/apps/conversation/conversation.hpp"
+#include "host/apps/node_session/node_session.hpp"
 #include "host/io/socketcan/can_socket.hpp"
 #include "tests/support/node_rig.hpp"
 

@@ -35,7 +35,7 @@ class MeasuredMap {
     explicit MeasuredMap(const MappingConfig& mapping) : map_(mapping.map), ranges_(mapping, true) {}
     MeasuredMap(const MappingConfig& mapping, MapState state)
         : map_(std::move(state.map)), ranges_(mapping, true) {
-        ranges_.go_on_with(std::move(state.histories));
+        ranges_.resume_with(std::move(state.histories));
     }
 
     /// `count` measurements, 50 ms apart, from `from_s` on.
@@ -43,7 +43,7 @@ class MeasuredMap {
         std::mt19937 random(seed);
         for (int step = 0; step < steps; ++step) {
             const HostTime now{std::llround((from_s + 0.05 * step) * 1e9)};
-            map_.go_on(now);
+            map_.advance_time(now);
             step % 9 == 8 ? see(random) : range(random, now);
         }
     }

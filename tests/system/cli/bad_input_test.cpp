@@ -41,9 +41,9 @@ TEST_F(BadInput, a_missing_recording_or_a_missing_part_of_it_is_named) {
     EXPECT_EQ(absent.exit_code, 66);
     EXPECT_THAT(absent.output,
                 HasSubstr("nowhere: no such directory; `octoskin record` (of a running daemon)"));
-    const Said untold = octoskin("explain 0 0 1");
-    EXPECT_EQ(untold.exit_code, 64);
-    EXPECT_THAT(untold.output, HasSubstr("`octoskin record`"));
+    const Said unreported = octoskin("explain 0 0 1");
+    EXPECT_EQ(unreported.exit_code, 64);
+    EXPECT_THAT(unreported.output, HasSubstr("`octoskin record`"));
     std::filesystem::create_directory(path("empty"));
     const Said empty = octoskin("explain 0 0 1 --recording " + path("empty"));
     EXPECT_EQ(empty.exit_code, 66);

@@ -231,7 +231,7 @@ TEST_F(DataSet, without_images_is_named_by_its_list) {
     write(path("set/depth.txt"), "# no image\n");
     const Said said = octoskin("replay " + path("set"));
     EXPECT_EQ(said.exit_code, 65) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("set/depth.txt: names no image"));
+    EXPECT_THAT(said.output, HasSubstr("set/depth.txt: it names no image"));
 }
 
 TEST_F(DataSet, has_no_truth_to_be_judged_by) {

@@ -13,7 +13,7 @@
 #include <sstream>
 #include <vector>
 
-#include "host/apps/daemon/map_keeper.hpp"
+#include "host/apps/daemon/map_saver.hpp"
 #include "tests/system/cli/folder_states.hpp"
 #include "tests/system/cli/folder_traps.hpp"
 #include "tests/system/cli/program.hpp"
@@ -193,7 +193,7 @@ TEST_F(FolderWalk, a_killed_save_of_the_map_is_finished_by_a_repair) {
     fs::create_directories(maps);
     FusedMap map(MapConfig{});
     ASSERT_TRUE(map.set_cube({.lowest = {64, 0, 0}, .height = 5}, 1.0F));
-    ASSERT_EQ(MapKeeper::write_map(map, {}, NamedFolder(maps)), "");
+    ASSERT_EQ(MapSaver::write_map(map, {}, NamedFolder(maps)), "");
     const std::string snapshot = content(maps / "fused.snapshot");
     fs::rename(maps / "fused.snapshot", draft);
     EXPECT_EQ(octoskin("repair " + maps.string()).exit_code, 0);

@@ -74,7 +74,7 @@ TEST_F(Interrupted, simulate_and_experiment_leave_nothing) {
 }
 
 TEST_F(Interrupted, is_in_the_help_where_exit_codes_are) {
-    EXPECT_THAT(octoskin("--help").output, HasSubstr("130, 143 interrupted"));
+    EXPECT_THAT(octoskin("--help").output, HasSubstr("130, 131, 143 interrupted"));
 }
 
 }  // namespace

@@ -202,8 +202,8 @@ class OverwriteByExperiment : public Overwrite {
         const Said said = experiment();
         EXPECT_EQ(said.exit_code, 73) << said.output;
         EXPECT_THAT(said.output,
-                    AllOf(HasSubstr(path("out") + ": has a " + name +
-                                    " that is not an unchanged result of an experiment"),
+                    AllOf(HasSubstr(path("out") + ": contains " + name +
+                                    ", which is not an unchanged result of an experiment"),
                           HasSubstr("give another directory"), testing::Not(HasSubstr("ground truth"))));
     }
 };

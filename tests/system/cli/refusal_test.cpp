@@ -86,8 +86,8 @@ TEST_F(Refusal, of_a_recording_names_the_part_that_is_wrong) {
     std::filesystem::create_directory(path("set"));
     write(path("set/depth.txt"), "1.0 depth/1.png\n");
     expect_each({
-        {"replay " + path("lonely"), 66, "depth.epoch.yaml: no such file, but depth.oni is there"},
-        {"replay " + path("other"), 66, "depth.oni: no such file, but depth.epoch.yaml is there"},
+        {"replay " + path("lonely"), 66, "depth.epoch.yaml: no such file, but depth.oni exists"},
+        {"replay " + path("other"), 66, "depth.oni: no such file, but depth.epoch.yaml exists"},
         {"replay " + path("robto"), 65, "meta.yaml:2: source: expected robot or simulation, found 'robto'"},
         {"replay " + path("set"), 66, "groundtruth.txt: no such file"},
     });

@@ -106,7 +106,7 @@ class BusyLoopTest : public testing::Test {
 };
 
 TEST_F(BusyLoopTest, takes_no_image_of_the_camera_for_one_of_the_future) {
-    const auto& frames = pipeline_.accounts().depth_frames;
+    const auto& frames = pipeline_.inputs().depth_frames;
     std::uint64_t before = 0;
     ASSERT_TRUE(run([&](const Inputs&) { return frames.in() > 0; },
                     [&] {
@@ -119,7 +119,7 @@ TEST_F(BusyLoopTest, takes_no_image_of_the_camera_for_one_of_the_future) {
 
 // Each takes its place among the frames by when it came, and is dated by that.
 TEST_F(BusyLoopTest, takes_joint_states_as_if_it_had_read_them_when_they_came) {
-    const auto& samples = pipeline_.accounts().joint_samples;
+    const auto& samples = pipeline_.inputs().joint_samples;
     std::uint64_t used_before = 0;
     std::uint64_t rejected_before = 0;
     ASSERT_TRUE(run(

@@ -48,12 +48,12 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
     const auto wall = record_wall(folder_);
     start({"--camera", wall.string()});
     const auto took = daemon_->wait_until(
-        [](const Json& status) { return status["account"]["depth frames"]["used"].get<int>() >= 5; }, 15s);
-    ASSERT_TRUE(took) << daemon_->status()["account"].dump(1) << daemon_->log();
+        [](const Json& status) { return status["inputs"]["depth frames"]["used"].get<int>() >= 5; }, 15s);
+    ASSERT_TRUE(took) << daemon_->status()["inputs"].dump(1) << daemon_->log();
     const Json status = daemon_->status();
     EXPECT_TRUE(status["camera"]["open"].get<bool>());
     // The first ones come before there is a pose.
-    for (const auto& [reason, count] : status["account"]["depth frames"]["rejected"].items()) {
+    for (const auto& [reason, count] : status["inputs"]["depth frames"]["rejected"].items()) {
         const bool is_of_start = reason == "joints_missing" || reason == "outside_marks";
         EXPECT_TRUE(is_of_start || reason == "queue_overflow") << reason << ": " << count;
     }
@@ -62,10 +62,11 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
     std::filesystem::remove(wall);
     const std::string helper = "pkill -KILL -f '[o]ctoskin-film " + wall.string() + "'";
     ASSERT_EQ(std::system(helper.c_str()), 0);
-    const auto told = daemon_->wait_until([](const Json& now) { return has_problem(now, "camera:"); }, 3s);
-    ASSERT_TRUE(told);
-    EXPECT_LE(*told, 1s);
-    const auto used = [](const Json& now) { return now["account"]["readings"]["used"].get<int>(); };
+    const auto reported =
+        daemon_->wait_until([](const Json& now) { return has_problem(now, "camera:"); }, 3s);
+    ASSERT_TRUE(reported);
+    EXPECT_LE(*reported, 1s);
+    const auto used = [](const Json& now) { return now["inputs"]["readings"]["used"].get<int>(); };
     const int before = used(daemon_->status());
     EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) > before; }, 2s)) << "they stand";
     (void)record_wall(folder_);
@@ -73,46 +74,46 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
         [](const Json& now) { return now.value(Json::json_pointer("/camera/open"), false); }, 10s);
     ASSERT_TRUE(back) << daemon_->log();
     std::printf("named %ld ms after it was gone, back %ld ms after it was there again\n",
-                static_cast<long>(told->count()), static_cast<long>(back->count()));
+                static_cast<long>(reported->count()), static_cast<long>(back->count()));
     EXPECT_LE(*back, 5s);
 }
 
 TEST_F(DaemonTest, says_that_the_bus_is_silent_when_it_cannot_use_the_camera_for_that) {
     start({"--camera", record_wall(folder_, 24).string()});
-    const auto used = [](const Json& now) { return now["account"]["depth frames"]["used"].get<int>(); };
+    const auto used = [](const Json& now) { return now["inputs"]["depth frames"]["used"].get<int>(); };
     ASSERT_TRUE(
         daemon_->wait_until([&](const Json& now) { return used(now) >= 5 && now["problems"].empty(); }, 20s))
-        << daemon_->status()["account"].dump(1) << daemon_->log();
+        << daemon_->status()["inputs"].dump(1) << daemon_->log();
     for (const wire::NodeId node : kAllNodes) bus_->silence(node, true);
-    const auto told = daemon_->wait_until(
+    const auto reported = daemon_->wait_until(
         [](const Json& now) { return has_problem(now, "not used, because the bus is silent"); }, 5s);
-    ASSERT_TRUE(told) << daemon_->status()["problems"].dump(1);
+    ASSERT_TRUE(reported) << daemon_->status()["problems"].dump(1);
     EXPECT_FALSE(has_problem(daemon_->status(), "see the counters of depth frames"));
-    const auto is_told = daemon_->wait_until(
+    const auto is_reported = daemon_->wait_until(
         [](const Json& now) {
-            return now["account"]["depth frames"]["rejected"].value("joints_missing", 0) >= 20;
+            return now["inputs"]["depth frames"]["rejected"].value("joints_missing", 0) >= 20;
         },
         5s);
-    EXPECT_TRUE(is_told) << daemon_->status()["account"]["depth frames"].dump(1);
+    EXPECT_TRUE(is_reported) << daemon_->status()["inputs"]["depth frames"].dump(1);
     const int used_then = used(daemon_->status());
     for (const wire::NodeId node : kAllNodes) bus_->silence(node, false);
     const auto back = daemon_->wait_until(
         [&](const Json& now) { return used(now) > used_then + 5 && !has_problem(now, "bus is silent"); },
         10s);
-    EXPECT_TRUE(back) << daemon_->status()["problems"].dump(1) << daemon_->status()["account"].dump(1);
+    EXPECT_TRUE(back) << daemon_->status()["problems"].dump(1) << daemon_->status()["inputs"].dump(1);
 }
 
 TEST_F(DaemonTest, goes_on_with_a_camera_that_sees_no_robot_when_the_bus_falls_silent) {
     const auto file = folder_.write("mapping.yaml", "base: robust\nremoves_robot_from_depth: false\n");
     start({"--camera", record_wall(folder_, 24).string(), "--configuration", file.string()});
-    const auto used = [](const Json& now) { return now["account"]["depth frames"]["used"].get<int>(); };
+    const auto used = [](const Json& now) { return now["inputs"]["depth frames"]["used"].get<int>(); };
     ASSERT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) >= 5 && is_ranging(now); }, 20s))
-        << daemon_->status()["account"].dump(1) << daemon_->log();
+        << daemon_->status()["inputs"].dump(1) << daemon_->log();
     for (const wire::NodeId node : kAllNodes) bus_->silence(node, true);
     ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return has_problem(now, "node 1"); }, 5s));
     const int used_then = used(daemon_->status());
     EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) > used_then + 30; }, 15s))
-        << daemon_->status()["account"].dump(1);
+        << daemon_->status()["inputs"].dump(1);
     EXPECT_FALSE(has_problem(daemon_->status(), "camera: "));
 }
 
@@ -121,16 +122,16 @@ TEST_F(DaemonTest, goes_on_with_camera_and_joint_socket_when_the_adapter_is_gone
     start({"--camera", record_wall(folder_, 24).string(), "--joints", (folder_ / "joints").string()});
     ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
     const JointFeeder joints(daemon_->joints());
-    const auto used = [](const Json& now) { return now["account"]["depth frames"]["used"].get<int>(); };
+    const auto used = [](const Json& now) { return now["inputs"]["depth frames"]["used"].get<int>(); };
     EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) >= 5; }, 20s))
-        << daemon_->status()["account"].dump(1) << daemon_->log();
+        << daemon_->status()["inputs"].dump(1) << daemon_->log();
     bus_.reset();
     our_end_ = -1;
     EXPECT_TRUE(daemon_->wait_until([](const Json& now) { return now["can"]["state"] == "absent"; }, 3s));
     // Ten images a second; a node's clock is trusted for 5 s after its last exchange.
     const int used_then = used(daemon_->status());
     EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) > used_then + 80; }, 30s))
-        << daemon_->status()["account"].dump(1);
+        << daemon_->status()["inputs"].dump(1);
     EXPECT_FALSE(has_problem(daemon_->status(), "the time is not known"));
     EXPECT_LT(daemon_->status()["camera"]["untimed"].get<int>(), 12)
         << "four at first; the film began anew four times since, and its time went on";

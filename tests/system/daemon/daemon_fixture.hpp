@@ -56,7 +56,7 @@ class DaemonTest : public testing::Test {
     };
     [[nodiscard]] Pause hold_up(std::chrono::milliseconds duration) const;
     static int readings_used(const nlohmann::json& status) {
-        return status["account"]["readings"]["used"].get<int>();
+        return status["inputs"]["readings"]["used"].get<int>();
     }
     static bool is_ranging(const nlohmann::json& status) { return readings_used(status) > 100; }
     static bool has_problem(const nlohmann::json& status, const std::string& text);

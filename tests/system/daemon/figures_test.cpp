@@ -50,8 +50,8 @@ double processor_seconds(pid_t process) {
 }
 
 std::chrono::seconds duration() {
-    const char* const told = std::getenv("OCTOSKIN_FIGURES_SECONDS");
-    return std::chrono::seconds(told != nullptr ? std::atoi(told) : 5);
+    const char* const reported = std::getenv("OCTOSKIN_FIGURES_SECONDS");
+    return std::chrono::seconds(reported != nullptr ? std::atoi(reported) : 5);
 }
 
 class DaemonFigures : public DaemonTest {
@@ -71,7 +71,7 @@ class DaemonFigures : public DaemonTest {
         const double took_s = std::chrono::duration<double>(Clock::now() - begun).count();
 
         const auto grown = [&](const char* unit, const char* count) {
-            return after["account"][unit][count].get<double>() - before["account"][unit][count].get<double>();
+            return after["inputs"][unit][count].get<double>() - before["inputs"][unit][count].get<double>();
         };
         double clock_error_ms = 0;
         // It may be in doubt just now: nobody stamps the echo of our own SYNC on this bus, and its nodes are

@@ -103,15 +103,15 @@ int readings_lost(const Json& before, const Json& after) {
                                                   "self_hit",          "status_fault",    "sigma_above_max",
                                                   "contradicts_camera"};
     int lost = 0;
-    const Json& rejected = after["account"]["readings"]["rejected"];
+    const Json& rejected = after["inputs"]["readings"]["rejected"];
     for (const auto& [reason, count] : rejected.items()) {
         if (of_the_reading.contains(reason)) continue;
-        lost += count.get<int>() - before["account"]["readings"]["rejected"].value(reason, 0);
+        lost += count.get<int>() - before["inputs"]["readings"]["rejected"].value(reason, 0);
     }
     return lost;
 }
 int readings_in(const Json& status) {
-    return status["account"]["readings"]["in"].get<int>();
+    return status["inputs"]["readings"]["in"].get<int>();
 }
 std::uint64_t taken_from_flood(const Json& status) {
     std::uint64_t sum = 0;
@@ -137,7 +137,7 @@ TEST_F(DaemonTest, uses_the_readings_of_the_bus_while_another_program_floods_the
                     static_cast<double>(taken_from_flood(after) - taken_from_flood(before)) / 2.0, lost,
                     came);
         EXPECT_GT(came, 1'900) << "34 sensors at 30 Hz, 2 s";
-        EXPECT_LE(lost, came / 100) << after["account"]["readings"].dump();
+        EXPECT_LE(lost, came / 100) << after["inputs"]["readings"].dump();
         EXPECT_GT(taken_from_flood(after) - taken_from_flood(before), 10'000U) << "that was no flood";
         EXPECT_GT(after["joints_socket"]["surplus"], before["joints_socket"]["surplus"]);
         EXPECT_TRUE(has_problem(after, "more than one program may send")) << after["problems"].dump();
@@ -149,14 +149,14 @@ TEST_F(DaemonTest, maps_on_in_a_flood_of_joint_states_tells_of_it_and_ends_in_ti
     ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
     const Flood flood(daemon_->joints());
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->status().dump(1) << daemon_->log();
-    const auto is_told = daemon_->wait_until(
+    const auto is_reported = daemon_->wait_until(
         [](const Json& now) { return has_problem(now, "faster than they can be taken"); }, 5s);
-    EXPECT_TRUE(is_told) << daemon_->status()["joints_socket"].dump();
+    EXPECT_TRUE(is_reported) << daemon_->status()["joints_socket"].dump();
     const Json before = daemon_->status();
     const auto begun = std::chrono::steady_clock::now();
     const int sent_before = flood.sent();
     int answers = 0;
-    int told = 0;
+    int reported = 0;
     std::chrono::steady_clock::duration slowest{};
     for (; std::chrono::steady_clock::now() - begun < 4s; std::this_thread::sleep_for(50ms)) {
         const auto asked = std::chrono::steady_clock::now();
@@ -166,7 +166,7 @@ TEST_F(DaemonTest, maps_on_in_a_flood_of_joint_states_tells_of_it_and_ends_in_ti
         ++answers;
         // On a busy machine the flood has its pauses; nothing else is wrong at any time.
         ASSERT_LE(now["problems"].size(), 1U) << now["problems"].dump(1);
-        if (!now["problems"].empty()) ++told;
+        if (!now["problems"].empty()) ++reported;
     }
     const Json after = daemon_->status();
     const int readings = readings_used(after) - readings_used(before);
@@ -174,10 +174,10 @@ TEST_F(DaemonTest, maps_on_in_a_flood_of_joint_states_tells_of_it_and_ends_in_ti
         "%d of a flood of %d a second, %d answers: %d readings used; %s\n",
         after["joints_socket"]["displaced"].get<int>() - before["joints_socket"]["displaced"].get<int>(),
         (flood.sent() - sent_before) / 4, answers, readings, after["clock"].dump().c_str());
-    EXPECT_GT(told, answers / 2) << "the flood is told of as long as it lasts";
+    EXPECT_GT(reported, answers / 2) << "the flood is told of as long as it lasts";
     EXPECT_GT(readings, 800);
     EXPECT_LE(readings_lost(before, after), (readings_in(after) - readings_in(before)) / 100)
-        << after["account"]["readings"].dump();
+        << after["inputs"]["readings"].dump();
     EXPECT_LT(slowest, 1s) << "what is wrong is named within a second";
     EXPECT_EQ(after["clock"]["steps_back"], 0) << after["clock"].dump();
     EXPECT_EQ(after["clock"]["stamps_ignored"], 0) << after["clock"].dump();

@@ -11,8 +11,8 @@
 #include <string>
 #include <thread>
 
-#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/io/orderlog/order_reader.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"

@@ -197,7 +197,7 @@ TEST(JointsCommand, refuses_lines_of_another_number_of_joints_wherever_they_go) 
                                     " 2> " + (folder / "log").string();
         EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69) << way;
         const std::string log = testing_support::ScratchFolder::read(folder / "log");
-        EXPECT_NE(log.find("wrong_count: 3 numbers, the rig has 7 joints: 1 2 3 (wanted: [TIME] Q1 ... QN"),
+        EXPECT_NE(log.find("wrong_count: 3 numbers, the rig has 7 joints: 1 2 3 (expected: [TIME] Q1 ... QN"),
                   std::string::npos)
             << log;
     }

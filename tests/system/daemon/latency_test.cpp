@@ -18,8 +18,8 @@
 #include <thread>
 #include <vector>
 
-#include "host/apps/daemon/asking.hpp"
-#include "host/apps/querying/query_request.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
+#include "host/apps/query/query_request.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 
@@ -44,7 +44,7 @@ struct Latency {
 };
 
 int used(const nlohmann::json& status, const char* unit) {
-    return status["account"][unit]["used"].get<int>();
+    return status["inputs"][unit]["used"].get<int>();
 }
 
 double rss_mib(pid_t process) {

@@ -32,10 +32,10 @@ TEST_F(DaemonTest, names_a_node_that_falls_silent_where_nobody_sends_sync) {
         15s))
         << daemon_->status()["nodes"].dump(1) << daemon_->log();
     bus_->silence(2, true);
-    const auto told = daemon_->wait_until(
+    const auto reported = daemon_->wait_until(
         [](const Json& now) { return has_problem(now, "node 2 'front_rings': lost"); }, 3s);
-    ASSERT_TRUE(told) << daemon_->status()["problems"].dump(1);
-    EXPECT_LE(*told, 1s);
+    ASSERT_TRUE(reported) << daemon_->status()["problems"].dump(1);
+    EXPECT_LE(*reported, 1s);
     const Json status = daemon_->status();
     EXPECT_EQ(status["nodes"][0]["verdict"], "usable");
     EXPECT_FALSE(status["clock"]["known"].get<bool>());
@@ -54,11 +54,11 @@ TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it)
     const auto took = daemon_->wait_until(
         [&status](const Json& now) {
             status = now;
-            return is_ranging(now) && now["account"]["depth frames"]["used"].get<int>() >= 5 &&
+            return is_ranging(now) && now["inputs"]["depth frames"]["used"].get<int>() >= 5 &&
                    now["problems"].empty();
         },
         15s);
-    ASSERT_TRUE(took) << status["problems"].dump(1) << status["account"].dump(1) << daemon_->log();
+    ASSERT_TRUE(took) << status["problems"].dump(1) << status["inputs"].dump(1) << daemon_->log();
     EXPECT_LT(status["nodes"][0]["age_s"].get<double>(), 1.0);
     EXPECT_EQ(bus_->frames_heard(), 0U);
 
@@ -68,11 +68,11 @@ TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it)
     const auto noticed = daemon_->wait_until(
         [](const Json& now) { return now["clock"]["follow_up_outliers"].get<int>() == 1; }, 5s);
     ASSERT_TRUE(noticed) << daemon_->status()["clock"].dump();
-    const int used = daemon_->status()["account"]["depth frames"]["used"].get<int>();
+    const int used = daemon_->status()["inputs"]["depth frames"]["used"].get<int>();
     const auto again = daemon_->wait_until(
-        [&](const Json& now) { return now["account"]["depth frames"]["used"].get<int>() > used + 10; }, 10s);
-    ASSERT_TRUE(again) << daemon_->status()["account"].dump(1);
-    const Json rejected = daemon_->status()["account"]["depth frames"]["rejected"];
+        [&](const Json& now) { return now["inputs"]["depth frames"]["used"].get<int>() > used + 10; }, 10s);
+    ASSERT_TRUE(again) << daemon_->status()["inputs"].dump(1);
+    const Json rejected = daemon_->status()["inputs"]["depth frames"]["rejected"];
     EXPECT_EQ(rejected.count("out_of_order"), 0U) << rejected.dump();
     EXPECT_EQ(daemon_->status()["clock"]["follow_up_outliers"], 1);
 }
@@ -83,12 +83,13 @@ TEST_F(DaemonTest, counts_its_cameras_frames_as_untimed_until_somebody_tells_the
     const auto frames = [](const Json& now) { return now["camera"]["frames"].get<int>(); };
     ASSERT_TRUE(daemon_->wait_until([&](const Json& now) { return frames(now) >= 20; }, 20s))
         << daemon_->status()["camera"].dump() << daemon_->log();
-    const Json untold = daemon_->status();
-    EXPECT_GE(untold["camera"]["untimed"].get<int>(), frames(untold) - 3) << "what waits is not counted yet";
-    EXPECT_EQ(untold["account"]["depth frames"]["in"], 0);
+    const Json unreported = daemon_->status();
+    EXPECT_GE(unreported["camera"]["untimed"].get<int>(), frames(unreported) - 3)
+        << "what waits is not counted yet";
+    EXPECT_EQ(unreported["inputs"]["depth frames"]["in"], 0);
     bus_->speak_as_host(std::chrono::minutes(15));
     EXPECT_TRUE(daemon_->wait_until(
-        [](const Json& now) { return now["account"]["depth frames"]["in"].get<int>() >= 10; }, 30s))
+        [](const Json& now) { return now["inputs"]["depth frames"]["in"].get<int>() >= 10; }, 30s))
         << daemon_->status()["camera"].dump();
 }
 

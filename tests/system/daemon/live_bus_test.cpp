@@ -23,8 +23,8 @@ TEST_F(DaemonTest, maps_a_live_bus_says_how_quick_it_is_and_saves_at_the_end) {
     std::this_thread::sleep_for(3s);
     const Json status = daemon_->status();
     EXPECT_TRUE(status["problems"].empty()) << status["problems"].dump(1);
-    for (const auto& unit : status["account"]) EXPECT_TRUE(unit["balanced"].get<bool>()) << unit.dump();
-    const auto readings = status["account"]["readings"];
+    for (const auto& unit : status["inputs"]) EXPECT_TRUE(unit["balanced"].get<bool>()) << unit.dump();
+    const auto readings = status["inputs"]["readings"];
     std::printf(
         "first 100 readings %ld ms after the start; %d readings on the map; from frame to map %.2f ms "
         "median, "
@@ -88,33 +88,33 @@ TEST_F(DaemonTest, refuses_a_node_that_babbles_and_takes_it_back_while_the_other
         return readings;
     };
     bus_->let_babble(2);
-    const auto told = daemon_->wait_until(
+    const auto reported = daemon_->wait_until(
         [](const Json& status) {
             return status["nodes"][1]["verdict"] == "babbling" &&
                    has_problem(status, "node 2 'front_rings': babbling");
         },
         10s);
-    ASSERT_TRUE(told) << daemon_->status()["problems"].dump(1);
+    ASSERT_TRUE(reported) << daemon_->status()["problems"].dump(1);
     // Its readings are refused, and those of the other node go on the map.
     const Json then = daemon_->status();
     Json status;
     const auto went_on = daemon_->wait_until(
         [&](const Json& now) {
             status = now;
-            const auto& readings = now["account"]["readings"];
+            const auto& readings = now["inputs"]["readings"];
             return received(now, 0) > received(then, 0) + 1'000 &&
-                   readings["used"].get<int>() > then["account"]["readings"]["used"].get<int>() + 700 &&
+                   readings["used"].get<int>() > then["inputs"]["readings"]["used"].get<int>() + 700 &&
                    readings["rejected"].value("node_babbling", 0) > 500;
         },
         15s);
-    ASSERT_TRUE(went_on) << status["account"]["readings"].dump(1);
+    ASSERT_TRUE(went_on) << status["inputs"]["readings"].dump(1);
     EXPECT_FALSE(has_problem(status, "node 1 'rear_rings': babbling"));
     bus_->let_babble(std::nullopt);
     const auto back =
         daemon_->wait_until([](const Json& now) { return now["nodes"][1]["verdict"] == "usable"; }, 10s);
     ASSERT_TRUE(back) << daemon_->status()["problems"].dump(1);
     std::printf("refused %ld ms after it began, taken back %ld ms after it stopped\n",
-                static_cast<long>(told->count()), static_cast<long>(back->count()));
+                static_cast<long>(reported->count()), static_cast<long>(back->count()));
     EXPECT_NE(daemon_->log().find("node 2 'front_rings': babbling (over "), std::string::npos)
         << daemon_->log();
 }
@@ -128,7 +128,7 @@ TEST_F(DaemonTest, loses_nothing_of_the_bus_when_it_has_no_processor_for_half_a_
         << "at once: half of those of 34 sensors at 30 Hz are used";
     EXPECT_EQ(after["clock"], before["clock"]) << "no step of the clock";
     const auto rejected = [](const Json& now, const char* reason) {
-        return now["account"]["readings"]["rejected"].value(reason, 0);
+        return now["inputs"]["readings"]["rejected"].value(reason, 0);
     };
     for (const char* reason : {"no_host_time", "too_old", "node_lost"})
         EXPECT_EQ(rejected(after, reason), rejected(before, reason)) << reason;
@@ -142,9 +142,9 @@ TEST_F(DaemonTest, catches_up_with_the_bus_after_it_had_no_processor_for_two_sec
     const auto caught_up = daemon_->wait_until(
         [&](const Json& now) { return readings_used(now) > used + 1'000 && now["problems"].empty(); }, 15s);
     const Json status = daemon_->status();
-    ASSERT_TRUE(caught_up) << status["problems"].dump(1) << status["account"].dump(1);
+    ASSERT_TRUE(caught_up) << status["problems"].dump(1) << status["inputs"].dump(1);
     std::printf("on the map as before %ld ms after it went on\n", static_cast<long>(caught_up->count()));
-    for (const auto& unit : status["account"]) EXPECT_TRUE(unit["balanced"].get<bool>()) << unit.dump();
+    for (const auto& unit : status["inputs"]) EXPECT_TRUE(unit["balanced"].get<bool>()) << unit.dump();
     EXPECT_EQ(status["clock"]["times_back"], 0);
 }
 
@@ -166,7 +166,7 @@ TEST_F(DaemonTest, has_readings_on_the_map_within_a_second_after_the_bus_was_cut
         // A machine that has no time for us is asked again: what is late of itself is late every time.
         auto back = back_after(gap);
         for (int i = 0; i < 2 && back && *back > 1s; ++i) back = back_after(gap);
-        ASSERT_TRUE(back) << daemon_->status()["problems"].dump(1) << daemon_->status()["account"].dump(1);
+        ASSERT_TRUE(back) << daemon_->status()["problems"].dump(1) << daemon_->status()["inputs"].dump(1);
         std::printf("on the map again %ld ms after a gap of %ld ms\n", static_cast<long>(back->count()),
                     static_cast<long>(gap.count()));
         EXPECT_LE(*back, 1s) << gap.count() << " ms";
@@ -177,9 +177,9 @@ TEST_F(DaemonTest, names_joint_states_that_stop) {
     start();
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
     bus_->silence(3, true);
-    const auto told = daemon_->wait_until(
+    const auto reported = daemon_->wait_until(
         [](const Json& status) { return has_problem(status, "joint states have stopped"); }, 3s);
-    ASSERT_TRUE(told) << daemon_->status()["problems"].dump(1);
+    ASSERT_TRUE(reported) << daemon_->status()["problems"].dump(1);
     bus_->silence(3, false);
     EXPECT_TRUE(daemon_->wait_until([](const Json& status) { return status["problems"].empty(); }, 5s))
         << daemon_->status()["problems"].dump(1);
@@ -196,15 +196,15 @@ TEST_F(DaemonTest, takes_joint_states_from_a_program_of_this_machine) {
     std::thread forwarder([&] { EXPECT_EQ(std::system(command.c_str()), 0); });
     const auto took = daemon_->wait_until(
         [](const Json& status) {
-            return is_ranging(status) && status["account"]["joint samples"]["used"].get<int>() > 50;
+            return is_ranging(status) && status["inputs"]["joint samples"]["used"].get<int>() > 50;
         },
         15s);
     EXPECT_TRUE(took) << daemon_->status().dump(1);
     const Json status = daemon_->status();
     EXPECT_GT(status["joints_socket"]["samples"].get<int>(), 50);
     EXPECT_GT(status["joints_socket"]["joint_node_ignored"].get<int>(), 100);
-    EXPECT_EQ(status["account"]["joint samples"]["rejected"].count("contradictory"), 0U) << status.dump(1);
-    EXPECT_LE(status["account"]["joint samples"]["in"].get<int>(),
+    EXPECT_EQ(status["inputs"]["joint samples"]["rejected"].count("contradictory"), 0U) << status.dump(1);
+    EXPECT_LE(status["inputs"]["joint samples"]["in"].get<int>(),
               status["joints_socket"]["samples"].get<int>());
     forwarder.join();
 }
@@ -214,10 +214,10 @@ TEST_F(DaemonTest, says_that_the_adapter_is_gone) {
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
     bus_.reset();
     our_end_ = -1;
-    const auto told =
+    const auto reported =
         daemon_->wait_until([](const Json& status) { return status["can"]["state"] == "absent"; }, 3s);
-    ASSERT_TRUE(told);
-    EXPECT_LE(*told, 1s);
+    ASSERT_TRUE(reported);
+    EXPECT_LE(*reported, 1s);
     daemon_->signal(SIGTERM);
     EXPECT_EQ(daemon_->wait(5s), 0) << daemon_->log();
 }

@@ -9,7 +9,7 @@
 #include "common/wire/crc.hpp"
 #include "host/apps/daemon/record_requests.hpp"
 #include "host/apps/daemon/settings.hpp"
-#include "host/apps/querying/query_answer.hpp"
+#include "host/apps/query/query_answer.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "host/io/snapshot/snapshot_file.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
@@ -66,7 +66,7 @@ class DaemonOnFrames {
             QueryRequest asked;
             asked.path = path;
             FusedMap map = pipeline_.map().copy();
-            map.go_on(*now());
+            map.advance_time(*now());
             QueryGround ground{
                 &settings_.host.rig, &settings_.host.robot, std::move(map), upright, nullptr, true};
             auto answer = answer_query(asked, std::move(ground));

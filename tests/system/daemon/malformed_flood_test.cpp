@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 
 namespace octoskin::test {

@@ -115,9 +115,9 @@ TEST_F(DaemonTest, reloads_all_or_nothing) {
     EXPECT_EQ(daemon_->status()["rig"], "second");
     EXPECT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
     const std::string log = daemon_->log();
-    const auto told = log.find("expected the path of a file");
-    EXPECT_NE(told, std::string::npos) << log;
-    EXPECT_EQ(log.find("expected the path of a file", told + 1), std::string::npos) << "twice:\n" << log;
+    const auto reported = log.find("expected the path of a file");
+    EXPECT_NE(reported, std::string::npos) << log;
+    EXPECT_EQ(log.find("expected the path of a file", reported + 1), std::string::npos) << "twice:\n" << log;
 }
 
 /// What the nodes and the clock told is learnt anew, which takes a while: nothing is wrong meanwhile.
@@ -166,10 +166,10 @@ TEST_F(DaemonTest, maps_on_in_a_storm_of_sighup_and_obeys_the_last) {
     EXPECT_GE(after["reloads"]["unchanged"].get<int>(), 1);
     EXPECT_EQ(after["reloads"]["count"], 0);
     // 68 sensors of this rig at 30 Hz, of which many hit something: 4 s have thousands.
-    const auto in_of = [](const Json& now) { return now["account"]["readings"]["in"].get<int>(); };
+    const auto in_of = [](const Json& now) { return now["inputs"]["readings"]["in"].get<int>(); };
     const int came = in_of(after) - in_of(before);
     EXPECT_GT(came, 500);
-    EXPECT_GT(readings_used(after) - readings_used(before), 0.2 * came) << after["account"]["readings"];
+    EXPECT_GT(readings_used(after) - readings_used(before), 0.2 * came) << after["inputs"]["readings"];
     folder_.write("rig.yaml", rig_named("second"));
     storm(100ms);
     EXPECT_TRUE(daemon_->wait_until([](const Json& now) { return now["rig"] == "second"; }, 10s));
@@ -263,7 +263,7 @@ class ServiceManager {
     ServiceManager(const ServiceManager&) = delete;
     ServiceManager& operator=(const ServiceManager&) = delete;
     /// Reads on until it is told so.
-    [[nodiscard]] bool is_told(const std::string& what, std::chrono::milliseconds patience) const {
+    [[nodiscard]] bool is_reported(const std::string& what, std::chrono::milliseconds patience) const {
         const auto end = std::chrono::steady_clock::now() + patience;
         while (std::chrono::steady_clock::now() < end) {
             pollfd readable{socket_, POLLIN, 0};
@@ -284,15 +284,15 @@ class ServiceManager {
 TEST_F(DaemonTest, tells_its_service_manager_of_readiness_life_reloads_and_its_end) {
     const ServiceManager manager(folder_ / "notify");
     start();
-    EXPECT_TRUE(manager.is_told("EXTEND_TIMEOUT_USEC=90000000", 10s))
+    EXPECT_TRUE(manager.is_reported("EXTEND_TIMEOUT_USEC=90000000", 10s))
         << "more with a large map" << daemon_->log();
-    EXPECT_TRUE(manager.is_told("READY=1", 10s)) << daemon_->log();
-    for (int i = 0; i < 5; ++i) EXPECT_TRUE(manager.is_told("WATCHDOG=1", 400ms)) << "it would be killed";
+    EXPECT_TRUE(manager.is_reported("READY=1", 10s)) << daemon_->log();
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(manager.is_reported("WATCHDOG=1", 400ms)) << "it would be killed";
     daemon_->signal(SIGHUP);
-    EXPECT_TRUE(manager.is_told("RELOADING=1", 2s));
-    EXPECT_TRUE(manager.is_told("READY=1", 2s));
+    EXPECT_TRUE(manager.is_reported("RELOADING=1", 2s));
+    EXPECT_TRUE(manager.is_reported("READY=1", 2s));
     daemon_->signal(SIGTERM);
-    EXPECT_TRUE(manager.is_told("STOPPING=1", 2s));
+    EXPECT_TRUE(manager.is_reported("STOPPING=1", 2s));
     EXPECT_EQ(daemon_->wait(5s), 0);
 }
 

@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
-#include "host/apps/querying/query_request.hpp"
+#include "host/apps/query/query_request.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
 #include "tests/system/said.hpp"

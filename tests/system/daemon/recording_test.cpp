@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
@@ -73,7 +73,7 @@ TEST_F(DaemonRecording, begun_in_mid_run_gives_the_daemons_own_map_byte_for_byte
     start({"--camera", wall.string()});
     ASSERT_TRUE(daemon_->wait_until(
         [](const Json& status) {
-            return is_ranging(status) && status["account"]["depth frames"]["used"].get<int>() >= 3;
+            return is_ranging(status) && status["inputs"]["depth frames"]["used"].get<int>() >= 3;
         },
         20s))
         << daemon_->log();
@@ -335,9 +335,9 @@ TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {
     EXPECT_TRUE(daemon_->status()["recording"].is_null()) << "a refusal leaves no trace";
     EXPECT_FALSE(has_problem(daemon_->status(), "recording"));
     const std::string log = daemon_->log();
-    const auto told = log.find("is not empty");
-    EXPECT_NE(told, std::string::npos) << log;
-    EXPECT_EQ(log.find("is not empty", told + 1), std::string::npos) << "twice:\n" << log;
+    const auto reported = log.find("is not empty");
+    EXPECT_NE(reported, std::string::npos) << log;
+    EXPECT_EQ(log.find("is not empty", reported + 1), std::string::npos) << "twice:\n" << log;
     EXPECT_EQ(log.find("recording to"), std::string::npos) << log;
 
     ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());

@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "common/wire/crc.hpp"
-#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/boot_clock.hpp"
-#include "host/apps/daemon/map_keeper.hpp"
-#include "host/apps/querying/query_request.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
+#include "host/apps/daemon/map_saver.hpp"
+#include "host/apps/query/query_request.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
@@ -56,7 +56,7 @@ class Restarting : public testing::Test {
             .mapping_crc32 = crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}),
             .placement_crc32 = placement_of(rig),
             .map_time = map_time};
-        EXPECT_EQ(MapKeeper::write_map(free_map(), origin, NamedFolder(folder_ / "maps")), "");
+        EXPECT_EQ(MapSaver::write_map(free_map(), origin, NamedFolder(folder_ / "maps")), "");
     }
     /// What a daemon on a silent bus says of the arm upright.
     struct Answer {

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 
 namespace octoskin::test {
 

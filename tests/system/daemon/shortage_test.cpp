@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "common/wire/crc.hpp"
-#include "host/apps/daemon/asking.hpp"
-#include "host/apps/daemon/map_keeper.hpp"
-#include "host/apps/querying/query_request.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
+#include "host/apps/daemon/map_saver.hpp"
+#include "host/apps/query/query_request.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "tests/support/evidence.hpp"
@@ -57,7 +57,7 @@ class Shortage : public DaemonTest {
         const std::string text = mapping_text(fast_mapping());
         const SnapshotOrigin origin{
             .mapping_crc32 = crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})};
-        ASSERT_EQ(MapKeeper::write_map(map, origin, NamedFolder(folder_ / "maps")), "");
+        ASSERT_EQ(MapSaver::write_map(map, origin, NamedFolder(folder_ / "maps")), "");
         written_ = std::filesystem::last_write_time(folder_ / "maps/fused.ot");
     }
     void write_mapping(float log_odds_max) const {

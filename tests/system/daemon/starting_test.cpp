@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/recording/file_lock.hpp"
 #include "tests/support/held_opens.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"

@@ -82,8 +82,9 @@ TEST_F(FlashTest, a_dry_run_does_everything_but_the_adapter) {
     EXPECT_EQ(said.exit_code, 0) << said.output;
     EXPECT_THAT(said.output, AllOf(HasSubstr("fit for nucleo_g474re, 548 bytes"),
                                    HasSubstr("4 sensors, node_hash"), HasSubstr("nothing was programmed")));
-    EXPECT_THAT(said.output, AllOf(HasSubstr("must hold BOR_LEV 4, BFB2 0, DBANK 1, nSWBOOT0 0, nBOOT0 1\n"),
-                                   HasSubstr("they would not be written: --write-option-bytes does that")));
+    EXPECT_THAT(said.output,
+                AllOf(HasSubstr("must contain BOR_LEV 4, BFB2 0, DBANK 1, nSWBOOT0 0, nBOOT0 1\n"),
+                      HasSubstr("they would not be written: --write-option-bytes does that")));
     EXPECT_THAT(flash("--dry-run --write-option-bytes").output,
                 HasSubstr("0x08000400 would be written under the mask 0x0C100700 (all of these but DBANK)"));
     EXPECT_THAT(content(path("out/record.yaml")), HasSubstr("is_programmed: false"));

@@ -8,11 +8,13 @@
 // is written by hand. Each declared table is on its page exactly once.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <functional>
 #include <map>
 #include <regex>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -20,8 +22,10 @@
 
 #include "host/apps/command_line/exit_codes.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
-#include "host/core/account/counter_meanings.hpp"
+#include "host/core/counters/counter_meanings.hpp"
 #include "host/io/mapping/mapping_keys.hpp"
+#include "hw/rigfile/rig_keys.hpp"
+#include "hw/sim/scenario/scenario_keys.hpp"
 
 namespace octoskin {
 namespace {
@@ -105,6 +109,40 @@ Tables mapping_tables() {
     return tables;
 }
 
+/// A cell for what a key is called: its name in its table, or its path in the file.
+enum class KeyCell { name, path };
+bool has_unit(const rig::AnyKey& key) {
+    return !rig::unit_of(key).empty();
+}
+Tables key_tables(std::span<const rig::KeyTable> declared, KeyCell cell_of_key) {
+    // Tables of one title are one table of the page, with one head.
+    std::map<std::string, std::vector<rig::AnyKey>, std::less<>> keys_by_name;
+    for (const rig::KeyTable& table : declared) {
+        std::vector<rig::AnyKey>& keys = keys_by_name[std::string(table.title)];
+        keys.insert(keys.end(), table.keys.begin(), table.keys.end());
+    }
+    Tables tables;
+    for (const auto& [name, keys] : keys_by_name) {
+        const bool has_units = std::ranges::any_of(keys, has_unit);
+        const bool has_block = std::ranges::any_of(keys, rig::is_in_node_block);
+        const std::string head = fmt::format(
+            "| Key |{} Expected | Default | Meaning |{}\n|---|{}---|---|---|{}", has_units ? " Unit |" : "",
+            has_block ? " Node |" : "", has_units ? "---|" : "", has_block ? "---|" : "");
+        for (const rig::AnyKey& key : keys) {
+            const std::string_view path = rig::path_of(key);
+            const std::string_view above =
+                cell_of_key == KeyCell::path ? path.substr(0, path.rfind('.') + 1) : "";
+            std::string row = fmt::format("| `{}{}` |", above, rig::name_of(path));
+            if (has_units) row += fmt::format(" {} |", rig::unit_of(key));
+            row += fmt::format(" {} | {} | {} |", rig::expected_text(key), rig::default_text(key),
+                               rig::meaning_of(key));
+            if (has_block) row += rig::is_in_node_block(key) ? " yes |" : " |";
+            add_row(tables, name, head, row);
+        }
+    }
+    return tables;
+}
+
 struct Page {
     std::string file;
     Tables tables;
@@ -152,8 +190,10 @@ Rendered render(const std::string& file, const std::string& page, Tables tables)
 int run(std::string_view mode, const std::string& docs) {
     const std::vector<Page> pages = {{"reference/command-line.md", exit_code_tables()},
                                      {"status.md", status_tables()},
-                                     {"account.md", counter_tables()},
-                                     {"mapping.md", mapping_tables()}};
+                                     {"counters.md", counter_tables()},
+                                     {"mapping.md", mapping_tables()},
+                                     {"rig.md", key_tables(rig::rig_key_tables(), KeyCell::name)},
+                                     {"scenario.md", key_tables(sim::scenario_key_tables(), KeyCell::path)}};
     bool is_good = true;
     for (const Page& page : pages) {
         const std::string file = docs + "/" + page.file;

@@ -66,9 +66,9 @@ std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double ra
 }
 
 void add_pose_fault(const DaemonView& view, Problems& problems) {
-    const SensorWitness* const witness = view.pipeline->builder().witness();
-    if (witness == nullptr || !witness->pose().fault()) return;
-    const PoseFault& fault = *witness->pose().fault();
+    const CrossCheck* const cross_check = view.pipeline->builder().cross_check();
+    if (cross_check == nullptr || !cross_check->pose().fault()) return;
+    const PoseFault& fault = *cross_check->pose().fault();
     const char* const key = !fault.joint ? "camera pose" : !fault.camera ? "joint pose" : "camera or joint";
     problems.push_back({key, describe(fault, view.rig->joints.joints), {}});
 }
@@ -77,7 +77,7 @@ void add_camera(const DaemonView& view, Problems& problems) {
     add_pose_fault(view, problems);
     if (!view.camera || !view.rig->camera) return;
     const double rate_hz = view.rig->camera->rate_hz;
-    const auto& frames = view.pipeline->accounts().depth_frames;
+    const auto& frames = view.pipeline->inputs().depth_frames;
     const bool is_used = view.used.depth_frame && !has_stopped(view.used.depth_frame, view.now);
     const std::size_t others = problems.size();
     if (auto problem = camera_problem(*view.camera, rate_hz, view.now)) {

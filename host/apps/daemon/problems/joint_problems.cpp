@@ -39,7 +39,7 @@ std::string why_no_joints(const DaemonView& view) {
             "one send",
             view.inputs->joints_of_several());
     }
-    if (view.pipeline->accounts().frames.rejected(FrameReason::joint_no_host_time) > 0) {
+    if (view.pipeline->inputs().frames.rejected(FrameReason::joint_no_host_time) > 0) {
         return "no joint states: those that come through the socket have no time on the bus clock "
                "(joint_no_host_time): no host sends SYNC and FOLLOW_UP on the bus";
     }
@@ -69,7 +69,7 @@ void add_joint_jump(const DaemonView& view, Problems& problems) {
                      "too, or the velocity of its <limit> is too low",
                      view.rig->joints.joints.at(jumped->joint), jumped->from, jumped->to,
                      1e3 * seconds_of(jumped->passed), jumped->step_max,
-                     view.pipeline->accounts().joint_samples.rejected(JointReason::joint_jump))});
+                     view.pipeline->inputs().joint_samples.rejected(JointReason::joint_jump))});
 }
 
 /// Senders that are not used while another one is active, by the means that distinguishes the two.
@@ -86,8 +86,7 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
         return;
     }
     if (!is_recent(view.used.joint_senders, view.now)) return;
-    const std::uint64_t withheld =
-        view.pipeline->accounts().joint_samples.rejected(JointReason::second_sender);
+    const std::uint64_t withheld = view.pipeline->inputs().joint_samples.rejected(JointReason::second_sender);
     problems.push_back(
         {"joint senders",
          socket != nullptr
@@ -133,7 +132,7 @@ bool are_joints_above_rate(const DaemonView& view) {
 
 void add_joints(const DaemonView& view, Problems& problems) {
     constexpr std::uint64_t kFirstSamples = 5;  // of a source: its rate is not known yet
-    const auto& joints = view.pipeline->accounts().joint_samples;
+    const auto& joints = view.pipeline->inputs().joint_samples;
     add_joint_senders(view, problems);
     add_joints_beyond(view, problems);
     add_joint_gap(view, problems);

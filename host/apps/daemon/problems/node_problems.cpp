@@ -128,9 +128,9 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
                             {},
                             on});
     }
-    const SensorWitness* const witness = view.pipeline->builder().witness();
-    if (witness == nullptr) return;
-    const SensorEvidence& evidence = witness->evidence(node.node_id, static_cast<std::uint8_t>(index));
+    const CrossCheck* const cross_check = view.pipeline->builder().cross_check();
+    if (cross_check == nullptr) return;
+    const SensorEvidence& evidence = cross_check->evidence(node.node_id, static_cast<std::uint8_t>(index));
     if (evidence.contradicts())
         problems.push_back({who + " camera", fmt::format("{}: {}", who, describe(evidence)), {}, on});
 }
@@ -140,11 +140,11 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
 void add_nodes(const DaemonView& view, Problems& problems) {
     const NodeRegistry& nodes = view.pipeline->intake().nodes();
     for (const HostNode& node : view.rig->nodes) {
-        const NodeVerdict verdict = nodes.verdict(node.node_id, view.bus_now);
+        const NodeCondition verdict = nodes.verdict(node.node_id, view.bus_now);
         add_restarts(view, node, problems);
         add_answers(view, node, problems);
         add_self_reports(view, node, problems);
-        if (verdict != NodeVerdict::usable) {
+        if (verdict != NodeCondition::usable) {
             const std::string text = nodes.describe(node.node_id, view.bus_now);
             problems.push_back({text, text, node_subject(node.node_id)});
             continue;
@@ -172,7 +172,7 @@ void add_joint_node(const DaemonView& view, Problems& problems) {
 }
 
 void add_readings(const DaemonView& view, Problems& problems) {
-    const auto& readings = view.pipeline->accounts().readings;
+    const auto& readings = view.pipeline->inputs().readings;
     if (readings.in() > 0 && !view.used.reading) {
         problems.push_back({"readings unused",
                             "no reading could be used yet: " + see_counters("readings", readings),

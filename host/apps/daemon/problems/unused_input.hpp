@@ -9,8 +9,8 @@
 #include <string>
 
 #include "common/time.hpp"
-#include "host/core/account/account.hpp"
-#include "host/core/account/loss.hpp"
+#include "host/core/counters/input_counters.hpp"
+#include "host/core/counters/loss.hpp"
 
 namespace octoskin {
 
@@ -22,8 +22,8 @@ inline bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
 
 /// The most frequent reason, its meaning and its remedy.
 template <class Reject>
-std::string see_counters(const char* unit, const Account<Reject>& account) {
-    const auto loss = most_frequent(tabulate(unit, account));
+std::string see_counters(const char* unit, const InputCounters<Reject>& inputs) {
+    const auto loss = most_frequent(tabulate(unit, inputs));
     return loss ? describe(*loss) : fmt::format("see the counters of {}", unit);
 }
 

@@ -39,7 +39,7 @@ bool is_property(OniRecordType type) {
            type == OniRecordType::string_property || type == OniRecordType::general_property;
 }
 
-OniVerdict fault_of_codec(std::uint32_t codec, bool is_depth) {
+OniFinding fault_of_codec(std::uint32_t codec, bool is_depth) {
     if (codec == kUncompressed || (is_depth && (codec == kPlainDepth || codec == kTableDepth))) return Done{};
     if (codec == kJpeg) {
         return fault(
@@ -51,7 +51,7 @@ OniVerdict fault_of_codec(std::uint32_t codec, bool is_depth) {
 
 }  // namespace
 
-OniVerdict OniStreams::take(const OniRecord& record, OniBytes fields, OniBytes payload) {
+OniFinding OniStreams::take(const OniRecord& record, OniBytes fields, OniBytes payload) {
     const bool has_payload =
         record.type == OniRecordType::new_data || record.type == OniRecordType::seek_table;
     // For other records the player would interpret the payload as the next records.
@@ -73,7 +73,7 @@ OniVerdict OniStreams::take(const OniRecord& record, OniBytes fields, OniBytes p
     return take_of(stream, record, fields, payload);
 }
 
-OniVerdict OniStreams::take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload) {
+OniFinding OniStreams::take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload) {
     if (is_property(record.type)) {
         if (has_begun_ && stream.state != State::playing)
             return fault("a stream that is set up after the data begin");
@@ -91,7 +91,7 @@ OniVerdict OniStreams::take_of(Stream& stream, const OniRecord& record, OniBytes
                  ", which OpenNI2's recorder does not write");
 }
 
-OniVerdict OniStreams::add(const OniRecord& record, OniBytes bytes) {
+OniFinding OniStreams::add(const OniRecord& record, OniBytes bytes) {
     OniFields fields(bytes);
     const auto name = fields.take_text();
     const auto type = fields.take<std::uint32_t>();
@@ -121,7 +121,7 @@ OniVerdict OniStreams::add(const OniRecord& record, OniBytes bytes) {
     return Done{};
 }
 
-OniVerdict OniStreams::set(Stream& stream, const OniRecord& record, OniBytes bytes) {
+OniFinding OniStreams::set(Stream& stream, const OniRecord& record, OniBytes bytes) {
     OniFields fields(bytes);
     const auto name = fields.take_text();
     const auto size = fields.take<std::uint32_t>();
@@ -136,10 +136,10 @@ OniVerdict OniStreams::set(Stream& stream, const OniRecord& record, OniBytes byt
     if (record.type == OniRecordType::int_property)
         return set_number(stream, named, *OniFields(*value).take<std::uint64_t>());
     return record.type == OniRecordType::general_property ? set_bytes(stream, named, *value)
-                                                          : OniVerdict(Done{});
+                                                          : OniFinding(Done{});
 }
 
-OniVerdict OniStreams::set_number(Stream& stream, const std::string& name, std::uint64_t value) {
+OniFinding OniStreams::set_number(Stream& stream, const std::string& name, std::uint64_t value) {
     if (name == "oniPixelFormat" || name == "xnPixelFormat") {
         // Before that the player has no mode to change, and uses an uninitialised one.
         if (!stream.size) return fault("a pixel format before the size of the images");
@@ -154,7 +154,7 @@ OniVerdict OniStreams::set_number(Stream& stream, const std::string& name, std::
     return Done{};
 }
 
-OniVerdict OniStreams::set_bytes(Stream& stream, const std::string& name, OniBytes bytes) {
+OniFinding OniStreams::set_bytes(Stream& stream, const std::string& name, OniBytes bytes) {
     if (name == "xnFOV" && bytes.size() != 16) return fault("a field of view that does not have 16 bytes");
     if (name == "xnCropping" && bytes.size() != 12) return fault("a cropping that does not have 12 bytes");
     if (name == "xnCropping" && stream.is_depth && *OniFields(bytes).take<std::uint32_t>() != 0)
@@ -172,7 +172,7 @@ OniVerdict OniStreams::set_bytes(Stream& stream, const std::string& name, OniByt
     return Done{};
 }
 
-OniVerdict OniStreams::make_ready(Stream& stream) {
+OniFinding OniStreams::make_ready(Stream& stream) {
     if (stream.state != State::added) return fault("a stream that becomes ready twice");
     if (!stream.size) return fault("a stream without the size of its images");
     const std::uint64_t needed = FrameSize{(*stream.size)[0], (*stream.size)[1]}.pixels() * 2;
@@ -183,7 +183,7 @@ OniVerdict OniStreams::make_ready(Stream& stream) {
     return Done{};
 }
 
-OniVerdict OniStreams::begin(Stream& stream, OniBytes fields) {
+OniFinding OniStreams::begin(Stream& stream, OniBytes fields) {
     if (stream.state != State::ready || fields.size() != kDataBeginFields)
         return fault("data that begin before the stream is ready, or twice");
     has_begun_ = true;
@@ -191,7 +191,7 @@ OniVerdict OniStreams::begin(Stream& stream, OniBytes fields) {
     return Done{};
 }
 
-OniVerdict OniStreams::take_frame(Stream& stream, const OniRecord& record, OniBytes bytes,
+OniFinding OniStreams::take_frame(Stream& stream, const OniRecord& record, OniBytes bytes,
                                   OniBytes payload) const {
     if (stream.state != State::playing) return fault("a frame before the data begin");
     for (const auto& [node, other] : streams_) {
@@ -216,11 +216,11 @@ OniVerdict OniStreams::take_frame(Stream& stream, const OniRecord& record, OniBy
         return depths_in(payload, stream.codec == kTableDepth ? DepthPacking::with_table
                                                               : DepthPacking::plain) == pixels;
     };
-    return is_whole() ? OniVerdict(Done{})
+    return is_whole() ? OniFinding(Done{})
                       : fault("a frame that does not contain its " + text_of(pixels) + " pixels");
 }
 
-OniVerdict OniStreams::take_table(Stream& stream, const OniRecord& record, OniBytes payload) {
+OniFinding OniStreams::take_table(Stream& stream, const OniRecord& record, OniBytes payload) {
     constexpr std::uint64_t kEntrySize = 20;
     // Exactly one, after the stream's end: the player reads the one to which the stream's first record
     // points.
@@ -240,7 +240,7 @@ OniVerdict OniStreams::take_table(Stream& stream, const OniRecord& record, OniBy
     return Done{};
 }
 
-OniVerdict OniStreams::at_end() const {
+OniFinding OniStreams::at_end() const {
     for (const auto& [node, stream] : streams_) {
         if (stream.state != State::removed) return fault("the end, before that of stream " + text_of(node));
         if (stream.table_announced != 0 && stream.table_announced != stream.table)

@@ -15,7 +15,7 @@
 namespace octoskin::openni2 {
 
 using OniBytes = std::span<const std::uint8_t>;
-using OniVerdict = Status<std::string>;  ///< the error is the fault, for the user
+using OniFinding = Status<std::string>;  ///< the error is the fault, for the user
 
 class OniStreams {
   public:
@@ -27,8 +27,8 @@ class OniStreams {
 
     /// The next record with its fields and its payload. A file with an end is sound if no record has a fault
     /// and at_end() has none. No assertions: safe for any bytes.
-    [[nodiscard]] OniVerdict take(const OniRecord& record, OniBytes fields, OniBytes payload);
-    [[nodiscard]] OniVerdict at_end() const;
+    [[nodiscard]] OniFinding take(const OniRecord& record, OniBytes fields, OniBytes payload);
+    [[nodiscard]] OniFinding at_end() const;
 
   private:
     enum class State : std::uint8_t { added, ready, playing, removed };
@@ -45,15 +45,15 @@ class OniStreams {
         std::vector<std::uint64_t> frames;  ///< their positions
     };
 
-    OniVerdict take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload);
-    OniVerdict add(const OniRecord& record, OniBytes fields);
-    static OniVerdict set(Stream& stream, const OniRecord& record, OniBytes fields);
-    static OniVerdict set_number(Stream& stream, const std::string& name, std::uint64_t value);
-    static OniVerdict set_bytes(Stream& stream, const std::string& name, OniBytes bytes);
-    static OniVerdict make_ready(Stream& stream);
-    OniVerdict begin(Stream& stream, OniBytes fields);
-    OniVerdict take_frame(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload) const;
-    static OniVerdict take_table(Stream& stream, const OniRecord& record, OniBytes payload);
+    OniFinding take_of(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload);
+    OniFinding add(const OniRecord& record, OniBytes fields);
+    static OniFinding set(Stream& stream, const OniRecord& record, OniBytes fields);
+    static OniFinding set_number(Stream& stream, const std::string& name, std::uint64_t value);
+    static OniFinding set_bytes(Stream& stream, const std::string& name, OniBytes bytes);
+    static OniFinding make_ready(Stream& stream);
+    OniFinding begin(Stream& stream, OniBytes fields);
+    OniFinding take_frame(Stream& stream, const OniRecord& record, OniBytes fields, OniBytes payload) const;
+    static OniFinding take_table(Stream& stream, const OniRecord& record, OniBytes payload);
 
     Header header_;
     bool has_begun_ = false;  ///< data of any stream have begun: the player has opened the file

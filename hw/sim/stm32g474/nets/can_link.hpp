@@ -13,8 +13,8 @@ namespace octoskin::sim::stm32 {
 /// State of the link for transmitted frames.
 enum class CanLink : std::uint8_t {
     good,
-    nobody_acknowledges,  ///< alone on the bus
-    broken,               ///< every bit that is sent reads back wrong: a short circuit
+    unacknowledged,  ///< alone on the bus
+    broken,          ///< every bit that is sent reads back wrong: a short circuit
 };
 
 /// The bus side of the controller.

@@ -57,7 +57,7 @@ class Fdcan final : public Peripheral {
         std::uint32_t put = 0;
         bool has_lost = false;
     };
-    struct Verdict {
+    struct FilterMatch {
         int fifo = -1;  ///< none: rejected
         int filter = -1;
     };
@@ -94,9 +94,9 @@ class Fdcan final : public Peripheral {
     void enter_bus_off();
     void on_overheard(const wire::CanFrame& frame);
     void store(const wire::CanFrame& frame);
-    [[nodiscard]] Verdict judge(const wire::CanFrame& frame) const;
-    [[nodiscard]] Verdict judge_standard(std::uint32_t id) const;
-    [[nodiscard]] Verdict judge_extended(std::uint32_t id) const;
+    [[nodiscard]] FilterMatch judge(const wire::CanFrame& frame) const;
+    [[nodiscard]] FilterMatch judge_standard(std::uint32_t id) const;
+    [[nodiscard]] FilterMatch judge_extended(std::uint32_t id) const;
     [[nodiscard]] std::uint16_t timestamp() const;
     void raise(std::uint32_t flags);
     void update_lines();

@@ -39,7 +39,7 @@ void Fdcan::on_received(const wire::CanFrame& frame) {
 }
 
 void Fdcan::store(const wire::CanFrame& frame) {
-    const Verdict verdict = judge(frame);
+    const FilterMatch verdict = judge(frame);
     if (verdict.fifo < 0) return;
     const auto number = static_cast<std::uint32_t>(verdict.fifo);
     RxFifo& fifo = rx_.at(number);
@@ -60,11 +60,12 @@ void Fdcan::store(const wire::CanFrame& frame) {
     raise(first_flag | (fifo.fill == kPlaces ? first_flag << 1U : 0U));
 }
 
-Fdcan::Verdict Fdcan::judge(const wire::CanFrame& frame) const {
+Fdcan::FilterMatch Fdcan::judge(const wire::CanFrame& frame) const {
     const std::uint32_t global = bank_.get(kRxgfc);
     const bool rejects_remote = (global >> (frame.is_extended ? 0U : 1U) & 1U) != 0;
     if (frame.is_remote && rejects_remote) return {};
-    const Verdict listed = frame.is_extended ? judge_extended(frame.can_id) : judge_standard(frame.can_id);
+    const FilterMatch listed =
+        frame.is_extended ? judge_extended(frame.can_id) : judge_standard(frame.can_id);
     if (listed.filter >= 0) return listed;
     const std::uint32_t others = global >> (frame.is_extended ? 2U : 4U) & 3U;
     return {others < 2 ? static_cast<int>(others) : -1, -1};
@@ -86,7 +87,7 @@ bool matches(std::uint32_t type, std::uint32_t id, std::uint32_t first, std::uin
 
 }  // namespace
 
-Fdcan::Verdict Fdcan::judge_standard(std::uint32_t id) const {
+Fdcan::FilterMatch Fdcan::judge_standard(std::uint32_t id) const {
     const std::uint32_t count = std::min(bank_.get(kRxgfc) >> 16U & 0x1FU, 28U);
     for (std::uint32_t index = 0; index < count; ++index) {
         const std::uint32_t filter = ram_.standard_filter(index);
@@ -98,7 +99,7 @@ Fdcan::Verdict Fdcan::judge_standard(std::uint32_t id) const {
     return {};
 }
 
-Fdcan::Verdict Fdcan::judge_extended(std::uint32_t id) const {
+Fdcan::FilterMatch Fdcan::judge_extended(std::uint32_t id) const {
     const std::uint32_t count = std::min(bank_.get(kRxgfc) >> 24U & 0xFU, 8U);
     const std::uint32_t masked = id & bank_.get(kXidam);
     for (std::uint32_t index = 0; index < count; ++index) {

@@ -98,7 +98,7 @@ class Daemon:
             return json.loads(control.makefile().readline())
 
     def account(self, unit="readings"):
-        return self.status()["account"][unit]
+        return self.status()["inputs"][unit]
 
     def await_status(self, what, is_so, seconds=PATIENCE_S):
         """Seconds that it took, one question's more at most."""

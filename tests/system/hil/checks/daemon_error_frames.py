@@ -54,9 +54,9 @@ def check(bench):
     status = daemon.status()
     claim(is_link_up(status), f"after traffic: {status['can']}, {status['problems']}")
     expect("bus-off, lost, malformed", (2, 0, 0), tuple(status["can"][key] for key in ("bus_off", "dropped_by_kernel", "malformed")))
-    claim(status["account"]["readings"]["used"] > 0, f"readings used: {status['account']['readings']}")
+    claim(status["inputs"]["readings"]["used"] > 0, f"readings used: {status['inputs']['readings']}")
     daemon.stop()
-    print(f"{told} error frames heard, each one named, after {max(took_s):.2f} s at most; afterwards {status['account']['readings']['used']} readings used")
+    print(f"{told} error frames heard, each one named, after {max(took_s):.2f} s at most; afterwards {status['inputs']['readings']['used']} readings used")
 
 
 daemon_bench.run(check)

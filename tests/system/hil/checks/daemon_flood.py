@@ -59,15 +59,15 @@ def check(bench):
     status = daemon.status()
     expect("frames taken, lost in the kernel, malformed", (ours + COUNTED, 0, 0),
            tuple(status["can"][key] for key in ("received", "dropped_by_kernel", "malformed")))
-    rejected = dict(status["account"]["CAN frames"]["rejected"])
+    rejected = dict(status["inputs"]["CAN frames"]["rejected"])
     expect("foreign frames", COUNTED, rejected.pop("unknown_type"))
     expect("frames of ours that were rejected", {}, rejected)
-    expect("readings taken", readings, status["account"]["readings"]["in"])
+    expect("readings taken", readings, status["inputs"]["readings"]["in"])
     expect("readings lost", [0] * 4, [sensor["lost"] for sensor in status["nodes"][0]["sensors"]])
-    claim(status["account"]["readings"]["used"] > 0, f"readings used: {status['account']['readings']}")
+    claim(status["inputs"]["readings"]["used"] > 0, f"readings used: {status['inputs']['readings']}")
     daemon.stop()
     claim(foreign_per_s >= LEAST_PER_S, f"foreign frames: {foreign_per_s:.0f}/s, wanted {LEAST_PER_S}")
-    print(f"{foreign_per_s:.0f} foreign frames/s, {foreign_per_s / FULL_PER_S:.0%} of a full bus of them; {readings} readings taken, {status['account']['readings']['used']} used, none lost")
+    print(f"{foreign_per_s:.0f} foreign frames/s, {foreign_per_s / FULL_PER_S:.0%} of a full bus of them; {readings} readings taken, {status['inputs']['readings']['used']} used, none lost")
 
 
 daemon_bench.run(check)

@@ -71,7 +71,7 @@ def check(bench):
     listening.await_frames(before["can"]["received"] + len(frames_of(RECORDING / "can.log")))
     after = listening.status()
     expect("frames since", len(frames_of(RECORDING / "can.log")), after["can"]["received"] - before["can"]["received"])
-    claim(after["account"]["readings"]["used"] > before["account"]["readings"]["used"], f"readings used: {after['account']}")
+    claim(after["inputs"]["readings"]["used"] > before["inputs"]["readings"]["used"], f"readings used: {after['inputs']}")
     listening.stop()
     print(", ".join(f"{what} after {seconds:.2f} s" for what, seconds in took_s))
 

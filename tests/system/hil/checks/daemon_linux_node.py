@@ -66,7 +66,7 @@ def check(bench):
     try:
         await_images(daemon, 2)
     except daemon_bench.CheckFailed:
-        print(daemon.status()["account"], daemon.status()["camera"])
+        print(daemon.status()["inputs"], daemon.status()["camera"])
         raise
     of_camera = daemon.status()["map"]["known_voxels"]
     await_images(daemon, 5)
@@ -97,7 +97,7 @@ def check(bench):
     daemon.stop()
     others = {frame.split("#")[0] for frame in listener.stop() if int(frame.split("#")[0], 16) & 63 not in (1, JOINT_NODE)}
     expect("identifiers of frames that no node sent", {"040", "080"}, others)
-    print(f"{status['account']['readings']}, {of_camera} voxels of the camera, {status['map']['known_voxels']} with the sensors; "
+    print(f"{status['inputs']['readings']}, {of_camera} voxels of the camera, {status['map']['known_voxels']} with the sensors; "
           f"unplugged camera named after {unplugged_s:.2f} s, its frames on the map {plugged_s:.2f} s after it was back, a lost node named "
           f"after {named_s:.2f} s")
 

@@ -41,7 +41,7 @@ def check(bench):
         node.terminate()
         expect("exit code of a node", 0, node.wait(daemon_bench.PATIENCE_S))
     daemon.stop()
-    print(f"{status['account']['readings']}, {known[0]} voxels of one node, {known[1]} of both")
+    print(f"{status['inputs']['readings']}, {known[0]} voxels of one node, {known[1]} of both")
 
 
 daemon_bench.run(check)

@@ -25,7 +25,7 @@ def account_of(replayed):
 
 
 def account_in(status):
-    return {key: status["account"]["readings"][key] for key in ("in", "used", "rejected")}
+    return {key: status["inputs"]["readings"][key] for key in ("in", "used", "rejected")}
 
 
 def check(bench):
@@ -63,7 +63,7 @@ def check(bench):
     expect("state of the bus", "up", after["can"]["state"])
     expect("frames lost on the way", (0, 0, 0),
            (after["can"]["dropped_by_kernel"], after["can"]["malformed"], after["nodes"][0]["sensors"][0]["lost"]))
-    claim(all(unit["balanced"] for unit in after["account"].values()), f"in = used + rejected: {after['account']}")
+    claim(all(unit["balanced"] for unit in after["inputs"].values()), f"in = used + rejected: {after['inputs']}")
 
     mapper.await_status("silence is named", lambda status: any("'bench': lost" in problem for problem in status["problems"]))
 

@@ -60,8 +60,8 @@ def check_another_version(bench):
     daemon.await_frames(len(lines))
     status = daemon.status()
     expect("voxels", 0, status["map"]["known_voxels"])
-    expect("frames refused", {"wrong_version": refused}, status["account"]["CAN frames"]["rejected"])
-    expect("readings", 0, status["account"]["readings"]["in"])
+    expect("frames refused", {"wrong_version": refused}, status["inputs"]["CAN frames"]["rejected"])
+    expect("readings", 0, status["inputs"]["readings"]["in"])
     daemon.stop()
     print(f"another version: {told}, {refused} frames refused")
 
@@ -86,13 +86,13 @@ def check_a_second_board(bench):
     expect("exit code of canplayer", 0, playing.wait(daemon_bench.PATIENCE_S))
     daemon.await_frames(len(both))
     status = daemon.status()
-    used, voxels = status["account"]["readings"]["used"], status["map"]["known_voxels"]
+    used, voxels = status["inputs"]["readings"]["used"], status["map"]["known_voxels"]
     claim(used > 0 and voxels > 0, "what came before counts")
     expect("readings used, and voxels, since it was named", (0, 0),
-           (used - named["account"]["readings"]["used"], voxels - named["map"]["known_voxels"]))
+           (used - named["inputs"]["readings"]["used"], voxels - named["map"]["known_voxels"]))
     expect("voxels that the first board alone does not make", True, voxels <= voxels_of(bench.replay(alone.parent, "--fused-only")))
     daemon.stop()
-    print(f"a second board: {told}; {status['account']['readings']}")
+    print(f"a second board: {told}; {status['inputs']['readings']}")
 
 
 def check(bench):

@@ -41,7 +41,7 @@ def keep_arm_at_rest(bench):
 
 
 def used(status, unit):
-    return status["account"][unit]["used"]
+    return status["inputs"][unit]["used"]
 
 
 def node_of(status, board):

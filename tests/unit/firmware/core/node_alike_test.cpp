@@ -34,7 +34,7 @@ void misread(SensorSetup& setup, std::uint16_t index, std::uint8_t value) {
 }
 
 /// Of this kind, each once, since `from`.
-std::set<std::uint32_t> told(const NodeRig& rig, FaultKind kind, sim::SimTime from = {}) {
+std::set<std::uint32_t> reported(const NodeRig& rig, FaultKind kind, sim::SimTime from = {}) {
     std::set<std::uint32_t> wheres;
     for (const auto& said : rig.said()) {
         const auto* info = std::get_if<wire::NodeInfo>(&said.message);
@@ -54,7 +54,7 @@ void expect_all_well(NodeRig& rig, std::uint8_t count) {
     EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 0);
     EXPECT_EQ(rig.node().counts().withheld, 0U);
     EXPECT_EQ(rig.node().counts().suspect, 0U);
-    EXPECT_EQ(told(rig, FaultKind::register_fixed, {rig.now().us - kSecond.count()}),
+    EXPECT_EQ(reported(rig, FaultKind::register_fixed, {rig.now().us - kSecond.count()}),
               std::set<std::uint32_t>{});
 }
 void expect_withheld(NodeRig& rig, std::uint8_t sensor) {
@@ -75,7 +75,7 @@ TEST(NodeAlike, what_all_parts_read_alike_withholds_nothing_and_is_told_once) {
             EXPECT_LE(rig.readings_of(sensor).front().end.us, 1'200'000) << int{sensor};
         }
         const std::uint8_t written = index == kDeciding ? 0x0B : 0x21;
-        EXPECT_EQ(told(rig, FaultKind::register_alike),
+        EXPECT_EQ(reported(rig, FaultKind::register_alike),
                   std::set{report(3, static_cast<std::uint8_t>(index), written, 0x0C)});
     }
 }
@@ -92,7 +92,7 @@ TEST(NodeAlike, several_registers_are_learnt_and_each_is_told) {
     expect_all_well(rig, 4);
     // As many parts as had shown it when the node looked, once in a millisecond.
     EXPECT_EQ(
-        told(rig, FaultKind::register_alike, {rig.now().us - 3 * kSecond.count()}),
+        reported(rig, FaultKind::register_alike, {rig.now().us - 3 * kSecond.count()}),
         (std::set{report(4, 0x47, 0x0B, 0x0C), report(3, 0x7C, 0x00, 0x01), report(4, 0x4C, 0x21, 0x20)}));
 }
 
@@ -105,7 +105,7 @@ TEST(NodeAlike, a_dozen_registers_are_learnt_one_lot_after_the_other) {
     NodeRig rig(fleet_config(3, 1), setups);
     rig.run_for(12 * kSecond);
     expect_all_well(rig, 3);
-    EXPECT_EQ(told(rig, FaultKind::register_alike).size(), 12U);
+    EXPECT_EQ(reported(rig, FaultKind::register_alike).size(), 12U);
 }
 
 TEST(NodeAlike, what_one_part_reads_alone_withholds_that_one) {
@@ -114,8 +114,8 @@ TEST(NodeAlike, what_one_part_reads_alone_withholds_that_one) {
     NodeRig rig(fleet_config(5, 2), setups);
     rig.run_for(5 * kSecond);
     expect_withheld(rig, 3);
-    EXPECT_EQ(told(rig, FaultKind::register_fixed), std::set{report(3, 0x47, 0x0B, 0x0C)});
-    EXPECT_TRUE(told(rig, FaultKind::register_alike).empty());
+    EXPECT_EQ(reported(rig, FaultKind::register_fixed), std::set{report(3, 0x47, 0x0B, 0x0C)});
+    EXPECT_TRUE(reported(rig, FaultKind::register_alike).empty());
     for (const std::uint8_t sensor : std::to_array<std::uint8_t>({0, 1, 2, 4}))
         EXPECT_GT(rig.readings_of(sensor).size(), 130U);
     EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 1);
@@ -129,9 +129,9 @@ TEST(NodeAlike, two_parts_alike_are_two_parts_that_are_withheld) {
     rig.run_for(5 * kSecond);
     expect_withheld(rig, 1);
     expect_withheld(rig, 4);
-    EXPECT_EQ(told(rig, FaultKind::register_fixed),
+    EXPECT_EQ(reported(rig, FaultKind::register_fixed),
               (std::set{report(1, 0x47, 0x0B, 0x0C), report(4, 0x47, 0x0B, 0x0C)}));
-    EXPECT_TRUE(told(rig, FaultKind::register_alike).empty());
+    EXPECT_TRUE(reported(rig, FaultKind::register_alike).empty());
 }
 
 TEST(NodeAlike, three_of_five_teach_the_node_and_the_others_are_still_verified) {
@@ -145,7 +145,7 @@ TEST(NodeAlike, three_of_five_teach_the_node_and_the_others_are_still_verified) 
         EXPECT_EQ(rig.last_health(sensor)->fault, SensorFault::none) << int{sensor};
     }
     expect_withheld(rig, 1);
-    EXPECT_EQ(told(rig, FaultKind::register_alike), std::set{report(3, 0x47, 0x0B, 0x0C)});
+    EXPECT_EQ(reported(rig, FaultKind::register_alike), std::set{report(3, 0x47, 0x0B, 0x0C)});
     EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 1);
 }
 
@@ -155,8 +155,8 @@ TEST(NodeAlike, one_register_with_a_value_of_its_own_on_each_part_is_alike_on_no
     NodeRig rig(fleet_config(4, 1), setups);
     rig.run_for(5 * kSecond);
     for (std::uint8_t sensor = 0; sensor < 4; ++sensor) expect_withheld(rig, sensor);
-    EXPECT_EQ(told(rig, FaultKind::register_fixed).size(), 4U);
-    EXPECT_TRUE(told(rig, FaultKind::register_alike).empty());
+    EXPECT_EQ(reported(rig, FaultKind::register_fixed).size(), 4U);
+    EXPECT_TRUE(reported(rig, FaultKind::register_alike).empty());
 }
 
 TEST(NodeAlike, two_groups_with_two_values_are_both_learnt) {
@@ -165,7 +165,7 @@ TEST(NodeAlike, two_groups_with_two_values_are_both_learnt) {
     NodeRig rig(fleet_config(6, 2), setups);
     rig.run_for(4 * kSecond);
     expect_all_well(rig, 6);
-    EXPECT_EQ(told(rig, FaultKind::register_alike).size(), 2U);
+    EXPECT_EQ(reported(rig, FaultKind::register_alike).size(), 2U);
 }
 
 // Two are withheld, with attempts ever further apart, until a third is plugged in.
@@ -181,7 +181,7 @@ TEST(NodeAlike, parts_that_were_withheld_range_at_once_when_a_third_has_shown_th
     sim::SimTime learnt{};
     while (learnt.us == 0 && rig.now().us < 90'000'000) {
         rig.run_for(Microseconds{10'000});
-        if (!told(rig, FaultKind::register_alike).empty()) learnt = rig.now();
+        if (!reported(rig, FaultKind::register_alike).empty()) learnt = rig.now();
     }
     // It is tried every 10 s by then, and shows it at three attempts.
     ASSERT_GT(learnt.us, 0);
@@ -208,7 +208,7 @@ TEST(NodeAlike, a_difference_that_appears_while_ranging_is_learnt_as_well) {
                 rig.sensor(sensor).alter_register(0x7E, 3);
         }
     }
-    EXPECT_EQ(told(rig, FaultKind::register_alike).size(), 1U);
+    EXPECT_EQ(reported(rig, FaultKind::register_alike).size(), 1U);
     const std::uint32_t restarts = rig.node().counts().sensor_restarts;
     EXPECT_LE(restarts, 4U * kCount);
     for (std::uint8_t sensor = 0; sensor < kCount; ++sensor) {
@@ -224,7 +224,7 @@ TEST(NodeAlike, a_part_that_is_fitted_alone_is_withheld_and_ranges_once_the_rig_
     NodeRig strict(config, setups);
     strict.run_for(3 * kSecond);
     expect_withheld(strict, 0);
-    EXPECT_EQ(told(strict, FaultKind::register_fixed), std::set{report(0, 0x47, 0x0B, 0x0C)});
+    EXPECT_EQ(reported(strict, FaultKind::register_fixed), std::set{report(0, 0x47, 0x0B, 0x0C)});
 
     config.left_out_count = 1;
     config.left_out[0] = 0x47;
@@ -233,7 +233,7 @@ TEST(NodeAlike, a_part_that_is_fitted_alone_is_withheld_and_ranges_once_the_rig_
     expect_all_well(rig, 1);
     EXPECT_LE(rig.readings_of(0).front().end.us, 350'000);
     EXPECT_EQ(rig.node().counts().sensor_restarts, 0U);
-    EXPECT_TRUE(told(rig, FaultKind::register_alike).empty());
+    EXPECT_TRUE(reported(rig, FaultKind::register_alike).empty());
     rig.sensor(0).alter_register(0x60, 0x0B);
     rig.run_for(1 * kSecond);
     EXPECT_EQ(rig.node().counts().sensor_restarts, 1U) << "any other is verified as before";
@@ -284,7 +284,7 @@ TEST(NodeAlike, a_register_that_changes_all_the_time_is_named_with_its_last_valu
         rig.run_for(Microseconds{1'000});
         rig.sensor(0).alter_register(0x50, static_cast<std::uint8_t>(0x80 + i % 7));
     }
-    const auto reports = told(rig, FaultKind::register_fixed);
+    const auto reports = reported(rig, FaultKind::register_fixed);
     ASSERT_FALSE(reports.empty());
     for (const std::uint32_t where : reports) EXPECT_EQ(RegisterReport::of(where).index, 0x50);
 }

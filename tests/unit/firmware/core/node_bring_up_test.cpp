@@ -165,11 +165,11 @@ TEST(NodeBringUp, moves_a_stray_sensor_out_of_the_way_and_says_on_which_bus_it_i
         EXPECT_EQ(rig.last_health(sensor)->fault, SensorFault::none) << int{sensor};
         EXPECT_GE(rig.readings_of(sensor).size(), 50U) << int{sensor};
     }
-    wire::InfoFault told;
+    wire::InfoFault reported;
     for (const wire::NodeInfo& info : rig.said_of<wire::NodeInfo>()) {
-        if (const auto* fault = std::get_if<wire::InfoFault>(&info)) told = *fault;
+        if (const auto* fault = std::get_if<wire::InfoFault>(&info)) reported = *fault;
     }
-    EXPECT_EQ(told, (wire::InfoFault{.kind = wire::FaultKind::stray_sensor, .where = 1}));
+    EXPECT_EQ(reported, (wire::InfoFault{.kind = wire::FaultKind::stray_sensor, .where = 1}));
 }
 
 TEST(NodeBringUp, refuses_a_bus_where_a_stranger_answers_at_0x29) {

@@ -32,7 +32,7 @@ std::vector<SensorSetup> parts() {
 }
 
 /// Everything about the readings of all sensors, times included.
-std::string account_of(const NodeRig& rig) {
+std::string inputs_of(const NodeRig& rig) {
     std::string text;
     for (std::uint8_t sensor = 0; sensor < kSensors; ++sensor) {
         for (const SaidReading& said : rig.readings_of(sensor)) {
@@ -54,14 +54,14 @@ double polls_per_reading(NodeRig& rig) {
     return static_cast<double>(polls) / rig.node().counts().accepted;
 }
 
-std::uint8_t ignored_bus_told(const NodeRig& rig) {
-    std::uint8_t told = 255;
+std::uint8_t ignored_bus_reported(const NodeRig& rig) {
+    std::uint8_t reported = 255;
     for (const wire::NodeInfo& info : rig.said_of<wire::NodeInfo>()) {
         const auto* fault = std::get_if<wire::InfoFault>(&info);
         if (fault != nullptr && fault->kind == wire::FaultKind::data_ready_ignored)
-            told = static_cast<std::uint8_t>(fault->where);
+            reported = static_cast<std::uint8_t>(fault->where);
     }
-    return told;
+    return reported;
 }
 
 TEST(NodeDataReady, saves_polls_of_the_bus_that_has_a_line_and_of_no_other) {
@@ -96,8 +96,8 @@ TEST_P(SilentLine, changes_nothing_to_the_microsecond) {
     for (const std::size_t bus : {0U, 1U}) with.data_ready().line(bus).set_fault(GetParam());
     without.run_for(3s);
     with.run_for(3s);
-    EXPECT_GT(account_of(with).size(), 5'000U);
-    EXPECT_EQ(account_of(with), account_of(without));
+    EXPECT_GT(inputs_of(with).size(), 5'000U);
+    EXPECT_EQ(inputs_of(with), inputs_of(without));
     EXPECT_EQ(polls_per_reading(with), polls_per_reading(without));
     EXPECT_EQ(with.node().counts().spurious_hints, 0U);
 }
@@ -126,7 +126,7 @@ TEST(NodeDataReady, line_that_chatters_is_given_up_and_told_and_costs_no_reading
     without.run_for(2s);
     rig.run_for(2s);
     EXPECT_EQ(rig.node().ignored_data_ready(), 0b10) << "and the other line is at work";
-    EXPECT_EQ(ignored_bus_told(rig), 1);
+    EXPECT_EQ(ignored_bus_reported(rig), 1);
     EXPECT_LE(rig.data_ready().asked_count(1), 2'000'000U / 250U);
     EXPECT_NEAR(rig.node().counts().accepted, without.node().counts().accepted, 6.0);
     EXPECT_EQ(rig.node().counts().rejected + rig.node().counts().sensor_restarts, 0U);
@@ -139,12 +139,12 @@ TEST(NodeDataReady, line_that_chatters_is_given_up_and_told_and_costs_no_reading
 TEST(NodeDataReady, line_that_begins_to_chatter_while_at_work_costs_no_reading_either) {
     NodeRig rig(config_with(0b11), parts());
     rig.run_for(2s);
-    EXPECT_EQ(ignored_bus_told(rig), 255);
+    EXPECT_EQ(ignored_bus_reported(rig), 255);
     const std::uint32_t before = rig.node().counts().accepted;
     rig.data_ready().line(0).set_fault(LineFault::chatters);
     rig.run_for(2s);
     EXPECT_EQ(rig.node().ignored_data_ready(), 0b01);
-    EXPECT_EQ(ignored_bus_told(rig), 0);
+    EXPECT_EQ(ignored_bus_reported(rig), 0);
     EXPECT_NEAR(rig.node().counts().accepted - before, 6 * 2000.0 / 33.0, 12.0);
     EXPECT_EQ(rig.node().counts().rejected + rig.node().counts().sensor_restarts, 0U);
 }

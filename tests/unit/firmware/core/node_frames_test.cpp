@@ -103,9 +103,9 @@ TEST(NodeFrames, numbers_readings_without_a_gap_and_counts_them_in_the_health) {
             for (std::size_t i = 0; i < readings.size(); ++i) {
                 ASSERT_EQ(readings[i].reading.sequence, i % 64) << int{sensor};
             }
-            const std::size_t told = rig.last_health(sensor)->sent;
-            EXPECT_LE(told, readings.size());
-            EXPECT_GE(told + 40, readings.size());
+            const std::size_t reported = rig.last_health(sensor)->sent;
+            EXPECT_LE(reported, readings.size());
+            EXPECT_GE(reported + 40, readings.size());
             EXPECT_EQ(rig.last_health(sensor)->rejected, 0);
         }
     }

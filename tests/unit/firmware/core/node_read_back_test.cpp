@@ -199,11 +199,11 @@ TEST(NodeReadBack, no_reading_is_sent_on_a_register_that_decides_the_range_and_w
         EXPECT_EQ(rig.last_health(0)->fault, SensorFault::config_mismatch) << index;
         EXPECT_EQ(rig.said_of<wire::Heartbeat>().back().degraded_sensors, 1);
         EXPECT_EQ(last_fault(rig).kind, wire::FaultKind::register_fixed) << index;
-        const auto told = wire::RegisterReport::of(last_fault(rig).where);
-        EXPECT_EQ(told.subject, 0);
-        EXPECT_EQ(told.index, index);
-        EXPECT_NE(told.written, 0x2A) << index;
-        EXPECT_EQ(told.read, 0x2A) << index;
+        const auto reported = wire::RegisterReport::of(last_fault(rig).where);
+        EXPECT_EQ(reported.subject, 0);
+        EXPECT_EQ(reported.index, index);
+        EXPECT_NE(reported.written, 0x2A) << index;
+        EXPECT_EQ(reported.read, 0x2A) << index;
         // At once, then after 0.1, 0.2, ... 6.4 s.
         EXPECT_LE(rig.node().counts().sensor_restarts, 9U) << index;
     }

@@ -80,13 +80,13 @@ TEST_F(SensorTest, what_it_is_asked_before_its_first_data_is_expected_can_wait_u
     std::uint32_t last_us = 0;
     while (bench_.now().us < 900'000) {
         step();
-        if (!sensor_.can_wait(bench_.now())) continue;
+        if (!sensor_.is_deferrable(bench_.now())) continue;
         first_us = first_us.value_or(bench_.now().us);
         last_us = bench_.now().us;
-        ASSERT_TRUE(sensor_.punctual_due().has_value());
-        EXPECT_EQ(sensor_.punctual_due()->us, kCanWaitUntilUs);
-        EXPECT_TRUE(sensor_.can_wait(NodeTime{kCanWaitUntilUs - 1}));
-        EXPECT_FALSE(sensor_.can_wait(NodeTime{kCanWaitUntilUs})) << "if it had to wait until now";
+        ASSERT_TRUE(sensor_.deadline_due().has_value());
+        EXPECT_EQ(sensor_.deadline_due()->us, kCanWaitUntilUs);
+        EXPECT_TRUE(sensor_.is_deferrable(NodeTime{kCanWaitUntilUs - 1}));
+        EXPECT_FALSE(sensor_.is_deferrable(NodeTime{kCanWaitUntilUs})) << "if it had to wait until now";
         EXPECT_EQ(readings_, 0U);
     }
     ASSERT_TRUE(first_us.has_value());
@@ -119,7 +119,7 @@ TEST_F(SensorTest, wants_nothing_of_the_bus_while_it_is_stopped) {
     run_until(760'000);
     ASSERT_EQ(sensor_.state(), wire::SensorState::stopped);
     EXPECT_TRUE(is_reached(bench_.now() + Microseconds{59'000'000}, *sensor_.due())) << "to note a long rest";
-    EXPECT_EQ(sensor_.punctual_due(), std::nullopt);
+    EXPECT_EQ(sensor_.deadline_due(), std::nullopt);
     const std::uint64_t transfers = bench_.bus().transfer_count();
     run_until(1'200'000);
     EXPECT_EQ(bench_.bus().transfer_count(), transfers);

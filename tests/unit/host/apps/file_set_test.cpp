@@ -30,7 +30,7 @@ void write(const fs::path& file, const std::string& text) {
 }
 
 /// What is in the folder, hidden things included: "a=new b=new".
-std::string told(const fs::path& folder) {
+std::string reported(const fs::path& folder) {
     std::vector<std::string> entries;
     for (const auto& entry : fs::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
@@ -66,7 +66,7 @@ TEST(FileSetTest, puts_all_files_in_place_and_takes_the_retired_away) {
     fill_old(folder.path());
     const auto committed = replace_by_new(folder.path());
     ASSERT_TRUE(committed) << committed.error().message;
-    EXPECT_EQ(told(folder.path()), kNew);
+    EXPECT_EQ(reported(folder.path()), kNew);
 }
 
 TEST(FileSetTest, leaves_the_folder_as_it_was_if_it_is_given_up) {
@@ -79,7 +79,7 @@ TEST(FileSetTest, leaves_the_folder_as_it_was_if_it_is_given_up) {
         const FileSet moved = std::move(*set);
         EXPECT_EQ(moved.folder().shown(), folder.path());
     }
-    EXPECT_EQ(told(folder.path()), kOld);
+    EXPECT_EQ(reported(folder.path()), kOld);
     { ASSERT_TRUE(FileSet::begin(folder / "made/for/it")); }
     EXPECT_FALSE(fs::exists(folder / "made/for/it"));
 }
@@ -116,7 +116,7 @@ TEST(FileSetTest, of_a_folder_that_a_daemon_keeps_its_map_in_nothing_is_replaced
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
     EXPECT_THAT(refused.error().message, HasSubstr(kDaemonsSnapshot));
-    EXPECT_EQ(told(scratch.path()), "fused.ot=the daemon's fused.snapshot= lock=");
+    EXPECT_EQ(reported(scratch.path()), "fused.ot=the daemon's fused.snapshot= lock=");
 }
 
 TEST(FileSetTest, keeps_no_daemon_from_beginning_until_its_files_come) {
@@ -143,7 +143,7 @@ TEST(FileSetTest, the_lock_goes_with_its_process) {
     ASSERT_EQ(::waitpid(child, nullptr, 0), child);
     EXPECT_TRUE(fs::exists(folder / FileSet::kDraftFolder));
     EXPECT_TRUE(replace_by_new(folder.path()));
-    EXPECT_EQ(told(folder.path()), kNew);
+    EXPECT_EQ(reported(folder.path()), kNew);
 }
 
 TEST(FileSetTest, a_directory_in_the_way_is_named_and_changes_nothing) {
@@ -152,11 +152,11 @@ TEST(FileSetTest, a_directory_in_the_way_is_named_and_changes_nothing) {
         fill_old(folder.path());
         fs::remove(folder / in_the_way);
         fs::create_directory(folder / in_the_way);
-        const std::string before = told(folder.path());
+        const std::string before = reported(folder.path());
         const auto committed = replace_by_new(folder.path());
         ASSERT_FALSE(committed) << in_the_way;
         EXPECT_THAT(committed.error().message, HasSubstr((folder / in_the_way).string() + ": is not a file"));
-        EXPECT_EQ(told(folder.path()), before);
+        EXPECT_EQ(reported(folder.path()), before);
     }
 }
 
@@ -178,7 +178,7 @@ TEST(FileSetTest, what_was_killed_after_any_step_is_brought_to_its_end_by_the_ne
         const auto settled = settle(folder.path());
         ASSERT_TRUE(settled) << moved;
         EXPECT_TRUE(*settled) << moved;
-        EXPECT_EQ(told(folder.path()), kNew) << moved;
+        EXPECT_EQ(reported(folder.path()), kNew) << moved;
         const auto again = settle(folder.path());
         ASSERT_TRUE(again);
         EXPECT_FALSE(*again) << "there was nothing left";
@@ -192,12 +192,12 @@ TEST(FileSetTest, what_was_killed_is_not_brought_to_its_end_where_a_daemon_has_b
         write(folder / of_daemon, "");
         const int lock = ::open((folder / of_daemon).c_str(), O_RDONLY | O_CLOEXEC);
         ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
-        const std::string before = told(folder.path());
+        const std::string before = reported(folder.path());
         const auto settled = settle(folder.path());
         ASSERT_FALSE(settled) << of_daemon;
         EXPECT_EQ(settled.error().code, ExitCode::cannot_create);
         EXPECT_THAT(settled.error().message, HasSubstr("wait in " + (folder / ".octoskin-ready").string()));
-        EXPECT_EQ(told(folder.path()), before);
+        EXPECT_EQ(reported(folder.path()), before);
         ::close(lock);
     }
 }
@@ -219,10 +219,10 @@ TEST(FileSetTest, an_error_while_it_moves_takes_all_of_it_back_until_it_can_be_d
         EXPECT_THAT(settled.error().message,
                     testing::AllOf(HasSubstr((folder / obstacle).string() + ": is not a file"),
                                    HasSubstr("wait in " + (folder / ".octoskin-ready").string())));
-        EXPECT_EQ(told(folder.path()), expected);
+        EXPECT_EQ(reported(folder.path()), expected);
         fs::remove(folder / obstacle);
         ASSERT_TRUE(settle(folder.path())) << obstacle;
-        EXPECT_EQ(told(folder.path()), kNew);
+        EXPECT_EQ(reported(folder.path()), kNew);
     }
 }
 
@@ -238,7 +238,7 @@ TEST(FileSetTest, what_cannot_be_finished_is_left_as_it_lies_and_said_once) {
     EXPECT_NE(first, std::string::npos);
     EXPECT_EQ(refused.error().message.find(what, first + 1), std::string::npos) << refused.error().message;
     EXPECT_TRUE(fs::is_directory(folder / "can.log")) << "a folder that lies in the way is not moved";
-    EXPECT_EQ(told(folder / ".octoskin-ready"), ".journal=octoskin-file-set/1\nput can.log\n");
+    EXPECT_EQ(reported(folder / ".octoskin-ready"), ".journal=octoskin-file-set/1\nput can.log\n");
 }
 
 TEST(FileSetTest, follows_no_journal_out_of_its_folder) {
@@ -284,7 +284,7 @@ TEST(FileSetTest, follows_no_link_out_of_its_folder) {
         ASSERT_FALSE(settled) << trap.line;
         EXPECT_THAT(settled.error().message,
                     HasSubstr((folder / trap.link).string() + ": is a symbolic link"));
-        EXPECT_EQ(told(folder / "victim"), "fused.ot=mine") << trap.line;
+        EXPECT_EQ(reported(folder / "victim"), "fused.ot=mine") << trap.line;
         EXPECT_EQ(ScratchFolder::read(folder / "in/robot.urdf"), "old") << trap.line;
         EXPECT_FALSE(fs::exists(folder / "in/meta.yaml")) << trap.line;
     }
@@ -299,7 +299,7 @@ TEST(FileSetTest, the_hidden_folders_themselves_are_no_links) {
         fs::create_directory_symlink("../victim", folder / "in" / name);
         const auto begun = FileSet::begin(folder / "in");
         EXPECT_EQ(begun.has_value(), name == std::string(FileSet::kDraftFolder)) << "a draft is cleared away";
-        EXPECT_EQ(told(folder / "victim"), ".journal=octoskin-file-set/1\nput can.log\n can.log=mine");
+        EXPECT_EQ(reported(folder / "victim"), ".journal=octoskin-file-set/1\nput can.log\n can.log=mine");
     }
 }
 
@@ -317,7 +317,7 @@ TEST(FileSetTest, killed_at_any_instant_it_is_the_old_set_or_the_new_one) {
         ::kill(child, SIGKILL);
         ASSERT_EQ(::waitpid(child, nullptr, 0), child);
         { ASSERT_TRUE(FileSet::begin(folder.path())); }
-        const std::string now = told(folder.path());
+        const std::string now = reported(folder.path());
         EXPECT_TRUE(now == kOld || now == kNew) << now;
     }
 }
@@ -359,7 +359,7 @@ TEST(FileSetTest, leaves_nothing_unfinished_of_a_process_that_is_told_to_end) {
     for (const fs::path& file : kFiles) write(set->draft().shown() / file, "new");
     ASSERT_TRUE(set->commit(kFiles, {"robot.urdf"}));
     EXPECT_FALSE(remove_unfinished().is_any) << "it is whole";
-    EXPECT_EQ(told(parent.path()), kNew);
+    EXPECT_EQ(reported(parent.path()), kNew);
 }
 
 TEST(SceneMesh, is_known_by_its_name) {

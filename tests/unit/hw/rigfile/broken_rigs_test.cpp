@@ -58,8 +58,8 @@ const Broken kBroken[] = {
      "expected 1 to 7 joints, found 8 in eight-joints.urdf: make those that stay as they are type=\"fixed\" "
      "there"},
     {"seven-of-eight-joints.yaml", 7, "joints.names",
-     "expected at most 7 moving joints, found 8 in eight-joints.urdf; not named are j7: make each that stays "
-     "as it is type=\"fixed\" in eight-joints.urdf"},
+     "expected at most 7 moving joints, found 8 in eight-joints.urdf; not named are j7: make each joint "
+     "that does not move type=\"fixed\" in eight-joints.urdf"},
     {"missing-nodes.yaml", 1, "nodes", "expected this key, found none"},
     // Types.
     {"word-for-a-number.yaml", 3, "joints.rate_hz", "expected a number from 1 to 1000, found 'fast'"},
@@ -147,7 +147,7 @@ const Broken kBroken[] = {
     {"joint-that-is-fixed.yaml", 3, "joints.names", "found 'bolts'"},
     {"joint-twice.yaml", 3, "joints.names", "expected each joint once"},
     {"joint-left-out.yaml", 3, "joints.names",
-     "found none named elbow: its position would be unknown. Name it, or make each that stays as it is "
+     "found none named elbow: its position would be unknown. Name it, or make each joint that does not move "
      "type=\"fixed\" in "},
     {"urdf-absent.yaml", 3, "robot.urdf", "no-such-robot.urdf"},
     {"board-absent.yaml", 5, "nodes[0].board", "no-such-board.yaml"},

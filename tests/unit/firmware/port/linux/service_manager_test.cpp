@@ -35,7 +35,7 @@ class ServiceManagerTest : public testing::Test {
         for (const char* name : {"NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"}) ::unsetenv(name);
     }
 
-    std::vector<std::string> told() const {
+    std::vector<std::string> reported() const {
         std::vector<std::string> all;
         std::array<char, 256> text{};
         for (ssize_t size = 0; (size = ::recv(socket_, text.data(), text.size(), 0)) > 0;)
@@ -58,7 +58,7 @@ TEST_F(ServiceManagerTest, is_told_of_the_start_of_turns_and_of_the_end) {
     manager.started();
     manager.turned({.us = 4'294'000'000});
     manager.stopping();
-    EXPECT_EQ(told(), (Told{"READY=1", "WATCHDOG=1", "STOPPING=1"}));
+    EXPECT_EQ(reported(), (Told{"READY=1", "WATCHDOG=1", "STOPPING=1"}));
 }
 
 TEST_F(ServiceManagerTest, is_told_of_turns_four_times_in_the_watchdogs_time_over_the_clocks_wrap) {
@@ -66,7 +66,7 @@ TEST_F(ServiceManagerTest, is_told_of_turns_four_times_in_the_watchdogs_time_ove
     EXPECT_EQ(manager.sleep_max(), Microseconds{2'500'000});
     const NodeTime begin{.us = 4'294'000'000};  // 967,296 us before the wrap
     for (int turn = 0; turn <= 1000; ++turn) manager.turned(begin + Microseconds{turn * 10'000});
-    EXPECT_EQ(told().size(), 5U);  // at 0, 2.5, 5, 7.5 and 10 s
+    EXPECT_EQ(reported().size(), 5U);  // at 0, 2.5, 5, 7.5 and 10 s
 }
 
 TEST_F(ServiceManagerTest, that_does_not_watch_is_told_of_no_turn) {
@@ -80,14 +80,14 @@ TEST_F(ServiceManagerTest, that_does_not_watch_is_told_of_no_turn) {
     set("WATCHDOG_USEC", "10000000");
     set("WATCHDOG_PID", std::to_string(::getpid() + 1));
     ServiceManager::from_environment().turned({.us = 1});
-    EXPECT_EQ(told(), Told{});
+    EXPECT_EQ(reported(), Told{});
 }
 
 TEST_F(ServiceManagerTest, may_be_absent_or_gone) {
     ServiceManager::from_environment().started();
     ServiceManager("/no/such/socket", std::nullopt).started();
     ServiceManager(std::string(200, 'x'), std::nullopt).started();
-    EXPECT_EQ(told(), Told{});
+    EXPECT_EQ(reported(), Told{});
 }
 
 }  // namespace

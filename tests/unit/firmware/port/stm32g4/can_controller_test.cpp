@@ -248,7 +248,7 @@ TEST_F(CanControllerTest, tells_of_each_frame_given_up_exactly_once) {
     ASSERT_TRUE(can_.start(rates_, kNode, kClock));
     std::uint32_t given = 0;
     std::uint32_t lost = 0;
-    std::uint32_t told = 0;
+    std::uint32_t reported = 0;
     for (std::uint32_t pattern = 0; pattern < 512; ++pattern) {
         for (const std::uint32_t id : kIds) {
             given += can_.send(frame(id, static_cast<std::uint8_t>(pattern))) ? 1U : 0U;
@@ -268,13 +268,13 @@ TEST_F(CanControllerTest, tells_of_each_frame_given_up_exactly_once) {
             space_[kTxbcr] &= ~(1U << place);
         }
         if ((pattern & 256U) != 0) {
-            while (can_.take_given_up()) ++told;
+            while (can_.take_given_up()) ++reported;
         }
     }
-    while (can_.take_given_up()) ++told;
+    while (can_.take_given_up()) ++reported;
     EXPECT_GT(given, 300U);
     EXPECT_GT(lost, 50U);
-    EXPECT_EQ(told, lost);
+    EXPECT_EQ(reported, lost);
     EXPECT_EQ(can_.counts().given_up, lost);
 }
 
@@ -444,11 +444,11 @@ TEST(RateSearch, joins_only_where_frames_came_and_no_error) {
     RateSearch search;
     search.begin(NodeTime{0xFFFF'F000});
     const NodeTime end{0xFFFF'F000 + 1'500'000};
-    using Verdict = RateSearch::Verdict;
-    EXPECT_EQ(search.judge({.frames = 100, .has_errors = false}, NodeTime{0xFFFF'F001}), Verdict::wait);
-    EXPECT_EQ(search.judge({.frames = 100, .has_errors = false}, end), Verdict::found);
-    EXPECT_EQ(search.judge({.frames = 2, .has_errors = false}, end), Verdict::try_next) << "hardly anybody";
-    EXPECT_EQ(search.judge({.frames = 100, .has_errors = true}, end), Verdict::try_next);
+    using NextStep = RateSearch::NextStep;
+    EXPECT_EQ(search.judge({.frames = 100, .has_errors = false}, NodeTime{0xFFFF'F001}), NextStep::wait);
+    EXPECT_EQ(search.judge({.frames = 100, .has_errors = false}, end), NextStep::found);
+    EXPECT_EQ(search.judge({.frames = 2, .has_errors = false}, end), NextStep::try_next) << "hardly anybody";
+    EXPECT_EQ(search.judge({.frames = 100, .has_errors = true}, end), NextStep::try_next);
 }
 
 TEST(RateSearch, tries_every_pair_in_turn_and_each_can_be_made) {

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "host/apps/daemon/asking.hpp"
 #include "host/apps/daemon/control_socket.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -190,8 +190,8 @@ TEST_F(AnsweringLater, lets_four_of_each_user_wait_and_sixteen_in_all) {
                 std::this_thread::sleep_for(20ms);
             }
         }
-        const auto told = ask_daemon(file(), "slow");
-        of_root = told ? *told : told.error().message;
+        const auto reported = ask_daemon(file(), "slow");
+        of_root = reported ? *reported : reported.error().message;
     });
     EXPECT_EQ(gone_.size(), 5U) << "the fifth of each user, and the one of root";
     EXPECT_EQ(tickets_.size(), 21U);

@@ -1,4 +1,4 @@
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -36,7 +36,7 @@ HostTime bus(Nanoseconds time) {
 /// Of a voxel that was seen at the bus's time `seen`.
 FusedMap map_seen_at(Nanoseconds seen, const AgeModel& age = MapConfig{}.age) {
     FusedMap map(MapConfig{.age = age});
-    map.go_on(bus(seen));
+    map.advance_time(bus(seen));
     feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 1.0F}});
     return map;
 }
@@ -98,10 +98,10 @@ std::optional<Nanoseconds> boot_of_child_100_s_behind() {
     }
     ::close(ends[1]);
     std::int64_t ns = -1;
-    const bool is_told = ::read(ends[0], &ns, sizeof(ns)) == sizeof(ns);
+    const bool is_reported = ::read(ends[0], &ns, sizeof(ns)) == sizeof(ns);
     ::close(ends[0]);
     ::waitpid(child, nullptr, 0);
-    return is_told ? std::optional(Nanoseconds{ns}) : std::nullopt;
+    return is_reported ? std::optional(Nanoseconds{ns}) : std::nullopt;
 }
 
 TEST(BootClock, is_the_same_in_a_time_namespace) {
@@ -136,7 +136,7 @@ TEST(MapTime, is_no_later_than_when_the_maps_clock_came_to_what_it_shows) {
     time.note(map, bus(1030s - 10ms));
     EXPECT_EQ(time.map_time(), at(100s)) << "the bus is silent";
     now = at(131s + 50ms);
-    map.go_on(bus(1031s));
+    map.advance_time(bus(1031s));
     time.note(map, bus(1031s + 40ms));
     EXPECT_EQ(time.map_time(), at(130s));
 }
@@ -148,13 +148,14 @@ TEST(MapTime, of_a_copy_that_goes_on_is_that_of_what_the_copy_shows) {
     MapConfig config;
     config.age.unknown_after_s = 20;
     FusedMap map(config);
-    map.go_on(bus(1000s));
+    map.advance_time(bus(1000s));
     feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, -1.0F}});
     time.note(map, bus(1000s + 40ms));
     for (const std::int64_t passed_s : {0, 10, 30}) {
         now = at(Nanoseconds{(100 + passed_s) * 1'000'000'000} + 50ms);
         FusedMap copy = map.copy();
-        const auto of_copy = time.go_on(copy, bus(Nanoseconds{(1000 + passed_s) * 1'000'000'000} + 40ms));
+        const auto of_copy =
+            time.advance_time(copy, bus(Nanoseconds{(1000 + passed_s) * 1'000'000'000} + 40ms));
         EXPECT_EQ(copy.known_voxels(), passed_s < 20 ? 1U : 0U) << passed_s;
         EXPECT_EQ(map.known_voxels(), 1U);
         const Nanoseconds shown{(100 + passed_s) * 1'000'000'000};
@@ -162,7 +163,7 @@ TEST(MapTime, of_a_copy_that_goes_on_is_that_of_what_the_copy_shows) {
     }
     FusedMap waits = map.copy();
     waits.begin_to_wait();
-    EXPECT_EQ(time.go_on(waits, bus(1100s)), time.map_time());
+    EXPECT_EQ(time.advance_time(waits, bus(1100s)), time.map_time());
     EXPECT_TRUE(waits.layers().ages.clock().waits);
     EXPECT_EQ(waits.known_voxels(), 1U);
 }
@@ -173,11 +174,11 @@ TEST(MapTime, is_no_later_than_what_was_measured_and_went_into_the_map_late) {
     FusedMap map(MapConfig{});
     time.note(map, bus(1000s + 600ms));
     now = at(100s + 50ms);
-    map.go_on(bus(999s + 900ms));  // two images waited
+    map.advance_time(bus(999s + 900ms));  // two images waited
     time.note(map, bus(1000s + 650ms));
     EXPECT_EQ(time.map_time(), at(100s + 50ms - 1s - 650ms));
     now = at(100s + 100ms);
-    map.go_on(bus(1000s + 100ms));
+    map.advance_time(bus(1000s + 100ms));
     time.note(map, bus(1000s + 700ms));
     EXPECT_EQ(time.map_time(), at(100s + 100ms - 700ms));
 }
@@ -193,7 +194,7 @@ TEST(MapTime, makes_a_saved_map_older_by_what_passed_until_its_first_measurement
     (void)map.wait(*time.since_saved());
     time.note(map, {});
     EXPECT_EQ(age_s(map), 13U);
-    map.go_on(bus(5s));  // of another bus
+    map.advance_time(bus(5s));  // of another bus
     EXPECT_EQ(age_s(map), 13U);
     now = at(230s);
     EXPECT_FALSE(map.wait(*time.since_saved()));
@@ -302,21 +303,21 @@ TEST_F(SleepingMachine, ends_the_order_of_a_recording_before_the_map_is_older) {
         void on_joints(const JointMeasurement&) override {}
         void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate>) override {}
         void on_depth(const DepthFrame&, const Evidence&) override {}
-        void on_time_leap() override { at_end.push_back(age_()); }
+        void on_time_jump() override { at_end.push_back(age_()); }
         std::vector<std::uint32_t> at_end;
 
       private:
         std::function<std::uint32_t()> age_;
     };
     Ending listener([this] { return youngest_s(); });
-    pipeline_.tell(&listener);
+    pipeline_.set_listener(&listener);
     const std::uint32_t before_s = youngest_s();
     boottime_ += 2s;
     EXPECT_EQ(time_.attend(pipeline_, bus_), 2s);
     ASSERT_EQ(listener.at_end.size(), 1U);
     EXPECT_LE(listener.at_end.front(), before_s);
     EXPECT_GE(youngest_s(), before_s + 2);
-    pipeline_.tell(nullptr);
+    pipeline_.set_listener(nullptr);
 }
 
 TEST_F(SleepingMachine, goes_on_with_its_measurements_when_it_wakes) {

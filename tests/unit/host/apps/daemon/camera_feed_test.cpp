@@ -219,10 +219,11 @@ TEST_F(CameraFeedTest, opens_a_camera_anew_that_repeats_an_image_though_one_in_t
 }
 
 TEST_F(CameraFeedTest, tells_the_helper_which_camera_and_which_mode) {
-    const std::string told = (scratch_ / "told").string();
-    const auto program = camera("echo \"$# $1 $2\" > " + told + ".new; mv " + told + ".new " + told);
+    const std::string reported = (scratch_ / "told").string();
+    const auto program =
+        camera("echo \"$# $1 $2\" > " + reported + ".new; mv " + reported + ".new " + reported);
     const auto wait_for = [&](const std::string& words) {
-        return wait_until([&] { return testing_support::ScratchFolder::read(told) == words + "\n"; });
+        return wait_until([&] { return testing_support::ScratchFolder::read(reported) == words + "\n"; });
     };
     std::optional<CameraFeed> feed;
     feed.emplace("the-uri", 2s, program, openni2::CameraMode{640, 480, 30.0});

@@ -11,7 +11,7 @@ constexpr Nanoseconds kPeriod{50'000'000};
 constexpr Nanoseconds kSecond{1'000'000'000};
 constexpr HostTime kBegun{7'000'000'000};
 
-std::string told(const CameraRecord& camera, Nanoseconds after) {
+std::string reported(const CameraRecord& camera, Nanoseconds after) {
     const auto problem = camera_problem(camera, kRateHz, kBegun + after);
     return problem ? problem->text : "";
 }
@@ -25,19 +25,19 @@ CameraRecord looked_for() {
 
 TEST(CameraProblem, is_that_it_was_never_opened) {
     const CameraRecord camera = looked_for();
-    EXPECT_EQ(told(camera, kSecond), "camera: not opened yet");
-    EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has come yet: not opened yet");
+    EXPECT_EQ(reported(camera, kSecond), "camera: not opened yet");
+    EXPECT_EQ(reported(camera, 6 * kSecond), "camera: no frame has come yet: not opened yet");
 }
 
 TEST(CameraProblem, is_that_it_opens_and_never_shows_anything_however_often) {
     CameraRecord camera = looked_for();
     camera.is_open = true;
-    EXPECT_EQ(told(camera, 4 * kSecond), "") << "it may just need time";
-    EXPECT_EQ(told(camera, 6 * kSecond), "camera: no frame has come yet, and it is open");
+    EXPECT_EQ(reported(camera, 4 * kSecond), "") << "it may just need time";
+    EXPECT_EQ(reported(camera, 6 * kSecond), "camera: no frame has come yet, and it is open");
     const auto open = camera_problem(camera, kRateHz, kBegun + 6 * kSecond);
     camera.is_open = false;
     camera.why = "no data in time";
-    EXPECT_EQ(told(camera, 7 * kSecond), "camera: no frame has come yet: no data in time");
+    EXPECT_EQ(reported(camera, 7 * kSecond), "camera: no frame has come yet: no data in time");
     EXPECT_EQ(camera_problem(camera, kRateHz, kBegun + 7 * kSecond)->about, open->about)
         << "the same problem";
 }
@@ -46,7 +46,7 @@ TEST(CameraProblem, is_that_no_frame_has_a_time) {
     CameraRecord camera = looked_for();
     camera.is_open = true;
     camera.frames = camera.untimed = 90;
-    EXPECT_EQ(told(camera, 6 * kSecond),
+    EXPECT_EQ(reported(camera, 6 * kSecond),
               "camera: 90 frames came, none with a known capture time, and it is open");
 }
 
@@ -55,11 +55,12 @@ TEST(CameraProblem, is_that_frames_have_no_time_any_more_while_they_come) {
     camera.is_open = true;
     camera.newest = kBegun + 6 * kSecond;
     camera.newest_untimed = kBegun + 9 * kSecond;
-    EXPECT_THAT(told(camera, 9 * kSecond + 3 * kPeriod),
+    EXPECT_THAT(reported(camera, 9 * kSecond + 3 * kPeriod),
                 testing::StartsWith("camera: frames come, but none for three"));
-    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}), "camera: no frame for three periods");
+    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}),
+              "camera: no frame for three periods");
     camera.newest = kBegun + 9 * kSecond;
-    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");
+    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), "");
 }
 
 TEST(CameraProblem, is_that_it_shows_one_image_again_and_again) {
@@ -71,24 +72,25 @@ TEST(CameraProblem, is_that_it_shows_one_image_again_and_again) {
     ASSERT_TRUE(problem);
     EXPECT_EQ(problem->about, "camera repeats");
     camera.newest = kBegun + 9 * kSecond;
-    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");
+    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), "");
     camera.repeats_often = true;
     const auto still = camera_problem(camera, kRateHz, kBegun + 9 * kSecond + 3 * kPeriod);
     ASSERT_TRUE(still) << "one that differs now and then ends nothing";
     EXPECT_EQ(still->about, problem->about);
     camera.newest = kBegun + 11 * kSecond;
-    EXPECT_EQ(told(camera, 11 * kSecond), "") << "none for long";
+    EXPECT_EQ(reported(camera, 11 * kSecond), "") << "none for long";
 }
 
 TEST(CameraProblem, is_that_it_fell_silent_and_nothing_while_it_is_well) {
     CameraRecord camera = looked_for();
     camera.is_open = true;
     camera.newest = kBegun + 9 * kSecond;
-    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod), "");
-    EXPECT_EQ(told(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}), "camera: no frame for three periods");
+    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), "");
+    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}),
+              "camera: no frame for three periods");
     camera.is_open = false;
     camera.why = "gone";
-    EXPECT_EQ(told(camera, 9 * kSecond), "camera: gone");
+    EXPECT_EQ(reported(camera, 9 * kSecond), "camera: gone");
 }
 
 TEST(CameraProblem, is_no_silence_of_one_that_is_as_slow_as_its_mode) {
@@ -96,11 +98,11 @@ TEST(CameraProblem, is_no_silence_of_one_that_is_as_slow_as_its_mode) {
     camera.is_open = true;
     camera.rate_hz = 5.0;
     camera.newest = kBegun + 9 * kSecond;
-    EXPECT_EQ(told(camera, 9 * kSecond + Nanoseconds{600'000'000}), "");
-    EXPECT_EQ(told(camera, 9 * kSecond + Nanoseconds{600'000'001}), "camera: no frame for three periods");
+    EXPECT_EQ(reported(camera, 9 * kSecond + Nanoseconds{600'000'000}), "");
+    EXPECT_EQ(reported(camera, 9 * kSecond + Nanoseconds{600'000'001}), "camera: no frame for three periods");
     camera.rate_hz = 40.0;
-    EXPECT_EQ(told(camera, 9 * kSecond + Nanoseconds{75'000'000}), "");
-    EXPECT_NE(told(camera, 9 * kSecond + Nanoseconds{75'000'001}), "");
+    EXPECT_EQ(reported(camera, 9 * kSecond + Nanoseconds{75'000'000}), "");
+    EXPECT_NE(reported(camera, 9 * kSecond + Nanoseconds{75'000'001}), "");
 }
 
 TEST(CameraProblem, is_a_mode_of_a_rate_far_off_the_rigs) {

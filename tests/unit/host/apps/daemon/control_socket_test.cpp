@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/apps/daemon/asking.hpp"
+#include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "tests/support/lingering_connection.hpp"
 #include "tests/support/scratch_folder.hpp"

@@ -66,10 +66,10 @@ void DaemonViewTest::let_camera_contradict(const std::function<void()>& look) {
     Scene scene = daemon_scene();
     scene.depth.clear();  // of a smaller camera
     scene.rig = in_corner(std::move(scene.rig));
-    scene.mapping.map.resolution_m = 0.2;  // the witness does not look at the map
+    scene.mapping.map.resolution_m = 0.2;  // the cross-check does not use the map
     play(scene, kAllWell);
     MapBuilder& builder = pipeline_->builder();
-    builder.forget_motion({});
+    builder.clear_motion({});
     CornerLooks looks(builder, scene_.rig, 5.0);
     for (int i = 0; i < 80; ++i) {
         (void)looks.look(0.3);
@@ -106,13 +106,13 @@ void DaemonViewTest::send_joints(const std::string& line) const {
     ::close(*socket);
 }
 
-std::string DaemonViewTest::told(const std::string& about) const {
+std::string DaemonViewTest::reported(const std::string& about) const {
     const std::vector<Problem> all = problems(view_);
     const auto found = std::ranges::find(all, about, &Problem::about);
     return found == all.end() ? "" : found->text;
 }
 
-std::vector<std::string> DaemonViewTest::all_told() const {
+std::vector<std::string> DaemonViewTest::all_reported() const {
     std::vector<std::string> texts;
     for (const Problem& problem : problems(view_)) texts.push_back(problem.text);
     return texts;

@@ -57,8 +57,8 @@ class DaemonViewTest : public testing::Test {
     void send_joints(const std::string& line) const;
 
     /// As they are named in the status, by this kind; empty: there is none.
-    [[nodiscard]] std::string told(const std::string& about) const;
-    [[nodiscard]] std::vector<std::string> all_told() const;
+    [[nodiscard]] std::string reported(const std::string& about) const;
+    [[nodiscard]] std::vector<std::string> all_reported() const;
 
     testing_support::ScratchFolder folder_;
     std::string interface_ = "can7";

@@ -42,7 +42,7 @@ class InputsTest : public DaemonViewTest {
             std::this_thread::sleep_for(3ms);
         } while (std::chrono::steady_clock::now() < end);
     }
-    [[nodiscard]] std::uint64_t frames_in() const { return beside_.accounts().frames.in(); }
+    [[nodiscard]] std::uint64_t frames_in() const { return beside_.inputs().frames.in(); }
     [[nodiscard]] const HostClockEstimate& host_clock() const { return beside_.intake().host_clock(); }
 
     std::unique_ptr<Inputs> slow_;

@@ -219,7 +219,7 @@ TEST_F(JointSocketTest, loses_none_and_dates_each_while_the_loop_is_held_up) {
         HostTime before;
         HostTime after;
     };
-    std::vector<Told> told;
+    std::vector<Told> reported;
     std::vector<JointSample> samples;
     EventLoop loop;
     const HostTime end = monotonic_now() + Nanoseconds(30s);
@@ -239,7 +239,7 @@ TEST_F(JointSocketTest, loses_none_and_dates_each_while_the_loop_is_held_up) {
             for (std::size_t i = 0; i < kCount; ++i) {
                 const HostTime before = monotonic_now();
                 if (!teller.tell(static_cast<int>(i))) return;
-                told.push_back({before, monotonic_now()});
+                reported.push_back({before, monotonic_now()});
                 std::this_thread::sleep_for(kPeriod);
             }
         });
@@ -247,14 +247,14 @@ TEST_F(JointSocketTest, loses_none_and_dates_each_while_the_loop_is_held_up) {
         EXPECT_TRUE(samples.empty());
     });
     EXPECT_EQ(loop.run(), 0);
-    ASSERT_EQ(told.size(), kCount) << "it waited for the loop";
+    ASSERT_EQ(reported.size(), kCount) << "it waited for the loop";
     ASSERT_EQ(samples.size(), kCount);
     constexpr Nanoseconds kClocksApart{2'000'000};
     for (std::size_t i = 0; i < kCount; ++i) {
         const JointSample& sample = samples.at(i);
         EXPECT_EQ(number_of(sample), static_cast<int>(i));
-        EXPECT_GT(sample.sampled, told.at(i).before - kClocksApart) << i;
-        EXPECT_LT(sample.sampled, told.at(i).after + kClocksApart) << i;
+        EXPECT_GT(sample.sampled, reported.at(i).before - kClocksApart) << i;
+        EXPECT_LT(sample.sampled, reported.at(i).after + kClocksApart) << i;
     }
     EXPECT_EQ(socket_.displaced(), 0U);
     EXPECT_EQ(socket_.samples(), kCount);
@@ -331,16 +331,16 @@ TEST_F(JointSocketTest, loses_none_of_a_driver_to_another_programs_flood_that_no
 // Takes part of what the thread has read, part of what it has not: none is lost, twice here, or out of turn.
 TEST_F(JointSocketTest, hands_over_each_once_and_in_turn_while_they_come) {
     constexpr int kCount = DatagramFeed::kWaitingMax;  // whoever has no time meanwhile has room for all
-    std::atomic<bool> is_told = false;
+    std::atomic<bool> is_reported = false;
     std::thread arm([&] {
         const Teller teller(file_);
         for (int i = 0; i < kCount; ++i) EXPECT_TRUE(teller.tell(i)) << i;
-        is_told = true;
+        is_reported = true;
     });
     std::vector<int> numbers;
     std::optional<JointSample> sample;
     for (bool is_last = false; !is_last;) {
-        is_last = is_told;  // read before the socket: what is not there after that does not come any more
+        is_last = is_reported;  // read before the socket: what is not there after that does not come any more
         while (socket_.receive(sample)) numbers.push_back(number_of(sample.value()));
     }
     arm.join();
@@ -371,12 +371,12 @@ TEST_F(JointSocketTest, is_readable_while_something_waits_and_only_then) {
 }
 
 TEST_F(JointSocketTest, ends_at_once_in_the_middle_of_a_flood) {
-    std::atomic<bool> is_told = false;
+    std::atomic<bool> is_reported = false;
     std::thread arm([&] {
         const Teller teller(file_);
-        while (teller.tell("1 2 3")) is_told = true;
+        while (teller.tell("1 2 3")) is_reported = true;
     });
-    while (!is_told) std::this_thread::sleep_for(1ms);
+    while (!is_reported) std::this_thread::sleep_for(1ms);
     const auto begun = std::chrono::steady_clock::now();
     { const JointSocket ending = std::move(socket_); }
     EXPECT_LT(std::chrono::steady_clock::now() - begun, 2s);

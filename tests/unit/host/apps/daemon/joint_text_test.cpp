@@ -28,27 +28,27 @@ TEST(JointText, is_positions_of_when_it_came_or_of_the_time_before_them) {
 }
 
 TEST(JointText, fault_is_told_with_what_is_wrong_and_what_it_may_be) {
-    const auto told = [](JointTextFault fault, std::string_view text) {
+    const auto reported = [](JointTextFault fault, std::string_view text) {
         return describe(fault, text, 3, kNow);
     };
     using enum JointTextFault;
-    EXPECT_EQ(told(wrong_count, "1 2\n"), "wrong_count: 2 numbers, the rig has 3 joints");
-    EXPECT_EQ(told(not_a_number, "1, x7 y"), "not_a_number: \"x7\"");
-    EXPECT_EQ(told(too_large, "0.1 -90 45"),
+    EXPECT_EQ(reported(wrong_count, "1 2\n"), "wrong_count: 2 numbers, the rig has 3 joints");
+    EXPECT_EQ(reported(not_a_number, "1, x7 y"), "not_a_number: \"x7\"");
+    EXPECT_EQ(reported(too_large, "0.1 -90 45"),
               "too_large: joint 2 of 3 is -90, beyond +-8.388607: degrees, or millimetres?");
-    EXPECT_EQ(told(too_large, "99.5 0.1 0 9"),
+    EXPECT_EQ(reported(too_large, "99.5 0.1 0 9"),
               "too_large: joint 3 of 3 is 9, beyond +-8.388607: degrees, or millimetres?");
-    EXPECT_EQ(told(too_long, "1 2 3"), "too_long: over 1024 bytes");
-    EXPECT_EQ(told(time_off, "90 1 2 3"), "time_off: 90, and CLOCK_MONOTONIC here is 100.000");
-    EXPECT_EQ(told(time_off, "1750000000.25 1 2 3"),
+    EXPECT_EQ(reported(too_long, "1 2 3"), "too_long: over 1024 bytes");
+    EXPECT_EQ(reported(time_off, "90 1 2 3"), "time_off: 90, and CLOCK_MONOTONIC here is 100.000");
+    EXPECT_EQ(reported(time_off, "1750000000.25 1 2 3"),
               "time_off: 1750000000.25, and CLOCK_MONOTONIC here is 100.000: it looks like wall time");
-    EXPECT_EQ(told(time_off, "100200 1 2 3"),
+    EXPECT_EQ(reported(time_off, "100200 1 2 3"),
               "time_off: 100200, and CLOCK_MONOTONIC here is 100.000: it looks like milliseconds");
-    EXPECT_EQ(told(time_off, "99500000 1 2 3"),
+    EXPECT_EQ(reported(time_off, "99500000 1 2 3"),
               "time_off: 99500000, and CLOCK_MONOTONIC here is 100.000: it looks like microseconds");
-    EXPECT_EQ(told(time_off, "100000000123 1 2 3"),
+    EXPECT_EQ(reported(time_off, "100000000123 1 2 3"),
               "time_off: 100000000123, and CLOCK_MONOTONIC here is 100.000: it looks like nanoseconds");
-    EXPECT_EQ(told(time_off, "1 2 3"), "time_off");
+    EXPECT_EQ(reported(time_off, "1 2 3"), "time_off");
 }
 
 TEST(JointText, says_what_is_wrong) {

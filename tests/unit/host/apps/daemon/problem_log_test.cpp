@@ -22,10 +22,10 @@ class ProblemLogTest : public testing::Test {
     }
     ~ProblemLogTest() override { spdlog::set_default_logger(before_); }
     /// What is logged if there are these `after` the ones before.
-    std::string told(std::vector<Problem> problems, Nanoseconds after = ProblemLog::kOver) {
+    std::string reported(std::vector<Problem> problems, Nanoseconds after = ProblemLog::kOver) {
         text_.str({});
         now_ = now_ + after;
-        log_.tell(std::move(problems), now_, is_settling_);
+        log_.update(std::move(problems), now_, is_settling_);
         return text_.str();
     }
 
@@ -37,40 +37,40 @@ class ProblemLogTest : public testing::Test {
 };
 
 TEST_F(ProblemLogTest, tells_each_when_it_comes_and_when_it_goes) {
-    EXPECT_EQ(told({{"a", "it is so"}}), "warning it is so\n");
-    EXPECT_EQ(told({{"a", "it is so"}}), "");
-    EXPECT_EQ(told({}), "info over: it is so\n");
-    EXPECT_EQ(told({}), "");
+    EXPECT_EQ(reported({{"a", "it is so"}}), "warning it is so\n");
+    EXPECT_EQ(reported({{"a", "it is so"}}), "");
+    EXPECT_EQ(reported({}), "info over: it is so\n");
+    EXPECT_EQ(reported({}), "");
 }
 
 TEST_F(ProblemLogTest, takes_a_number_that_grows_for_the_same) {
-    EXPECT_NE(told({{"lost", "3 frames lost"}}), "");
-    EXPECT_EQ(told({{"lost", "14 frames lost"}}), "");
-    EXPECT_EQ(told({}), "info over: 14 frames lost\n");
+    EXPECT_NE(reported({{"lost", "3 frames lost"}}), "");
+    EXPECT_EQ(reported({{"lost", "14 frames lost"}}), "");
+    EXPECT_EQ(reported({}), "info over: 14 frames lost\n");
 }
 
 TEST_F(ProblemLogTest, tells_those_apart_whose_names_differ_in_a_digit) {
-    EXPECT_NE(told({{"node 1 sensor 3", "node 1 sensor 3: dead"}}), "");
-    EXPECT_EQ(
-        told({{"node 1 sensor 3", "node 1 sensor 3: dead"}, {"node 1 sensor 13", "node 1 sensor 13: dead"}}),
-        "warning node 1 sensor 13: dead\n");
-    EXPECT_EQ(told({{"node 2 sensor 3", "node 2 sensor 3: dead"}}),
+    EXPECT_NE(reported({{"node 1 sensor 3", "node 1 sensor 3: dead"}}), "");
+    EXPECT_EQ(reported({{"node 1 sensor 3", "node 1 sensor 3: dead"},
+                        {"node 1 sensor 13", "node 1 sensor 13: dead"}}),
+              "warning node 1 sensor 13: dead\n");
+    EXPECT_EQ(reported({{"node 2 sensor 3", "node 2 sensor 3: dead"}}),
               "warning node 2 sensor 3: dead\ninfo over: node 1 sensor 3: dead\n"
               "info over: node 1 sensor 13: dead\n");
-    EXPECT_EQ(told({{"can0", "can0: down"}}), "warning can0: down\ninfo over: node 2 sensor 3: dead\n");
-    EXPECT_EQ(told({{"can1", "can1: down"}}), "warning can1: down\ninfo over: can0: down\n");
+    EXPECT_EQ(reported({{"can0", "can0: down"}}), "warning can0: down\ninfo over: node 2 sensor 3: dead\n");
+    EXPECT_EQ(reported({{"can1", "can1: down"}}), "warning can1: down\ninfo over: can0: down\n");
 }
 
 TEST_F(ProblemLogTest, tells_one_that_comes_and_goes_once) {
     std::string all;
     constexpr Nanoseconds kTurn{50'000'000};
     for (int turn = 0; turn < 280; ++turn)  // 14 s
-        all +=
-            told(turn % 4 < 2 ? std::vector<Problem>{{"silent", "no frame"}} : std::vector<Problem>{}, kTurn);
+        all += reported(turn % 4 < 2 ? std::vector<Problem>{{"silent", "no frame"}} : std::vector<Problem>{},
+                        kTurn);
     EXPECT_EQ(all, "warning no frame\n");
-    EXPECT_EQ(told({}, ProblemLog::kOver - 3 * kTurn), "");
-    EXPECT_EQ(told({}, 3 * kTurn), "info over: no frame\n");
-    EXPECT_EQ(told({{"silent", "no frame"}}, kTurn), "warning no frame\n");
+    EXPECT_EQ(reported({}, ProblemLog::kOver - 3 * kTurn), "");
+    EXPECT_EQ(reported({}, 3 * kTurn), "info over: no frame\n");
+    EXPECT_EQ(reported({{"silent", "no frame"}}, kTurn), "warning no frame\n");
 }
 
 /// A clock in doubt for 2 s of each 4.5 s.
@@ -82,7 +82,7 @@ std::vector<Problem> doubtful(Nanoseconds at) {
 TEST_F(ProblemLogTest, tells_one_that_flaps_for_17_minutes_in_few_lines_and_how_often_it_did) {
     constexpr Nanoseconds kTurn{50'000'000};
     std::string all;
-    for (Nanoseconds at{0}; at < std::chrono::minutes(17); at += kTurn) all += told(doubtful(at), kTurn);
+    for (Nanoseconds at{0}; at < std::chrono::minutes(17); at += kTurn) all += reported(doubtful(at), kTurn);
     EXPECT_EQ(all,
               "warning the time is in doubt\ninfo over: the time is in doubt\n"
               "warning the time is in doubt\ninfo over: the time is in doubt\n"
@@ -90,10 +90,10 @@ TEST_F(ProblemLogTest, tells_one_that_flaps_for_17_minutes_in_few_lines_and_how_
               "warning the time is in doubt\n")
         << "from the fourth time on it must be away for 4 s";
     std::string end;
-    for (Nanoseconds at{0}; at < std::chrono::seconds(600); at += kTurn) end += told({}, kTurn);
+    for (Nanoseconds at{0}; at < std::chrono::seconds(600); at += kTurn) end += reported({}, kTurn);
     EXPECT_EQ(end, "info over: the time is in doubt (it came and went 227 times)\n");
-    EXPECT_EQ(told({{"clock", "the time is in doubt"}}, kTurn), "warning the time is in doubt\n");
-    EXPECT_EQ(told({}, ProblemLog::kOver), "info over: the time is in doubt\n") << "that was long ago";
+    EXPECT_EQ(reported({{"clock", "the time is in doubt"}}, kTurn), "warning the time is in doubt\n");
+    EXPECT_EQ(reported({}, ProblemLog::kOver), "info over: the time is in doubt\n") << "that was long ago";
 }
 
 /// Away each time for as long as it must be: the worst that one can do.
@@ -101,7 +101,7 @@ TEST_F(ProblemLogTest, tells_one_that_flaps_as_the_log_would_have_it_less_and_le
     int lines = 0;
     const HostTime begun = now_;
     while (now_ - begun < std::chrono::hours(24)) {
-        const std::string text = told(
+        const std::string text = reported(
             lines % 2 == 0 ? std::vector<Problem>{{"clock", "the time is in doubt"}} : std::vector<Problem>{},
             Nanoseconds{500'000'000});
         lines += static_cast<int>(std::ranges::count(text, '\n'));
@@ -111,11 +111,12 @@ TEST_F(ProblemLogTest, tells_one_that_flaps_as_the_log_would_have_it_less_and_le
 }
 
 TEST_F(ProblemLogTest, takes_a_sentence_that_another_replaced_for_no_problem_that_is_over) {
-    EXPECT_EQ(told({{"camera: unplugged", "camera: unplugged", "camera"}}), "warning camera: unplugged\n");
-    EXPECT_EQ(told({{"camera: no such file", "camera: no such file", "camera"}}),
+    EXPECT_EQ(reported({{"camera: unplugged", "camera: unplugged", "camera"}}),
+              "warning camera: unplugged\n");
+    EXPECT_EQ(reported({{"camera: no such file", "camera: no such file", "camera"}}),
               "warning camera: no such file\n");
-    EXPECT_EQ(told({{"camera: no such file", "camera: no such file", "camera"}}), "");
-    EXPECT_EQ(told({{"node 1: lost", "node 1: lost", "node 1"}}),
+    EXPECT_EQ(reported({{"camera: no such file", "camera: no such file", "camera"}}), "");
+    EXPECT_EQ(reported({{"node 1: lost", "node 1: lost", "node 1"}}),
               "warning node 1: lost\ninfo over: camera: no such file\n");
 }
 
@@ -123,25 +124,25 @@ TEST_F(ProblemLogTest, takes_none_for_over_that_another_hides_and_tells_it_once)
     const Problem lies{"sensor 3 camera", "sensor 3: lies", {}, "node 1"};
     const Problem lost{"node 1: lost", "node 1: lost", "node 1"};
     const Problem other{"node 2: lost", "node 2: lost", "node 2"};
-    EXPECT_EQ(told({lies}), "warning sensor 3: lies\n");
-    EXPECT_EQ(told({lost}), "warning node 1: lost\n");
-    EXPECT_EQ(told({lost}), "");
-    EXPECT_EQ(told({lies}), "info over: node 1: lost\n") << "it lies as before";
-    EXPECT_EQ(told({lost}), "warning node 1: lost\n");
-    EXPECT_EQ(told({}, ProblemLog::kOver - Nanoseconds{1}), "");
-    EXPECT_EQ(told({}, Nanoseconds{1}), "info over: sensor 3: lies\ninfo over: node 1: lost\n");
-    EXPECT_EQ(told({lies}), "warning sensor 3: lies\n");
-    EXPECT_EQ(told({other}), "warning node 2: lost\ninfo over: sensor 3: lies\n") << "another's";
+    EXPECT_EQ(reported({lies}), "warning sensor 3: lies\n");
+    EXPECT_EQ(reported({lost}), "warning node 1: lost\n");
+    EXPECT_EQ(reported({lost}), "");
+    EXPECT_EQ(reported({lies}), "info over: node 1: lost\n") << "it lies as before";
+    EXPECT_EQ(reported({lost}), "warning node 1: lost\n");
+    EXPECT_EQ(reported({}, ProblemLog::kOver - Nanoseconds{1}), "");
+    EXPECT_EQ(reported({}, Nanoseconds{1}), "info over: sensor 3: lies\ninfo over: node 1: lost\n");
+    EXPECT_EQ(reported({lies}), "warning sensor 3: lies\n");
+    EXPECT_EQ(reported({other}), "warning node 2: lost\ninfo over: sensor 3: lies\n") << "another's";
 }
 
 TEST_F(ProblemLogTest, takes_none_for_over_while_they_cannot_be_judged) {
-    EXPECT_EQ(told({{"a", "it is so"}}), "warning it is so\n");
+    EXPECT_EQ(reported({{"a", "it is so"}}), "warning it is so\n");
     is_settling_ = true;
-    EXPECT_EQ(told({}), "");
-    EXPECT_EQ(told({}), "");
+    EXPECT_EQ(reported({}), "");
+    EXPECT_EQ(reported({}), "");
     is_settling_ = false;
-    EXPECT_EQ(told({{"a", "it is so"}}), "");
-    EXPECT_EQ(told({}), "info over: it is so\n");
+    EXPECT_EQ(reported({{"a", "it is so"}}), "");
+    EXPECT_EQ(reported({}), "info over: it is so\n");
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ class ProblemsTest : public DaemonViewTest {
 };
 
 TEST_F(ProblemsTest, are_none_where_all_is_well) {
-    EXPECT_THAT(all_told(), IsEmpty());
+    EXPECT_THAT(all_reported(), IsEmpty());
 }
 
 // No frame has a stamp then, whatever else may be said of the time.
@@ -66,13 +66,13 @@ TEST_F(ProblemsTest, have_a_sensor_whose_readings_do_not_come_and_a_node_none_of
             5.6);
     };
     play_silence(true, true);
-    EXPECT_THAT(told(of_sensor), HasSubstr("(lost, "));
-    EXPECT_EQ(told("node 1 silence"), "");
+    EXPECT_THAT(reported(of_sensor), HasSubstr("(lost, "));
+    EXPECT_EQ(reported("node 1 silence"), "");
     play_silence(false, true);
-    EXPECT_EQ(told(of_sensor), "");
-    EXPECT_THAT(told("node 1 silence"), HasSubstr("RANGE frames"));
+    EXPECT_EQ(reported(of_sensor), "");
+    EXPECT_THAT(reported("node 1 silence"), HasSubstr("RANGE frames"));
     play_silence(false, false);
-    EXPECT_EQ(told(of_sensor) + told("node 1 silence"), "") << "it sends none";
+    EXPECT_EQ(reported(of_sensor) + reported("node 1 silence"), "") << "it sends none";
 }
 
 TEST_F(ProblemsTest, have_a_sensor_and_a_node_most_of_whose_readings_are_lost_with_how_many_of_how_many) {
@@ -93,8 +93,8 @@ TEST_F(ProblemsTest, have_a_sensor_and_a_node_most_of_whose_readings_are_lost_wi
                     scene.bus.range(t, kLeft, good_reading(kSpare));
             },
             8.6);
-        EXPECT_THAT(told(does_another_come ? of_sensor : "node 1 silence"), HasSubstr("87 of the 90"));
-        EXPECT_EQ(told(does_another_come ? "node 1 silence" : of_sensor), "");
+        EXPECT_THAT(reported(does_another_come ? of_sensor : "node 1 silence"), HasSubstr("87 of the 90"));
+        EXPECT_EQ(reported(does_another_come ? "node 1 silence" : of_sensor), "");
     }
 }
 
@@ -117,15 +117,15 @@ TEST_F(ProblemsTest, have_a_node_and_a_sensor_of_which_neither_readings_nor_heal
     };
     const auto all = [](std::uint8_t) { return true; };
     play_without(all, 7.0);
-    EXPECT_EQ(told("node 1 unheard"), "");
+    EXPECT_EQ(reported("node 1 unheard"), "");
     EXPECT_EQ(state(kSpare), "ranging");
     play_without(all, 7.1);
-    EXPECT_THAT(told("node 1 unheard"), HasSubstr("(can.busy_s)"));
-    EXPECT_EQ(told(of_sensor), "");
+    EXPECT_THAT(reported("node 1 unheard"), HasSubstr("(can.busy_s)"));
+    EXPECT_EQ(reported(of_sensor), "");
     EXPECT_EQ(state(kSpare), nullptr);
     play_without([](std::uint8_t sensor) { return sensor == kSpare; }, 7.1);
-    EXPECT_THAT(told(of_sensor), HasSubstr("SENSOR_HEALTH"));
-    EXPECT_EQ(told("node 1 unheard"), "");
+    EXPECT_THAT(reported(of_sensor), HasSubstr("SENSOR_HEALTH"));
+    EXPECT_EQ(reported("node 1 unheard"), "");
     EXPECT_EQ(state(kSpare), nullptr);
     EXPECT_EQ(state(kGood), "ranging");
 }
@@ -134,10 +134,10 @@ TEST_F(ProblemsTest, begin_with_a_clock_of_this_machine_that_shows_nonsense) {
     view_.is_wall_clock_right = false;
     other_end_.reset();
     inputs_->catch_up();
-    const auto told = problems(view_);
-    ASSERT_GE(told.size(), 2U);
-    EXPECT_EQ(told[0].about, "wall clock");
-    EXPECT_EQ(told[1].subject, "CAN");
+    const auto reported = problems(view_);
+    ASSERT_GE(reported.size(), 2U);
+    EXPECT_EQ(reported[0].about, "wall clock");
+    EXPECT_EQ(reported[1].subject, "CAN");
 }
 
 TEST_F(ProblemsTest, come_the_most_fundamental_first) {
@@ -148,7 +148,7 @@ TEST_F(ProblemsTest, come_the_most_fundamental_first) {
     view_.camera->why = "no such device";
     view_.saves.error = "the disk is full";
     EXPECT_THAT(
-        all_told(),
+        all_reported(),
         ElementsAre(HasSubstr("CAN absent: can7: closed: No such device"),
                     "the time is not known yet: no SYNC of this host reached the bus, and no node is active",
                     "node 1 'node 1': absent",
@@ -162,55 +162,55 @@ TEST_F(ProblemsTest, have_the_adapters_word_until_traffic_proves_it_wrong) {
         "CAN bus_off: the adapter is bus-off (`ip link set NAME type can restart-ms 100` lets it come back)";
     EXPECT_THAT(problems(view_), ElementsAre(Problem{bus_off, bus_off, "CAN"}));
     say({.can_id = 5});
-    EXPECT_THAT(all_told(), IsEmpty());
+    EXPECT_THAT(all_reported(), IsEmpty());
     say_error(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE);
-    EXPECT_THAT(all_told(), ElementsAre("CAN error_passive: the adapter is error-passive: no node "
-                                        "acknowledges, the bit rates differ, or the line is disturbed"));
+    EXPECT_THAT(all_reported(), ElementsAre("CAN error_passive: the adapter is error-passive: no node "
+                                            "acknowledges, the bit rates differ, or the line is disturbed"));
     say({.can_id = 5});
-    EXPECT_THAT(all_told(), IsEmpty());
+    EXPECT_THAT(all_reported(), IsEmpty());
 }
 
 TEST_F(ProblemsTest, have_another_host_for_three_seconds_after_its_sync_unless_this_one_only_listens) {
     view_.now = say_sync(1) + 3 * kSecond - kNs;
     EXPECT_EQ(
-        told("another host"),
+        reported("another host"),
         "another host sends SYNC or FOLLOW_UP on this bus: only one may (start this one with --listen-only)");
     view_.is_listen_only = true;
-    EXPECT_EQ(told("another host"), "");
+    EXPECT_EQ(reported("another host"), "");
     view_.is_listen_only = false;
     view_.now = *inputs_->foreign_sync() + 3 * kSecond;
-    EXPECT_EQ(told("another host"), "");
+    EXPECT_EQ(reported("another host"), "");
 }
 
 TEST_F(ProblemsTest, have_a_bus_whose_time_went_back_for_a_minute) {
     view_.used.time_back = view_.now - 60 * kSecond + kNs;
-    EXPECT_EQ(told("time back"),
+    EXPECT_EQ(reported("time back"),
               "the bus time went back (times_back, 0) within the last minute: the host that sends SYNC "
               "restarted, or there are two; joint states and readings continue from there");
     view_.used.time_back = view_.now - 60 * kSecond;
-    EXPECT_EQ(told("time back"), "");
+    EXPECT_EQ(reported("time back"), "");
 }
 
 TEST_F(ProblemsTest, have_a_bus_whose_time_leapt_ahead_for_a_minute) {
     view_.used.time_ahead = view_.now - 60 * kSecond + kNs;
-    EXPECT_EQ(told("time ahead"),
+    EXPECT_EQ(reported("time ahead"),
               "the bus time jumped ahead (times_ahead, 0) within the last minute: another host sends SYNC, "
               "or its clock was set; the age of the map does not change");
     view_.used.time_ahead = view_.now - 60 * kSecond;
-    EXPECT_EQ(told("time ahead"), "");
+    EXPECT_EQ(reported("time ahead"), "");
 }
 
 TEST_F(ProblemsTest, have_a_time_that_nobody_tells_until_somebody_does) {
     play(daemon_scene(), 0.09);
-    EXPECT_EQ(told("no time"),
+    EXPECT_EQ(reported("no time"),
               "the time is not known yet: nodes are active, but no SYNC of this host reached the bus "
               "(can.not_sent, 0)");
     view_.is_listen_only = true;
     EXPECT_EQ(
-        told("no time"),
+        reported("no time"),
         "the time is not known: no host on the bus sends SYNC and FOLLOW_UP (--listen-only sends none)");
     play(daemon_scene(), 0.2);
-    EXPECT_EQ(told("no time"), "");
+    EXPECT_EQ(reported("no time"), "");
 }
 
 TEST_F(ProblemsTest, have_no_time_from_our_own_sync_alone) {
@@ -219,9 +219,9 @@ TEST_F(ProblemsTest, have_no_time_from_our_own_sync_alone) {
     scene.rig.joints.node_id = 45;
     play(scene, 0.2);
     ASSERT_TRUE(pipeline_->now());
-    EXPECT_EQ(told("no time"), "the time is not known: no node is active that would share it");
+    EXPECT_EQ(reported("no time"), "the time is not known: no node is active that would share it");
     view_.is_listen_only = true;
-    EXPECT_EQ(told("no time"), "");
+    EXPECT_EQ(reported("no time"), "");
 }
 
 // It is not that a SYNC is missing, or a node.
@@ -229,25 +229,25 @@ TEST_F(ProblemsTest, have_a_time_in_doubt_with_what_made_it_so) {
     ScriptedBus after_silence;
     for (int i = 0; i < 6; ++i) after_silence.heartbeat(5.0 + 0.1 * i, node_of(scene_, kLeft));
     play_on(after_silence.frames(), 5.55);
-    EXPECT_THAT(told("time jumped"), HasSubstr("the bus was silent, or this machine's clock was set"));
-    EXPECT_EQ(told("no time"), "");
+    EXPECT_THAT(reported("time jumped"), HasSubstr("the bus was silent, or this machine's clock was set"));
+    EXPECT_EQ(reported("no time"), "");
 
-    const auto exchange = [](ScriptedBus& bus, std::uint8_t sequence, double at_s, double told_s) {
+    const auto exchange = [](ScriptedBus& bus, std::uint8_t sequence, double at_s, double reported_s) {
         bus.send(at_s, wire::Sync{sequence}, wire::kHostId);
-        const auto host_us = static_cast<std::uint64_t>(std::llround(told_s * 1e6));
+        const auto host_us = static_cast<std::uint64_t>(std::llround(reported_s * 1e6));
         bus.send(at_s + 0.001, wire::FollowUp{sequence, host_us}, wire::kHostId);
     };
-    ScriptedBus told_again;
-    exchange(told_again, 20, 5.6, 5.6);
-    play_on(told_again.frames(), 5.65);
-    EXPECT_EQ(told("time jumped"), "");
-    ScriptedBus told_otherwise;
-    exchange(told_otherwise, 21, 5.7, 5.73);
-    play_on(told_otherwise.frames(), 5.75);
-    EXPECT_THAT(told("time disagrees"), HasSubstr("differs from the earlier ones by over 20 ms"));
-    EXPECT_EQ(told("no time") + told("time jumped"), "");
+    ScriptedBus reported_again;
+    exchange(reported_again, 20, 5.6, 5.6);
+    play_on(reported_again.frames(), 5.65);
+    EXPECT_EQ(reported("time jumped"), "");
+    ScriptedBus reported_otherwise;
+    exchange(reported_otherwise, 21, 5.7, 5.73);
+    play_on(reported_otherwise.frames(), 5.75);
+    EXPECT_THAT(reported("time disagrees"), HasSubstr("differs from the earlier ones by over 20 ms"));
+    EXPECT_EQ(reported("no time") + reported("time jumped"), "");
     view_.is_listen_only = true;
-    EXPECT_THAT(told("time disagrees"), HasSubstr("a clock was set")) << "whoever sends SYNC";
+    EXPECT_THAT(reported("time disagrees"), HasSubstr("a clock was set")) << "whoever sends SYNC";
 }
 
 TEST_F(ProblemsTest, have_each_node_that_is_not_usable_and_nothing_of_its_sensors) {
@@ -255,11 +255,11 @@ TEST_F(ProblemsTest, have_each_node_that_is_not_usable_and_nothing_of_its_sensor
         scene.rig = one_joint_rig();
         set_health(scene, 4.5, wire::SensorState::lost, wire::SensorFault::no_answer);
     });
-    EXPECT_THAT(all_told(), ElementsAre("node 1 'node 1' sensor 0 'good': lost, no_answer",
-                                        "node 2 'node 2': absent", "node 3 'node 3': absent"));
+    EXPECT_THAT(all_reported(), ElementsAre("node 1 'node 1' sensor 0 'good': lost, no_answer",
+                                            "node 2 'node 2': absent", "node 3 'node 3': absent"));
     play(scene_, 9.4);  // its newest heartbeat came at 9.0 s
-    EXPECT_EQ(told("node 1 'node 1': lost"), "node 1 'node 1': lost");
-    EXPECT_EQ(told("node 1 'node 1' sensor 0 'good': lost, no_answer"), "");
+    EXPECT_EQ(reported("node 1 'node 1': lost"), "node 1 'node 1': lost");
+    EXPECT_EQ(reported("node 1 'node 1' sensor 0 'good': lost, no_answer"), "");
 }
 
 TEST_F(ProblemsTest, have_a_sensor_that_does_not_range_but_for_its_start_until_it_ranges) {
@@ -267,15 +267,15 @@ TEST_F(ProblemsTest, have_a_sensor_that_does_not_range_but_for_its_start_until_i
     for (const auto state : {absent, starting, ranging, stopped, degraded, lost}) {
         play_changed([&](Scene& scene) { set_health(scene, 4.5, state, wire::SensorFault::bus_error); });
         const bool is_well = state == ranging || state == starting;
-        EXPECT_EQ(all_told(), is_well ? std::vector<std::string>{}
-                                      : std::vector{"node 1 'node 1' sensor 0 'good': " +
-                                                    std::string(wire::name(state)) + ", bus_error"});
+        EXPECT_EQ(all_reported(), is_well ? std::vector<std::string>{}
+                                          : std::vector{"node 1 'node 1' sensor 0 'good': " +
+                                                        std::string(wire::name(state)) + ", bus_error"});
     }
     play_changed([&](Scene& scene) {
         set_health(scene, 4.4, lost, wire::SensorFault::bus_error);
         set_health(scene, 4.5, ranging, wire::SensorFault::bus_error);
     });
-    EXPECT_THAT(all_told(), IsEmpty());
+    EXPECT_THAT(all_reported(), IsEmpty());
 }
 
 TEST_F(ProblemsTest, have_the_register_that_a_sensor_is_withheld_for_and_the_key_that_leaves_it_out) {
@@ -288,14 +288,14 @@ TEST_F(ProblemsTest, have_the_register_that_a_sensor_is_withheld_for_and_the_key
         set_health(scene, 4.4, wire::SensorState::degraded, wire::SensorFault::config_mismatch);
         say_fault(scene, 4.5, wire::FaultKind::register_fixed);
     });
-    EXPECT_THAT(told(about), AllOf(HasSubstr("0x47"), HasSubstr("0x0B"), HasSubstr("0x0C"),
-                                   HasSubstr("verification: {leave_out: [0x47]}")));
+    EXPECT_THAT(reported(about), AllOf(HasSubstr("0x47"), HasSubstr("0x0B"), HasSubstr("0x0C"),
+                                       HasSubstr("verification: {leave_out: [0x47]}")));
     play_changed([&](Scene& scene) {
         set_health(scene, 4.4, wire::SensorState::degraded, wire::SensorFault::config_mismatch);
     });
-    EXPECT_EQ(told(about), about) << "its node has not named it yet";
+    EXPECT_EQ(reported(about), about) << "its node has not named it yet";
     play_changed([&](Scene& scene) { say_fault(scene, 4.5, wire::FaultKind::register_alike); });
-    EXPECT_THAT(all_told(), IsEmpty()) << "how this type of part is is no problem";
+    EXPECT_THAT(all_reported(), IsEmpty()) << "how this type of part is is no problem";
 }
 
 TEST_F(ProblemsTest, have_a_sensor_whose_readings_are_nearly_all_rejected_until_two_are_used) {
@@ -309,7 +309,7 @@ TEST_F(ProblemsTest, have_a_sensor_whose_readings_are_nearly_all_rejected_until_
                 }
             },
             4.05 + 0.035 * (bad + good));
-        return told("node 1 'node 1' sensor 5 'good' streak");
+        return reported("node 1 'node 1' sensor 5 'good' streak");
     };
     const std::string expected =
         "node 1 'node 1' sensor 5 'good': (nearly) all of its last 32 readings were rejected, most as "
@@ -332,7 +332,7 @@ TEST_F(ProblemsTest, have_two_senders_under_one_sensor_s_name_until_a_second_aft
                 }
             },
             until_s);
-        return told("node 1 'node 1' sensor 5 'good' senders");
+        return reported("node 1 'node 1' sensor 5 'good' senders");
     };
     EXPECT_EQ(with_forged(1, 4.2), "") << "one may be a damaged frame";
     EXPECT_EQ(with_forged(2, 4.2),
@@ -351,7 +351,7 @@ TEST_F(ProblemsTest, have_two_answers_to_one_sync_for_two_and_a_half_seconds_of_
                 scene.bus.send(4.1015, wire::SyncReport{newest, scene.bus.node_time(node, 4.16)}, node);
             },
             until_s);
-        return told("node " + std::to_string(int{node}) + " answers");
+        return reported("node " + std::to_string(int{node}) + " answers");
     };
     EXPECT_EQ(with_answer(kLeft, 4.1016), "") << "one alone";
     EXPECT_EQ(with_answer(kLeft, 4.2),
@@ -362,7 +362,7 @@ TEST_F(ProblemsTest, have_two_answers_to_one_sync_for_two_and_a_half_seconds_of_
     EXPECT_NE(with_answer(kJoints, 4.2), "");
     EXPECT_NE(with_answer(kLeft, 4.5), "");
     set_now(6.61);
-    EXPECT_EQ(told("node 1 answers"), "");
+    EXPECT_EQ(reported("node 1 answers"), "");
 }
 
 TEST_F(ProblemsTest, have_a_node_that_started_anew_for_three_seconds) {
@@ -376,7 +376,7 @@ TEST_F(ProblemsTest, have_a_node_that_started_anew_for_three_seconds) {
                 scene.bus.send(4.25, starting, node);
             },
             until_s);
-        return told("node " + std::to_string(int{node}) + " restarts");
+        return reported("node " + std::to_string(int{node}) + " restarts");
     };
     EXPECT_EQ(with_start(kLeft, 4.24), "");
     EXPECT_EQ(with_start(kLeft, 4.26),
@@ -385,7 +385,7 @@ TEST_F(ProblemsTest, have_a_node_that_started_anew_for_three_seconds) {
               "another sender under its id");
     EXPECT_EQ(status_json(view_)["nodes"][0]["restarts"], 1);
     set_now(7.26);
-    EXPECT_EQ(told("node 1 restarts"), "");
+    EXPECT_EQ(reported("node 1 restarts"), "");
 }
 
 TEST_F(ProblemsTest, have_a_node_that_loses_over_a_twentieth_of_a_second_s_readings_and_why) {
@@ -402,24 +402,24 @@ TEST_F(ProblemsTest, have_a_node_that_loses_over_a_twentieth_of_a_second_s_readi
                 }
             },
             4.99);
-        return told("node 1 loses");
+        return reported("node 1 loses");
     };
     EXPECT_EQ(with_forged(28), "") << "one of 29";
     EXPECT_EQ(with_forged(7),
               "node 1 'node 1': 12 % of its readings within the last second were refused, most as too_young. "
-              "Look for a second board with its node id, or frames that are recorded twice.")
+              "Look for a second board with its node id, or for frames that are recorded twice.")
         << "four of 32";
 }
 
 TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is_decided) {
-    int told_after = 0;
+    int reported_after = 0;
     let_camera_contradict([&] {
-        const bool is_decided = pipeline_->builder().witness()->evidence(kLeft, kGood).contradicts();
-        EXPECT_EQ(told("node 1 'node 1' sensor 0 'good' camera").empty(), !is_decided);
-        told_after += is_decided ? 0 : 1;
+        const bool is_decided = pipeline_->builder().cross_check()->evidence(kLeft, kGood).contradicts();
+        EXPECT_EQ(reported("node 1 'node 1' sensor 0 'good' camera").empty(), !is_decided);
+        reported_after += is_decided ? 0 : 1;
     });
-    EXPECT_THAT(told_after, testing::AllOf(testing::Gt(1), testing::Lt(80)));
-    EXPECT_THAT(all_told(),
+    EXPECT_THAT(reported_after, testing::AllOf(testing::Gt(1), testing::Lt(80)));
+    EXPECT_THAT(all_reported(),
                 ElementsAre(testing::AllOf(
                     testing::StartsWith("node 1 'node 1' sensor 0 'good': contradicts the camera: "),
                     HasSubstr(" of its ranges end where the camera sees free space, 0 behind a surface"))));
@@ -427,8 +427,8 @@ TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is
     Scene scene = daemon_scene();
     scene.mapping.removes_robot_from_depth = false;
     play(scene, kAllWell);
-    ASSERT_EQ(pipeline_->builder().witness(), nullptr);
-    EXPECT_THAT(all_told(), IsEmpty());
+    ASSERT_EQ(pipeline_->builder().cross_check(), nullptr);
+    EXPECT_THAT(all_reported(), IsEmpty());
 }
 
 TEST_F(ProblemsTest, have_of_a_lost_nodes_sensors_none_and_none_that_is_over) {
@@ -448,14 +448,14 @@ TEST_F(ProblemsTest, have_of_a_lost_nodes_sensors_none_and_none_that_is_over) {
 // Most of what a sensor with a wrong offset ranges is within what camera and range may be off together.
 TEST_F(ProblemsTest, tell_of_a_sensor_that_contradicts_the_camera_nothing_that_acquits_it) {
     SensorEvidence evidence{
-        .agreed = 400, .fault = SensorFault::ranges_too_long, .compared = 412, .fitted = 380};
+        .agreed = 400, .fault = RangeFault::ranges_too_long, .compared = 412, .fitted = 380};
     EXPECT_EQ(describe(evidence),
               "contradicts the camera: its ranges are some centimetres too long: set its offset "
               "(docs/hardware/calibration.md)");
     evidence.in_free_space = 7;
     evidence.behind_surface = 2;
-    for (const SensorFault fault : {SensorFault::ranges_too_short, SensorFault::often_short,
-                                    SensorFault::turned, SensorFault::exchanged}) {
+    for (const RangeFault fault :
+         {RangeFault::ranges_too_short, RangeFault::often_short, RangeFault::turned, RangeFault::exchanged}) {
         evidence.fault = fault;
         EXPECT_THAT(describe(evidence),
                     HasSubstr(" (7 of its ranges end where the camera sees free space, 2 behind "
@@ -466,18 +466,18 @@ TEST_F(ProblemsTest, tell_of_a_sensor_that_contradicts_the_camera_nothing_that_a
 }
 
 TEST_F(ProblemsTest, have_readings_that_are_of_no_use_or_stopped) {
-    EXPECT_EQ(told("readings unused"), "");
+    EXPECT_EQ(reported("readings unused"), "");
     view_.now = *view_.used.reading + Nanoseconds{800'000'000};
-    EXPECT_EQ(told("readings stopped"), "");
+    EXPECT_EQ(reported("readings stopped"), "");
     view_.now = view_.now + kNs;
-    EXPECT_EQ(told("readings stopped"), "readings no longer reach the map: see the counters of readings");
+    EXPECT_EQ(reported("readings stopped"), "readings no longer reach the map: see the counters of readings");
     play(daemon_scene(), 3.5);
-    EXPECT_EQ(told("readings unused") + told("readings stopped"), "") << "none has come";
+    EXPECT_EQ(reported("readings unused") + reported("readings stopped"), "") << "none has come";
     view_.used = {};
     play_changed([](Scene& scene) { scene.rig.range_limits.max_m = 0.1; });
-    EXPECT_EQ(told("readings unused"),
+    EXPECT_EQ(reported("readings unused"),
               "no reading could be used yet: readings: 10 of 10 are not used, most as above_range_max (10): "
-              "above range_limits.max_m of the rig.");
+              "further than range_limits.max_m.");
 }
 
 TEST_F(ProblemsTest, have_a_map_without_room) {
@@ -487,7 +487,7 @@ TEST_F(ProblemsTest, have_a_map_without_room) {
     });
     const auto& counters = pipeline_->map().counters();
     ASSERT_GT(counters.no_room, 0U);
-    EXPECT_EQ(told("map full"),
+    EXPECT_EQ(reported("map full"),
               "the map is full (1 MiB): it takes no new space, " + std::to_string(counters.no_room) +
                   " updates found no room (no_room); raise map.memory_max_mib in the mapping file");
 }
@@ -496,16 +496,16 @@ TEST_F(ProblemsTest, have_a_save_and_a_reload_that_failed_until_the_next_goes_we
     view_.saves.error = "maps/fused.ot: no space";
     view_.reload_error = "rig.yaml:3: what is that";
     EXPECT_THAT(
-        all_told(),
+        all_reported(),
         ElementsAre(
             "the map is not saved: maps/fused.ot: no space",
             "the newest reload was refused, and the old settings stay in force: rig.yaml:3: what is that"));
     view_.recording_refusal = "no memory";
-    EXPECT_EQ(told("recording refused"), "the newest recording did not start: no memory");
+    EXPECT_EQ(reported("recording refused"), "the newest recording did not start: no memory");
     view_.recording_refusal.clear();
     view_.saves.error.clear();
     view_.reload_error.clear();
-    EXPECT_THAT(all_told(), IsEmpty());
+    EXPECT_THAT(all_reported(), IsEmpty());
 }
 
 TEST_F(ProblemsTest, have_a_recording_that_failed) {
@@ -514,7 +514,7 @@ TEST_F(ProblemsTest, have_a_recording_that_failed) {
     view_.recorder = &recorder;
     recorder.stop(view_.now);
     ASSERT_TRUE(recorder.wait(10 * kSecond));
-    EXPECT_THAT(all_told(), ElementsAre("the recording has failed: " + recorder.error()));
+    EXPECT_THAT(all_reported(), ElementsAre("the recording has failed: " + recorder.error()));
     EXPECT_THAT(recorder.error(), HasSubstr((folder_ / "taken").string()));
 }
 
@@ -522,10 +522,10 @@ TEST_F(ProblemsTest, have_a_recording_that_is_not_complete) {
     play_changed([](Scene& scene) { scene.rig.camera->depth_max_m = 40.0; });
     Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, view_.now);
     view_.recorder = &recorder;
-    EXPECT_THAT(all_told(), IsEmpty());
+    EXPECT_THAT(all_reported(), IsEmpty());
     recorder.on_depth(flat_frame(4.5, 39'000), {});  // more than a recording can hold
     EXPECT_THAT(
-        all_told(),
+        all_reported(),
         ElementsAre(
             "the recording is incomplete, and its replay gives another map: see recording.lost_commits and "
             "lost_depth (the disk was too slow, there was no memory, or depth was beyond 32.767 m)"));

@@ -64,7 +64,7 @@ TEST_F(RecordRequestsTest, refuses_what_is_no_request_and_begins_nothing) {
     expect_refused("record stop /tmp/a", "nothing is being recorded");
     expect_refused("record stop here", "is no absolute path");
     for (const char* const request : {"record start 0 /", "record stop /"})
-        expect_refused(request + std::string(40'000, 'a'), "at most 4095 bytes, and this one 40001");
+        expect_refused(request + std::string(40'000, 'a'), "at most 4095 bytes, and this one has 40001");
     EXPECT_EQ(ask("record status")["ok"], true);
 }
 
@@ -126,7 +126,7 @@ TEST_F(RecordRequestsTest, ends_as_failed_without_memory_for_the_last_map) {
 TEST_F(RecordRequestsTest, ends_whole_and_says_why_when_the_buss_time_leaps) {
     EXPECT_TRUE(ask("record start 60 " + (folder_ / "recording").string())["ok"].get<bool>());
     EXPECT_EQ(ask("record status")["recording"]["ended_early"], "");
-    pipeline_.builder().forget_motion({});
+    pipeline_.builder().clear_motion({});
     requests_.finish(std::chrono::seconds(20));
     const Json recording = ask("record status")["recording"];
     EXPECT_EQ(recording["state"], "ended");

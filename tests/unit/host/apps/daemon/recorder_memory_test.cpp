@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "host/apps/daemon/boot_clock.hpp"
-#include "host/apps/daemon/map_keeper.hpp"
-#include "host/apps/daemon/query_desk.hpp"
+#include "host/apps/daemon/map_saver.hpp"
+#include "host/apps/daemon/query_server.hpp"
 #include "host/apps/daemon/recorder.hpp"
-#include "host/apps/querying/query_request.hpp"
+#include "host/apps/query/query_request.hpp"
 #include "tests/support/allocation_hooks.hpp"
 #include "tests/support/evidence.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -80,7 +80,7 @@ TEST(MapTimeWithoutMemory, is_that_of_before_where_the_map_cannot_grow_older) {
     const BootTime saved{{1}, Nanoseconds{1'000'000'000}};
     const BootTime now{{1}, Nanoseconds{(kLong_s + 1) * 1'000'000'000}};
     FusedMap map(MapConfig{.age = {.stale_after_s = 10, .unknown_after_s = 0}});
-    map.go_on(HostTime{5'000'000'000});
+    map.advance_time(HostTime{5'000'000'000});
     feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 1.0F}});
     const FusedMap shares = map.copy();
     MapTime time([now] { return std::optional(now); });
@@ -98,24 +98,24 @@ TEST(MapTimeWithoutMemory, is_that_of_before_where_the_map_cannot_grow_older) {
 // A reload comes to it when there is no way back any more.
 TEST(MapTimeWithoutMemory, is_forgotten_though_a_copy_of_the_map_has_it_too) {
     FusedMap map(MapConfig{.age = {.stale_after_s = 10, .unknown_after_s = 0}});
-    map.go_on(HostTime{5'000'000'000});
+    map.advance_time(HostTime{5'000'000'000});
     feed(map, std::vector<VoxelUpdate>{{{32768, 32768, 32768}, 1.0F}});
     const FusedMap shares = map.copy();
     is_memory_gone = true;
-    map.forget_times();
+    map.clear_times();
     is_memory_gone = false;
-    map.go_on(HostTime{6'000'000'000});
+    map.advance_time(HostTime{6'000'000'000});
     EXPECT_FALSE(map.confirmation({32768, 32768, 32768}));
     EXPECT_TRUE(map.is_stale({32768, 32768, 32768}));
     EXPECT_TRUE(shares.confirmation({32768, 32768, 32768}));
 }
 
-TEST(QueryDeskWithoutMemory, answers_and_goes_on) {
+TEST(QueryServerWithoutMemory, answers_and_goes_on) {
     is_spared = true;
     const test::Scene scene = test::good_scene();
     Pipeline pipeline = test::make_pipeline(scene);
     const HostSetup setup{scene.rig, test::one_joint_robot(), {}};
-    QueryDesk desk(setup);
+    QueryServer desk(setup);
     const auto ask = [&](std::uint64_t ticket) {
         QueryRequest request;
         request.path = {{0.0}};
@@ -140,19 +140,19 @@ TEST(QueryDeskWithoutMemory, answers_and_goes_on) {
 }
 
 // The next one may find some.
-TEST(MapKeeperWithoutMemory, counts_a_save_as_failed_and_goes_on) {
+TEST(MapSaverWithoutMemory, counts_a_save_as_failed_and_goes_on) {
     is_spared = true;
     const testing_support::ScratchFolder folder;
-    MapKeeper keeper{NamedFolder(folder.path())};
+    MapSaver saver{NamedFolder(folder.path())};
     const FusedMap map{MapConfig{}};
     is_memory_of_others_gone = true;
-    EXPECT_TRUE(keeper.save(map));
-    EXPECT_TRUE(keeper.finish(Nanoseconds{10'000'000'000}));
-    EXPECT_EQ(keeper.record().failed, 1U);
+    EXPECT_TRUE(saver.save(map));
+    EXPECT_TRUE(saver.finish(Nanoseconds{10'000'000'000}));
+    EXPECT_EQ(saver.record().failed, 1U);
     is_memory_of_others_gone = false;
-    EXPECT_TRUE(keeper.save(map));
-    EXPECT_TRUE(keeper.finish(Nanoseconds{10'000'000'000}));
-    EXPECT_EQ(keeper.record().saved, 1U) << keeper.record().error;
+    EXPECT_TRUE(saver.save(map));
+    EXPECT_TRUE(saver.finish(Nanoseconds{10'000'000'000}));
+    EXPECT_EQ(saver.record().saved, 1U) << saver.record().error;
 }
 
 }  // namespace

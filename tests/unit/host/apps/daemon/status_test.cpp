@@ -50,7 +50,7 @@ TEST_F(StatusTest, names_links_without_a_body_and_is_content_with_those_that_the
     scene_.rig.links_without_body = {{"elbow", true}, {"wrist", false}};
     EXPECT_EQ(status()["links_without_body"], Json({"elbow", "wrist"}));
     EXPECT_EQ(status()["links_unknown"], Json({"wrist"}));
-    EXPECT_EQ(told("links without body").rfind("robot: wrist: without a body", 0), 0U);
+    EXPECT_EQ(reported("links without body").rfind("robot: wrist: without a body", 0), 0U);
     EXPECT_EQ(status()["problems"].size(), 1U);
     view_.reloaded = view_.now;
     EXPECT_EQ(status()["problems"].size(), 1U) << "nothing to be learnt anew";
@@ -258,7 +258,7 @@ TEST_F(StatusTest, has_how_often_something_came_too_close_to_a_sensor_and_how_cl
 
 TEST_F(StatusTest, has_what_the_camera_says_of_a_sensor_or_null_without_one) {
     let_camera_contradict();
-    const SensorEvidence& evidence = pipeline_->builder().witness()->evidence(kLeft, kGood);
+    const SensorEvidence& evidence = pipeline_->builder().cross_check()->evidence(kLeft, kGood);
     const Json camera = sensor(kGood)["camera"];
     EXPECT_EQ(camera["contradicts"], true);
     EXPECT_EQ(camera["verdict"], "contradicts");
@@ -304,15 +304,15 @@ TEST_F(StatusTest, has_what_came_through_the_joint_socket_or_null_without_one) {
     with_socket->catch_up();
     view_.inputs = with_socket.get();
     view_.now = monotonic_now();
-    Json told = status()["joints_socket"];
-    ASSERT_EQ(told["senders"].size(), 1U);
-    EXPECT_EQ(told["senders"][0]["pid"], ::getpid());
-    EXPECT_EQ(told["senders"][0]["uid"], ::getuid());
-    EXPECT_EQ(told["senders"][0]["address"], "");
-    EXPECT_EQ(told["senders"][0]["samples"], 2);
-    EXPECT_LT(told["senders"][0]["age_s"].get<double>(), 1.0);
-    told.erase("senders");
-    EXPECT_EQ(told,
+    Json reported = status()["joints_socket"];
+    ASSERT_EQ(reported["senders"].size(), 1U);
+    EXPECT_EQ(reported["senders"][0]["pid"], ::getpid());
+    EXPECT_EQ(reported["senders"][0]["uid"], ::getuid());
+    EXPECT_EQ(reported["senders"][0]["address"], "");
+    EXPECT_EQ(reported["senders"][0]["samples"], 2);
+    EXPECT_LT(reported["senders"][0]["age_s"].get<double>(), 1.0);
+    reported.erase("senders");
+    EXPECT_EQ(reported,
               Json::parse(R"({"samples": 2, "displaced": 0, "surplus": 0, "thinned": 1, "second_sender": 0,
                   "rate_hz": 0.0, "above_rate": false, "joint_node_ignored": 0, "not_a_number": 1,
                   "wrong_count": 1, "time_off": 0, "too_large": 0, "too_long": 0})"));
@@ -338,12 +338,12 @@ TEST_F(StatusTest, has_the_map_with_its_memory_and_saves) {
     EXPECT_EQ(status()["map"]["folder_silent_s"], nullptr);
     view_.maps_silent_since = host_at(1.55);
     EXPECT_NEAR(status()["map"]["folder_silent_s"], 3.0, kTiny);
-    EXPECT_NE(told("maps folder silent"), "");
+    EXPECT_NE(reported("maps folder silent"), "");
 }
 
 TEST_F(StatusTest, has_how_much_of_the_map_has_no_time) {
     FusedMap map(MapConfig{.memory_max_mib = 1});
-    map.go_on(HostTime{0});
+    map.advance_time(HostTime{0});
     std::vector<VoxelUpdate> updates;  // each in a brick and in nodes of its own
     for (std::uint16_t x = 0; x < 100; ++x)
         for (std::uint16_t y = 0; y < 20; ++y)
@@ -374,7 +374,7 @@ TEST_F(StatusTest, knows_when_the_buss_time_leapt_ahead) {
     ASSERT_TRUE(view_.used.time_ahead);
     EXPECT_EQ(status()["clock"]["times_ahead"], 1);
     EXPECT_EQ(status()["clock"]["times_back"], 0);
-    EXPECT_NE(told("time ahead"), "");
+    EXPECT_NE(reported("time ahead"), "");
 }
 
 TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_reload) {
@@ -385,9 +385,9 @@ TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_r
     view_.reloaded = view_.now - Nanoseconds{2'999'999'999};
     EXPECT_EQ(status()["problems"], Json::array({"the map is not saved: the disk is full"}));
     view_.reloaded = view_.now - Nanoseconds{3'000'000'000};
-    EXPECT_NE(told("no time"), "");
-    EXPECT_NE(told("no joints"), "");
-    EXPECT_NE(told("node 1 'node 1': absent"), "");
+    EXPECT_NE(reported("no time"), "");
+    EXPECT_NE(reported("no joints"), "");
+    EXPECT_NE(reported("node 1 'node 1': absent"), "");
 }
 
 TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
@@ -397,7 +397,7 @@ TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
               Json::parse(R"({"count": 2, "unchanged": 3, "dropped": 7, "reading_s": null})"));
     view_.reloads.reading_since = host_at(0.55);
     EXPECT_NEAR(status()["reloads"]["reading_s"], 4.0, kTiny);
-    EXPECT_NE(told("reload silent"), "");
+    EXPECT_NE(reported("reload silent"), "");
     view_.reloads.reading_since.reset();
     Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
@@ -413,16 +413,16 @@ TEST_F(StatusTest, has_a_balanced_account_of_every_unit_with_the_reasons_that_oc
     reading.device_status = kWrappedTarget;
     scene.bus.range(4.4, kLeft, reading);
     play(scene, kAllWell);
-    const Json account = status()["account"];
+    const Json inputs = status()["inputs"];
     EXPECT_EQ(
-        account["readings"],
+        inputs["readings"],
         Json::parse(
             R"({"in": 11, "used": 10, "pending": 0, "rejected": {"status_fault": 1}, "balanced": true})"));
-    EXPECT_EQ(account["depth frames"],
+    EXPECT_EQ(inputs["depth frames"],
               Json::parse(R"({"in": 6, "used": 6, "pending": 0, "rejected": {}, "balanced": true})"));
-    EXPECT_EQ(account["joint samples"]["balanced"], true);
-    EXPECT_EQ(account["CAN frames"]["balanced"], true);
-    EXPECT_EQ(account.size(), 4U);
+    EXPECT_EQ(inputs["joint samples"]["balanced"], true);
+    EXPECT_EQ(inputs["CAN frames"]["balanced"], true);
+    EXPECT_EQ(inputs.size(), 4U);
 }
 
 /// "group name" of each key, as status_meanings() has them; of each unit of the account the same keys.
@@ -435,9 +435,9 @@ void add_keys(const Json& value, const std::string& group, std::set<std::string>
     for (const auto& [name, part] : value.items()) {
         keys.insert(group + " " + name);
         const std::string path = group.empty() ? name : group + "." + name;
-        if (path == "account") {
+        if (path == "inputs") {
             for (const Json& unit : part) add_keys(unit, path, keys);
-        } else if (path != "account.rejected") {
+        } else if (path != "inputs.rejected") {
             add_keys(part, path, keys);
         }
     }
@@ -458,14 +458,14 @@ TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
                              .where = wire::RegisterReport{3, 0x47, 0x0B, 0x0C}.where()},
              kLeft);
     play_on(bus.frames(), 4.65);
-    std::set<std::string> told;
-    add_keys(status(), "", told);
+    std::set<std::string> reported;
+    add_keys(status(), "", reported);
     std::set<std::string> known;
     for (const Meaning& meaning : status_meanings()) {
         EXPECT_FALSE(meaning.text.empty()) << meaning.name;
         known.insert(std::string(meaning.group) + " " + std::string(meaning.name));
     }
-    EXPECT_EQ(told, known);
+    EXPECT_EQ(reported, known);
 }
 
 TEST_F(StatusTest, has_no_latency_where_no_reading_came_over_the_bus) {
@@ -491,7 +491,7 @@ TEST_F(StatusTest, knows_when_each_kind_of_measurement_was_used_last) {
     play_on(frames, 10.0);
     ASSERT_TRUE(view_.used.time_back);
     EXPECT_EQ(status()["clock"]["times_back"], 1);
-    EXPECT_NE(told("time back"), "");
+    EXPECT_NE(reported("time back"), "");
 }
 
 }  // namespace

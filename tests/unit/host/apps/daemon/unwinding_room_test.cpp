@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "host/apps/querying/query_answer.hpp"
+#include "host/apps/query/query_answer.hpp"
 
 namespace octoskin {
 namespace {

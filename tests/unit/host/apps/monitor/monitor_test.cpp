@@ -11,7 +11,7 @@
 #include "host/apps/monitor/screen.hpp"
 #include "host/apps/monitor/scroll.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
-#include "host/core/account/counter_meanings.hpp"
+#include "host/core/counters/counter_meanings.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/io/candump/log_line.hpp"
 
@@ -37,7 +37,7 @@ Json status() {
                     "age_median_ms": 31.25, "age_p99_ms": 44.0, "age_max_ms": 51.5},
         "map": {"known_voxels": 1234, "resolution_m": 0.04, "memory_mib": 3.2, "memory_max_mib": 800,
                 "saved_age_s": 4.0, "no_room": 0},
-        "account": {"readings": {"in": 130, "used": 100, "rejected": {"self_hit": 30}, "balanced": true},
+        "inputs": {"readings": {"in": 130, "used": 100, "rejected": {"self_hit": 30}, "balanced": true},
                     "joint samples": {"in": 200, "used": 200, "rejected": {}, "balanced": true}}})");
 }
 
@@ -53,8 +53,8 @@ TEST(Monitor, shows_what_is_there_and_rates_of_what_grew) {
     now["can"]["received"] = 1900;
     now["can"]["busy_s"] = 8.0;
     now["nodes"][0]["sensors"][0]["received"] = 140;
-    now["account"]["joint samples"]["used"] = 400;
-    now["account"]["readings"]["rejected"]["self_hit"] = 31;
+    now["inputs"]["joint samples"]["used"] = 400;
+    now["inputs"]["readings"]["rejected"]["self_hit"] = 31;
     const std::string screen = shown(status(), now);
     for (const char* words :
          {"rig 'arm'", "no problems", "450.0/s in", "node 1 'left' usable", "+12.3 ppm within 0.21 ms",

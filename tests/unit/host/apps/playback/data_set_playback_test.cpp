@@ -220,12 +220,12 @@ TEST_F(DataSetPlayback, accounts_for_every_image) {
     written_.add_image("100.000000000", wall(1));  // the same time again
     const auto played = play_recording(request());
     ASSERT_TRUE(played) << played.error().message;
-    const AccountTable& images = played->accounts.front();
+    const CounterTable& images = played->inputs.front();
     EXPECT_EQ(images.in, 3U);
     EXPECT_EQ(images.used, 2U);
     EXPECT_EQ(images.rejected.front().count, 1U);
-    EXPECT_EQ(played->pipeline.accounts().depth_frames.used(), 1U);
-    EXPECT_EQ(played->pipeline.accounts().depth_frames.rejected(DepthReason::out_of_order), 1U);
+    EXPECT_EQ(played->pipeline.inputs().depth_frames.used(), 1U);
+    EXPECT_EQ(played->pipeline.inputs().depth_frames.rejected(DepthReason::out_of_order), 1U);
     EXPECT_FALSE(failure_of(*played));
 }
 
@@ -241,12 +241,12 @@ TEST_F(DataSetPlayback, accounts_for_every_line_of_both_lists) {
     const auto played = play_recording(request());
     ASSERT_TRUE(played) << played.error().message;
     EXPECT_FALSE(failure_of(*played));
-    const AccountTable& images = played->accounts.at(0);
+    const CounterTable& images = played->inputs.at(0);
     EXPECT_EQ(images.in, 3U);
     EXPECT_EQ(images.used, 2U);
     EXPECT_EQ(images.rejected.at(1).name, "bad_line");
     EXPECT_EQ(images.rejected.at(1).count, 1U);
-    const AccountTable& poses = played->accounts.at(1);
+    const CounterTable& poses = played->inputs.at(1);
     EXPECT_EQ(poses.unit, "camera poses");
     EXPECT_EQ(poses.in, 5U);
     EXPECT_EQ(poses.used, 2U);
@@ -318,7 +318,7 @@ TEST_F(DataSetPlayback, an_image_that_cannot_be_read_makes_the_map_one_that_must
     EXPECT_EQ(failure_of(*played)->code, ExitCode::bad_data);
     EXPECT_THAT(failure_of(*played)->message,
                 HasSubstr("depth.txt:5: depth/100.03.png: cannot be read completely"));
-    EXPECT_TRUE(played->accounts.front().is_balanced);
+    EXPECT_TRUE(played->inputs.front().is_balanced);
 }
 
 TEST_F(DataSetPlayback, an_image_of_another_size_than_the_cameras_is_counted_and_the_empty_map_refused) {
@@ -326,7 +326,7 @@ TEST_F(DataSetPlayback, an_image_of_another_size_than_the_cameras_is_counted_and
     written_.add_image("100", {2, 1, {5000, 5000}});
     const auto played = play_recording(request());
     ASSERT_TRUE(played) << played.error().message;
-    EXPECT_EQ(played->pipeline.accounts().depth_frames.rejected(DepthReason::wrong_size), 1U);
+    EXPECT_EQ(played->pipeline.inputs().depth_frames.rejected(DepthReason::wrong_size), 1U);
     EXPECT_THAT(failure_of(*played)->message, HasSubstr("no measurement entered the map"));
 }
 

@@ -11,7 +11,7 @@ namespace {
 std::vector<MortonCode> walked(const KeyBox& box) {
     std::vector<MortonCode> bricks;
     walk_bricks(
-        box, [](const VoxelCube&) { return CubeVerdict::some; },
+        box, [](const VoxelCube&) { return CubeCoverage::some; },
         [&](MortonCode brick, bool is_all) {
             EXPECT_FALSE(is_all);
             bricks.push_back(brick);
@@ -42,8 +42,8 @@ TEST(BrickWalk, asks_nothing_below_a_cube_that_has_none_or_all) {
         box,
         [&](const VoxelCube& cube) {
             ++asked;
-            if (cube.height > 5) return CubeVerdict::some;
-            return cube.lowest.x < 1024 + 32 ? CubeVerdict::none : CubeVerdict::all;
+            if (cube.height > 5) return CubeCoverage::some;
+            return cube.lowest.x < 1024 + 32 ? CubeCoverage::none : CubeCoverage::all;
         },
         [&](MortonCode brick, bool is_all) {
             ++visited;

@@ -294,7 +294,7 @@ TEST(CanIntake, tells_who_is_lost_where_nobody_ever_sends_sync) {
         if (wire::node_of(entry.frame.can_id) == wire::kHostId) continue;
         (void)intake.on_frame(entry.frame, entry.stamp);
         ASSERT_EQ(intake.now(), std::nullopt);
-        if (intake.nodes().verdict(kNode, std::nullopt) != NodeVerdict::lost) continue;
+        if (intake.nodes().verdict(kNode, std::nullopt) != NodeCondition::lost) continue;
         lost_from = lost_from.value_or(entry.stamp);
         lost_to = entry.stamp;
     }

@@ -59,7 +59,7 @@ class NodeSilenceTest : public testing::Test {
             const double at_s = 1e-9 * static_cast<double>(entry.stamp.ns - test::kWallOffsetNs);
             if (!now || at_s < looked_s + kTick_s) continue;
             looked_s = at_s;
-            if (intake.nodes().verdict(kNode, now) != NodeVerdict::usable) continue;
+            if (intake.nodes().verdict(kNode, now) != NodeCondition::usable) continue;
             const NodeSilence silence = silence_of(intake.ranges(), rig_.nodes[0], *now);
             const auto note = [&](const std::string& of, SensorSilence what) {
                 if (what == SensorSilence::none) return;

@@ -70,7 +70,7 @@ TEST(NodeSummary, of_a_node_that_is_well_shows_nothing_lost) {
     EXPECT_EQ(well.readings->received, 80U);
     EXPECT_EQ(well.readings->gaps, 0U);
     EXPECT_EQ(well.clock_relocks, 0U);
-    EXPECT_EQ(well.verdict, NodeVerdict::usable);
+    EXPECT_EQ(well.verdict, NodeCondition::usable);
     EXPECT_FALSE(well.reason.has_value());
 }
 
@@ -86,7 +86,7 @@ TEST(NodeSummary, counts_a_clock_that_jumped) {
 
 TEST(NodeSummary, tells_both_values_where_they_differ) {
     const NodeSummary other = summary_of(bus(), false, rig(0x1234ABCD));
-    EXPECT_EQ(other.verdict, NodeVerdict::info_mismatch);
+    EXPECT_EQ(other.verdict, NodeCondition::info_mismatch);
     EXPECT_EQ(other.reason->text(), "low half of node_hash 00005678, the rig has 0000abcd");
 }
 
@@ -104,7 +104,7 @@ TEST(NodeSummary, of_a_log_without_sync_says_so) {
     silent.info(0.01, rig().nodes[0]);
     silent.heartbeat(0.1, rig().nodes[0]);
     const NodeSummary untimed = summary_of(silent);
-    EXPECT_EQ(untimed.verdict, NodeVerdict::usable);
+    EXPECT_EQ(untimed.verdict, NodeCondition::usable);
     EXPECT_FALSE(untimed.has_time);
 }
 
@@ -113,21 +113,21 @@ TEST(NodeSummary, is_a_table_of_one_line_a_node) {
                                   .name = "rear_rings",
                                   .readings = NodeSummary::Readings{.received = 2218, .lost = 12, .gaps = 7},
                                   .clock_relocks = 1,
-                                  .verdict = NodeVerdict::usable,
+                                  .verdict = NodeCondition::usable,
                                   .reason = {},
                                   .registers = {}},
                                  {.node_id = 62,
                                   .name = "joints",
                                   .readings = {},
                                   .clock_relocks = 0,
-                                  .verdict = NodeVerdict::other_version,
+                                  .verdict = NodeCondition::other_version,
                                   .reason = NodeMismatch{"version", 2, 1, "this host uses"},
                                   .registers = {}},
                                  {.node_id = 63,
                                   .name = "untimed",
                                   .readings = {},
                                   .clock_relocks = 0,
-                                  .verdict = NodeVerdict::usable,
+                                  .verdict = NodeCondition::usable,
                                   .has_time = false,
                                   .reason = {},
                                   .registers = {}}};

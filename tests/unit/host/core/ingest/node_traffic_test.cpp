@@ -64,15 +64,16 @@ TEST(NodeTraffic, tells_two_senders_by_the_numbers_of_their_readings_within_a_se
         for (const std::size_t sensors : {1U, 2U, 17U}) {
             for (unsigned apart = 0; apart < wire::kSequenceCount; ++apart) {
                 NodeTraffic traffic(node(sensors, Microseconds{1'000 * period_ms}), 0.0);
-                bool is_told = false;
+                bool is_reported = false;
                 for (unsigned k = 0; k * period_ms <= 1'000; ++k) {
                     const HostTime now = us(1'000 * period_ms * k);
                     for (std::uint8_t sensor = 0; sensor < sensors; ++sensor) {
-                        is_told |= !traffic.keeps_with_reading(reading(sensor, k), now);
-                        is_told |= !traffic.keeps_with_reading(reading(sensor, k + apart), now);
+                        is_reported |= !traffic.keeps_with_reading(reading(sensor, k), now);
+                        is_reported |= !traffic.keeps_with_reading(reading(sensor, k + apart), now);
                     }
                 }
-                EXPECT_TRUE(is_told) << sensors << " sensors, " << period_ms << " ms, " << apart << " apart";
+                EXPECT_TRUE(is_reported)
+                    << sensors << " sensors, " << period_ms << " ms, " << apart << " apart";
             }
         }
     }

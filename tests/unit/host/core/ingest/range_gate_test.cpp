@@ -121,10 +121,10 @@ TEST(RangeGate, refuses_a_sensor_whose_node_says_that_it_is_not_as_configured_an
     for (const auto& state : wire::values_of(wire::SensorState{})) {
         for (const auto& fault : wire::values_of(wire::SensorFault{})) {
             RangeGate gate(rig(), false);
-            wire::SensorHealth told = health(0);
-            told.state = state.value;
-            told.fault = fault.value;
-            gate.on_health(kNode, told);
+            wire::SensorHealth reported = health(0);
+            reported.state = state.value;
+            reported.fault = fault.value;
+            gate.on_health(kNode, reported);
             gate.on_arrival(kNode, reading(), std::nullopt);
             const auto outcome =
                 gate.check(kNode, reading(), {kNow - Nanoseconds{20'000'000}, Nanoseconds{0}}, kNow);
@@ -187,12 +187,12 @@ Result<RangeMeasurement, ReadingReason> check_with(RangeGate& gate, std::int64_t
 }
 
 TEST(RangeGate, refuses_a_time_whose_two_bounds_together_exceed_the_limit) {
-    for (unsigned told = 0; told <= 255; ++told) {
+    for (unsigned reported = 0; reported <= 255; ++reported) {
         for (const std::int64_t map_us : {0, 100, 2'000, 4'936, 5'000, 5'001}) {
             RangeGate gate(rig(), false);
-            gate.on_health(kNode, health(0, 0, static_cast<std::uint8_t>(told)));
+            gate.on_health(kNode, health(0, 0, static_cast<std::uint8_t>(reported)));
             const auto outcome = check_with(gate, map_us);
-            ASSERT_EQ(outcome.has_value(), 64 * told + map_us <= 5'000) << told << " " << map_us;
+            ASSERT_EQ(outcome.has_value(), 64 * reported + map_us <= 5'000) << reported << " " << map_us;
             if (!outcome) {
                 ASSERT_EQ(outcome.error(), ReadingReason::time_uncertain);
             }

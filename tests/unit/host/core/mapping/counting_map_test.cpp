@@ -339,7 +339,7 @@ TEST(CountingMap, marks_nothing_where_something_known_explains_the_range) {
 
 TEST(CountingMap, confirms_what_it_marks) {
     FusedMap map(map_config());
-    map.go_on(HostTime{5'000'000'000});
+    map.advance_time(HostTime{5'000'000'000});
     confirm(map, cap_of_three(), 2.0F);
     EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::range}));
 }
@@ -383,7 +383,7 @@ TEST(CountingMap, takes_nothing_from_what_the_camera_sees_again_and_again) {
     through.passed = {key_at(0), key_at(1)};
     for (int tenth = 0; tenth < 60; ++tenth) {
         for (int reading = 0; reading < 3; ++reading) {
-            map.go_on(HostTime{(100 * tenth + 33 * reading) * 1'000'000LL});
+            map.advance_time(HostTime{(100 * tenth + 33 * reading) * 1'000'000LL});
             if (reading == 1) feed(map, surface, SensorKind::camera);
             feed(map, through, {});
             clear(map, through, kNobodyRanges);
@@ -392,30 +392,30 @@ TEST(CountingMap, takes_nothing_from_what_the_camera_sees_again_and_again) {
     }
     EXPECT_EQ(map.confirmation(key_at(1)), (Confirmation{0, SensorKind::range}));
     EXPECT_EQ(map.confirmation(key_at(0)), (Confirmation{0, SensorKind::camera}));
-    map.go_on(HostTime{8'000'000'000});
+    map.advance_time(HostTime{8'000'000'000});
     clear(map, through, kNobodyRanges);
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::free) << "it no longer looks";
 }
 
 TEST(CountingMap, gives_hits_to_all_where_nothing_is_that_could_take_them) {
-    FusedMap told(map_config());
-    FusedMap untold(map_config());
-    feed(told, cap_of_three(), {}, true);
-    feed(untold, cap_of_three(), {}, false);
-    for (const int i : {0, 1, 2}) EXPECT_EQ(told.log_odds(key_at(i)), untold.log_odds(key_at(i)));
-    for (int reading = 0; reading < 20; ++reading) feed(told, cap_of_three(), {}, true);
-    EXPECT_EQ(told.occupancy(key_at(0)), Occupancy::occupied);
+    FusedMap reported(map_config());
+    FusedMap unreported(map_config());
+    feed(reported, cap_of_three(), {}, true);
+    feed(unreported, cap_of_three(), {}, false);
+    for (const int i : {0, 1, 2}) EXPECT_EQ(reported.log_odds(key_at(i)), unreported.log_odds(key_at(i)));
+    for (int reading = 0; reading < 20; ++reading) feed(reported, cap_of_three(), {}, true);
+    EXPECT_EQ(reported.occupancy(key_at(0)), Occupancy::occupied);
 }
 
 TEST(CountingMap, sees_what_has_no_weight_and_gives_it_nothing) {
     FusedMap map(map_config());
-    map.go_on(HostTime{1'000'000'000});
+    map.advance_time(HostTime{1'000'000'000});
     feed(map, std::vector<VoxelUpdate>{{key_at(1), 2.0F}});
     const auto before = map.copy();
     ConeVoxels cone = cap_of_three();
     cone.cap[1].weight = 0.0F;
     cone.cap[2].weight = 0.0F;
-    map.go_on(HostTime{9'000'000'000});
+    map.advance_time(HostTime{9'000'000'000});
     feed(map, cone, {.hit_mass = 10.0F});
     EXPECT_EQ(map.log_odds(key_at(1)), before.log_odds(key_at(1)));
     EXPECT_EQ(map.confirmation(key_at(1)), (Confirmation{0, SensorKind::range})) << "it is there, as it says";
@@ -447,10 +447,10 @@ TEST(CountingMap, takes_back_hits_that_mark_nothing) {
 
 TEST(CountingMap, gives_hits_to_what_is_there_and_nothing_else_if_it_is_told_so) {
     FusedMap map(map_config());
-    map.go_on(HostTime{1'000'000'000});
+    map.advance_time(HostTime{1'000'000'000});
     confirm(map, cap_of_three(), 2.0F);
     const auto before = map.copy();
-    map.go_on(HostTime{9'000'000'000});
+    map.advance_time(HostTime{9'000'000'000});
     feed(map, cap_of_three(), {}, true);
     for (const int i : {1, 2, 3}) EXPECT_EQ(map.log_odds(key_at(i)), before.log_odds(key_at(i))) << i;
     EXPECT_GT(*map.log_odds(key_at(0)), *before.log_odds(key_at(0)));
@@ -466,12 +466,12 @@ TEST(CountingMap, frees_not_what_others_see_at_the_same_time) {
     };
     ConeVoxels through;
     through.passed = {key_at(0), key_at(1)};
-    map.go_on(HostTime{10'900'000'000});
+    map.advance_time(HostTime{10'900'000'000});
     for (int i = 0; i < 3; ++i) feed(map, surface, SensorKind::camera);
-    map.go_on(HostTime{11'900'000'000});
+    map.advance_time(HostTime{11'900'000'000});
     clear(map, through, kNobodyRanges);
     EXPECT_EQ(occupied(), std::pair(true, true)) << "the camera, in the second before";
-    map.go_on(HostTime{12'000'000'000});
+    map.advance_time(HostTime{12'000'000'000});
     clear(map, through, [](VoxelKey key) { return key == key_at(1); });
     EXPECT_EQ(occupied(), std::pair(false, true));
     for (int i = 0; i < 3; ++i) feed(map, surface, SensorKind::range);

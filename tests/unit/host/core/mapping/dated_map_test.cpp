@@ -51,10 +51,10 @@ TEST(DatedMap, keeps_no_times_before_it_is_told_one) {
 
 TEST(DatedMap, knows_when_and_by_what_a_voxel_was_last_confirmed) {
     FusedMap map(MapConfig{});
-    map.go_on(at_s(100.9));
+    map.advance_time(at_s(100.9));
     feed(map, one(key_at(0), -0.4F));
     feed(map, image_of({{key_at(1), -0.4F}, {key_at(2), 0.8F}}));
-    map.go_on(at_s(107.0));
+    map.advance_time(at_s(107.0));
     feed(map, one(key_at(2), 0.5F));
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 7));
     EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::camera, 7));
@@ -64,10 +64,10 @@ TEST(DatedMap, knows_when_and_by_what_a_voxel_was_last_confirmed) {
 
 TEST(DatedMap, is_confirmed_by_what_changes_nothing_at_a_clamp_but_not_by_a_term_of_zero) {
     FusedMap map(MapConfig{});
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     for (int i = 0; i < 9; ++i) feed(map, one(key_at(0), -0.4F));
     feed(map, one(key_at(1), -0.4F));
-    map.go_on(at_s(5));
+    map.advance_time(at_s(5));
     feed(map, one(key_at(0), -0.4F));
     feed(map, one(key_at(1), 0.0F));
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 0U);
@@ -78,15 +78,15 @@ TEST(DatedMap, has_what_it_held_when_its_clock_began_stale_until_it_is_confirmed
     FusedMap map(aging(10, 20));
     feed(map, one(key_at(0), -0.4F));
     feed(map, one(key_at(100), -0.4F));
-    map.go_on(at_s(50));
+    map.advance_time(at_s(50));
     EXPECT_FALSE(map.confirmation(key_at(0)).has_value()) << "nobody knows";
     EXPECT_TRUE(map.is_stale(key_at(0)));
     feed(map, one(key_at(100), -0.4F));
     EXPECT_FALSE(map.is_stale(key_at(100)));
-    map.go_on(at_s(69.9));
+    map.advance_time(at_s(69.9));
     EXPECT_EQ(map.known_voxels(), 2U);
     feed(map, one(key_at(100), -0.4F));
-    map.go_on(at_s(70));
+    map.advance_time(at_s(70));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
     EXPECT_EQ(map.known_voxels(), 1U);
 }
@@ -94,41 +94,41 @@ TEST(DatedMap, has_what_it_held_when_its_clock_began_stale_until_it_is_confirmed
 TEST(DatedMap, knows_no_more_of_what_was_before_its_clock_when_that_has_run_for_days) {
     FusedMap map(aging(10, 0));
     feed(map, one(key_at(0), -0.4F));
-    for (double s = 0; s < 50'000; s += 900) map.go_on(at_s(s));
+    for (double s = 0; s < 50'000; s += 900) map.advance_time(at_s(s));
     EXPECT_FALSE(map.confirmation(key_at(0)).has_value());
     EXPECT_TRUE(map.is_stale(key_at(0)));
 }
 
 TEST(DatedMap, becomes_stale_and_then_unknown) {
     FusedMap map(aging(10, 20));
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     feed(map, one(key_at(0), 3.0F));
     feed(map, one(key_at(100), -0.4F));
-    map.go_on(at_s(19));
+    map.advance_time(at_s(19));
     EXPECT_TRUE(map.is_stale(key_at(0)));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
     EXPECT_EQ(map.known_voxels(), 2U);
     feed(map, one(key_at(100), -0.4F));
-    map.go_on(at_s(20));
+    map.advance_time(at_s(20));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
     EXPECT_FALSE(map.is_stale(key_at(0)));
     EXPECT_EQ(map.occupancy(key_at(100)), Occupancy::free);
     EXPECT_EQ(map.known_voxels(), 1U);
     feed(map, one(key_at(0), 0.5F));
     EXPECT_EQ(map.log_odds(key_at(0)), 0.5F) << "as if nobody had ever been there";
-    map.go_on(at_s(1000));
+    map.advance_time(at_s(1000));
     EXPECT_EQ(map.known_voxels(), 0U);
     EXPECT_EQ(map.heap_bytes(), 0U);
 }
 
 TEST(DatedMap, forgets_counts_of_what_it_forgets) {
     FusedMap map(aging(0, 5));
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     ConeVoxels cone;
     cone.passed = {key_at(0)};
     for (int i = 0; i < 20; ++i) feed(map, cone, {});
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 0));
-    map.go_on(at_s(5));
+    map.advance_time(at_s(5));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
     EXPECT_FALSE(map.layers().counts.has(brick_of(key_at(0)))) << "an emptied brick is given back";
     feed(map, cone, {});
@@ -137,10 +137,10 @@ TEST(DatedMap, forgets_counts_of_what_it_forgets) {
 
 TEST(DatedMap, has_of_a_cap_only_what_is_occupied_confirmed) {
     FusedMap map(MapConfig{});
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     feed(map, one(key_at(0), -2.0F));
     for (int i = 0; i < 4; ++i) feed(map, one(key_at(1), 1.0F));
-    map.go_on(at_s(30));
+    map.advance_time(at_s(30));
     ConeVoxels cone;
     cone.cap = {{key_at(0), 1.0F}, {key_at(1), 1.0F}};
     feed(map, cone, {});
@@ -153,12 +153,12 @@ TEST(DatedMap, adds_no_hits_up_over_longer_than_it_knows_anything) {
     ConeVoxels cone;  // a hit of a hundred voxels marks none of them
     for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(x), 1.0F});
     for (int hour = 0; hour < 100; ++hour) {
-        map.go_on(at_s(3600.0 * hour));
+        map.advance_time(at_s(3600.0 * hour));
         feed(map, cone, {});
     }
     EXPECT_EQ(map.known_voxels(), 0U);
     EXPECT_FALSE(map.confirmation(key_at(0)).has_value()) << "unknown";
-    map.go_on(at_s(3600.0 * 100));
+    map.advance_time(at_s(3600.0 * 100));
     EXPECT_TRUE(map.layers().counts.empty());
     EXPECT_EQ(map.heap_bytes(), 0U);
     for (int reading = 0; reading < 100; ++reading) feed(map, cone, {});
@@ -170,7 +170,7 @@ TEST(DatedMap, forgets_hits_of_an_unknown_voxel_whose_neighbours_are_confirmed) 
     ConeVoxels cone;
     for (int x = 0; x < 100; ++x) cone.cap.push_back({key_at(x), 1.0F});
     for (int second = 0; second < 800; second += 4) {
-        map.go_on(at_s(second));
+        map.advance_time(at_s(second));
         if (second % 8 == 0) feed(map, cone, {});
         feed(map, one(key_at(0, 1), -0.4F));
     }
@@ -181,7 +181,7 @@ TEST(DatedMap, is_confirmed_by_a_cone_of_which_one_voxel_finds_no_room) {
     MapConfig config = aging(10, 60);
     config.memory_max_mib = 1;
     FusedMap map(config);
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     ConeVoxels cone;
     cone.passed = {key_at(0), key_at(1)};
     for (int i = 0; i < 20; ++i) feed(map, cone, {});
@@ -190,7 +190,7 @@ TEST(DatedMap, is_confirmed_by_a_cone_of_which_one_voxel_finds_no_room) {
     cone.passed.push_back(key_at(0, 4000));
     const auto before = map.counters();
     for (int second = 1; second <= 20; ++second) {
-        map.go_on(at_s(second));
+        map.advance_time(at_s(second));
         feed(map, cone, {});
     }
     EXPECT_GT(map.counters().no_room, before.no_room) << "as soon as it would be free";
@@ -200,82 +200,82 @@ TEST(DatedMap, is_confirmed_by_a_cone_of_which_one_voxel_finds_no_room) {
 
 TEST(DatedMap, waits_for_late_measurements_and_follows_a_clock_that_was_set_back) {
     FusedMap map(MapConfig{});
-    map.go_on(at_s(100));
+    map.advance_time(at_s(100));
     feed(map, one(key_at(0), 1.0F));
-    map.go_on(at_s(103));
-    map.go_on(at_s(102));
+    map.advance_time(at_s(103));
+    map.advance_time(at_s(102));
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 3U);
-    map.go_on(at_s(7));
+    map.advance_time(at_s(7));
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 3U);
-    map.go_on(at_s(9));
+    map.advance_time(at_s(9));
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 5U);
 }
 
 TEST(DatedMap, grows_no_older_where_time_leaps_and_goes_on_growing_old_after) {
     for (const int leap_s : {1000, 100'000, -50, -100'000}) {
         FusedMap map(aging(10, 20));
-        map.go_on(at_s(100));
+        map.advance_time(at_s(100));
         feed(map, one(key_at(0), 1.0F));
-        map.go_on(at_s(103));
-        map.leap(std::chrono::seconds(leap_s));
-        map.go_on(at_s(104 + leap_s));
+        map.advance_time(at_s(103));
+        map.jump_time(std::chrono::seconds(leap_s));
+        map.advance_time(at_s(104 + leap_s));
         ASSERT_TRUE(map.confirmation(key_at(0)).has_value()) << leap_s;
         EXPECT_EQ(map.confirmation(key_at(0))->age_s, 4U);
-        map.go_on(at_s(119 + leap_s));
+        map.advance_time(at_s(119 + leap_s));
         EXPECT_EQ(map.confirmation(key_at(0))->age_s, 19U);
-        map.go_on(at_s(120 + leap_s));
+        map.advance_time(at_s(120 + leap_s));
         EXPECT_EQ(map.known_voxels(), 0U);
     }
 }
 
 TEST(DatedMap, leaps_by_the_nearest_second) {
     FusedMap map(MapConfig{});
-    map.go_on(at_s(100.5));
+    map.advance_time(at_s(100.5));
     feed(map, one(key_at(0), 1.0F));
-    map.leap(std::chrono::milliseconds(2'700));
-    map.go_on(at_s(105.2));  // 2.0 s have passed
+    map.jump_time(std::chrono::milliseconds(2'700));
+    map.advance_time(at_s(105.2));  // 2.0 s have passed
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 2U);
 }
 
 TEST(DatedMap, tells_ages_over_days) {
     FusedMap map(MapConfig{});
-    map.go_on(at_s(-3));
+    map.advance_time(at_s(-3));
     feed(map, one(key_at(0), 1.0F));
     for (double s = 0; s < 200'000; s += 997) {
-        map.go_on(at_s(s));
+        map.advance_time(at_s(s));
         feed(map, one(key_at(1), 1.0F));
         EXPECT_EQ(map.confirmation(key_at(0))->age_s, std::min(s + 3, 8191.0));
         EXPECT_EQ(map.confirmation(key_at(1))->age_s, 0U);
     }
-    map.go_on(at_s(1e6));
+    map.advance_time(at_s(1e6));
     EXPECT_EQ(map.confirmation(key_at(1)), by(SensorKind::range, 8191));
 }
 
 TEST(DatedMap, forgets_in_time_when_its_clock_is_brought_up_meanwhile) {
     FusedMap map(aging(0, 7000));
     for (int second = 0; second <= 8000; second += 1000) {
-        map.go_on(at_s(second));
+        map.advance_time(at_s(second));
         feed(map, one(key_at(100), 1.0F));
     }
     feed(map, one(key_at(0), 1.0F));
-    map.go_on(at_s(9000));  // beyond what a stamp can hold
+    map.advance_time(at_s(9000));  // beyond what a stamp can hold
     feed(map, one(key_at(100), 1.0F));
-    map.go_on(at_s(14'999));
+    map.advance_time(at_s(14'999));
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 6999U);
-    map.go_on(at_s(15'000));
+    map.advance_time(at_s(15'000));
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::unknown);
-    map.go_on(at_s(15'999));
+    map.advance_time(at_s(15'999));
     EXPECT_EQ(map.known_voxels(), 1U);
-    map.go_on(at_s(16'000));
+    map.advance_time(at_s(16'000));
     EXPECT_EQ(map.known_voxels(), 0U);
 }
 
 TEST(DatedMap, keeps_what_was_when_a_copy_goes_on) {
     FusedMap map(aging(10, 20));
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     feed(map, one(key_at(0), 1.0F));
     FusedMap copy = map.copy();
-    copy.go_on(at_s(20));
+    copy.advance_time(at_s(20));
     EXPECT_EQ(copy.known_voxels(), 0U);
     EXPECT_EQ(map.occupancy(key_at(0)), Occupancy::occupied);
     EXPECT_EQ(map.confirmation(key_at(0))->age_s, 0U);
@@ -283,11 +283,11 @@ TEST(DatedMap, keeps_what_was_when_a_copy_goes_on) {
 
 TEST(DatedMap, copies_nothing_that_is_confirmed_again_within_a_second) {
     FusedMap map(MapConfig{});
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     const Evidence image = image_of({{key_at(0), -0.4F}, {key_at(1), 0.8F}});
     feed(map, image);
     const FusedMap copy = map.copy();
-    map.go_on(at_s(0.9));
+    map.advance_time(at_s(0.9));
     feed(map, image);
     copy.layers().ages.stamps().for_each_difference(map.layers().ages.stamps(),
                                                     [](MortonCode) { ADD_FAILURE() << "nothing changed"; });
@@ -297,7 +297,7 @@ TEST(DatedMap, has_its_times_within_a_bound_and_counts_what_has_none) {
     MapConfig config = aging(10, 0);
     config.memory_max_mib = 1;
     FusedMap map(config);
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     std::vector<VoxelUpdate> updates;  // each in a brick and in nodes of its own: the worst there is
     for (int x = 0; x < 2000; ++x) updates.push_back({key_at(64 * (x % 100), 64 * (x / 100)), -0.4F});
     feed(map, updates);
@@ -314,7 +314,7 @@ TEST(DatedMap, has_its_times_within_a_bound_and_counts_what_has_none) {
 TEST(DatedMap, that_was_saved_grows_older_by_what_it_is_given_until_its_first_measurement) {
     FusedMap map(aging(10, 0));
     EXPECT_FALSE(map.wait(5)) << "it has no time";
-    map.go_on(at_s(100));
+    map.advance_time(at_s(100));
     feed(map, one(key_at(0), 1.0F));
     EXPECT_FALSE(map.wait(5)) << "it goes on";
     map.begin_to_wait();
@@ -324,10 +324,10 @@ TEST(DatedMap, that_was_saved_grows_older_by_what_it_is_given_until_its_first_me
     EXPECT_TRUE(map.wait(8));
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 8));
     EXPECT_FALSE(map.is_stale(key_at(0)));
-    map.go_on(at_s(5'000'000));  // of another scale
+    map.advance_time(at_s(5'000'000));  // of another scale
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 8));
     EXPECT_FALSE(map.wait(100)) << "it has begun";
-    map.go_on(at_s(5'000'002));
+    map.advance_time(at_s(5'000'002));
     EXPECT_EQ(map.confirmation(key_at(0)), by(SensorKind::range, 10));
     EXPECT_TRUE(map.is_stale(key_at(0)));
     map.begin_to_wait();
@@ -340,7 +340,7 @@ TEST(DatedMap, that_was_saved_grows_older_by_what_it_is_given_until_its_first_me
 
 TEST(DatedMap, forgets_while_it_waits_what_no_sensor_has_seen_for_too_long) {
     FusedMap map(aging(10, 20));
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     feed(map, one(key_at(0), 1.0F));
     map.begin_to_wait();
     EXPECT_TRUE(map.wait(19));
@@ -351,15 +351,15 @@ TEST(DatedMap, forgets_while_it_waits_what_no_sensor_has_seen_for_too_long) {
 
 TEST(DatedMap, without_its_times_has_all_voxels_stale_and_forgets_them_as_it_would_a_files) {
     FusedMap map(aging(10, 20));
-    map.go_on(at_s(100));
+    map.advance_time(at_s(100));
     feed(map, one(key_at(0), 1.0F));
-    map.forget_times();
-    map.go_on(at_s(3));
+    map.clear_times();
+    map.advance_time(at_s(3));
     EXPECT_FALSE(map.confirmation(key_at(0)));
     EXPECT_TRUE(map.is_stale(key_at(0)));
-    map.go_on(at_s(22));
+    map.advance_time(at_s(22));
     EXPECT_EQ(map.known_voxels(), 1U);
-    map.go_on(at_s(24));
+    map.advance_time(at_s(24));
     EXPECT_EQ(map.known_voxels(), 0U);
 }
 
@@ -373,11 +373,11 @@ ConeVoxels hit_of_nothing_known() {
 TEST(DatedMap, without_its_times_forgets_counts_of_what_is_unknown_measured_or_not) {
     for (const bool is_measured : {false, true}) {
         FusedMap map(aging(0, 5));
-        map.go_on(at_s(100));
+        map.advance_time(at_s(100));
         feed(map, hit_of_nothing_known(), {});
-        map.forget_times();
+        map.clear_times();
         const auto pass = [&](std::int64_t seconds) {
-            is_measured ? map.go_on(at_s(static_cast<double>(seconds))) : void(map.wait(seconds));
+            is_measured ? map.advance_time(at_s(static_cast<double>(seconds))) : void(map.wait(seconds));
         };
         pass(0);
         pass(4);
@@ -390,9 +390,9 @@ TEST(DatedMap, without_its_times_forgets_counts_of_what_is_unknown_measured_or_n
 
 TEST(DatedMap, without_its_times_has_its_voxels_stale_at_once) {
     FusedMap map(aging(10, 0));
-    map.go_on(at_s(100));
+    map.advance_time(at_s(100));
     feed(map, one(key_at(0), 1.0F));
-    map.forget_times();
+    map.clear_times();
     EXPECT_TRUE(map.is_stale(key_at(0)));
     EXPECT_FALSE(map.confirmation(key_at(0)));
 }
@@ -400,7 +400,7 @@ TEST(DatedMap, without_its_times_has_its_voxels_stale_at_once) {
 /// With counts alone in some bricks, and one in which a voxel became known later.
 FusedMap map_that_keeps_all() {
     FusedMap map(aging(0, 0));
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     feed(map, hit_of_nothing_known(), {});
     feed(map, one(key_at(0, 1), -0.4F));
     return map;
@@ -409,14 +409,14 @@ FusedMap map_that_keeps_all() {
 TEST(DatedMap, forgets_counts_of_before_voxels_were_to_expire) {
     FusedMap map = map_that_keeps_all();
     map.limit(aging(0, 5));
-    map.go_on(at_s(4));
+    map.advance_time(at_s(4));
     feed(map, one(key_at(0, 1), -0.4F));
     EXPECT_EQ(map.layers().counts.hits.bricks(), 13U);
-    map.go_on(at_s(5));
+    map.advance_time(at_s(5));
     EXPECT_EQ(map.layers().counts.hits.bricks(), 1U) << "it has the prior of the voxel that is known";
     EXPECT_EQ(map.layers().counts.hits.find(brick_of(key_at(1))).at(cell_of(key_at(1))), 0.0F);
     EXPECT_EQ(map.confirmation(key_at(0, 1)), by(SensorKind::range, 1));
-    map.go_on(at_s(9));
+    map.advance_time(at_s(9));
     EXPECT_TRUE(map.layers().counts.empty());
     EXPECT_EQ(map.heap_bytes(), 0U);
 }
@@ -433,7 +433,7 @@ TEST(DatedMap, forgets_counts_that_were_saved_where_nothing_expired) {
 TEST(VoxelAges, look_at_all_that_was_there_before_though_other_voxels_of_its_brick_are_confirmed) {
     constexpr MortonCode kBricks = 300;
     VoxelAges ages;
-    (void)ages.go_on(at_s(0));
+    (void)ages.advance_time(at_s(0));
     BrickMask confirmed{};
     put_in(confirmed, 7);
     for (MortonCode i = 0; i < kBricks; ++i) ages.confirm(i * kBrickVoxels, confirmed, SensorKind::range);
@@ -467,10 +467,10 @@ TEST(DatedMap, equals_a_time_and_a_kind_kept_for_each_voxel) {
     FusedMap map(aging(4, 9));
     std::map<VoxelKey, Dated> oracle;
     int second = 0;
-    map.go_on(at_s(0));
+    map.advance_time(at_s(0));
     for (int step = 0; step < 400; ++step) {
         second += static_cast<int>(random() % 3);
-        map.go_on(at_s(second + 0.5));
+        map.advance_time(at_s(second + 0.5));
         std::erase_if(oracle, [&](const auto& entry) { return second - entry.second.second >= 9; });
         std::set<VoxelKey> keys;
         for (unsigned i = 0; i < random() % 60; ++i) keys.insert(any_key());

@@ -1,5 +1,5 @@
-// How far a stationary sensor has surely seen: the rules of docs/concepts/stationary-sensors.md, with readings
-// of one zone every 0.3 s.
+// How far a stationary sensor has surely seen: the rules of docs/concepts/stationary-sensors.md, with
+// readings of one zone every 0.3 s.
 #include "host/core/mapping/seen_through.hpp"
 
 #include <gtest/gtest.h>

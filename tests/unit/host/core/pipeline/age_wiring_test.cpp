@@ -70,7 +70,7 @@ TEST_F(AgeWiring, grows_older_while_a_saved_map_waits_and_says_so_to_a_listener)
     saved.map.begin_to_wait();
     EXPECT_EQ(builder.begin_with(std::move(saved)), 0U);
     Waits waits;
-    builder.tell(&waits);
+    builder.set_listener(&waits);
     for (const std::int64_t seconds : {0, 1, 1, 4}) builder.wait(seconds);
     EXPECT_GT(confirmed(builder.map(), SensorKind::camera, 4), 100U);
     read_at(builder, 100.0);

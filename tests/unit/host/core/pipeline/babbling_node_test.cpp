@@ -43,7 +43,7 @@ Seen babbling_in(const Scene& scene, const std::vector<StampedFrame>& frames) {
     for (const StampedFrame& entry : frames) {
         (void)intake.on_frame(entry.frame, entry.stamp);
         for (const auto& [node, record] : intake.nodes().records()) {
-            if (intake.nodes().verdict(node, intake.now()) != NodeVerdict::babbling) continue;
+            if (intake.nodes().verdict(node, intake.now()) != NodeCondition::babbling) continue;
             const double at_s = 1e-9 * static_cast<double>(entry.stamp.ns - kWallOffsetNs);
             seen.others += node == kRight ? 0U : 1U;
             seen.first_s = seen.first_s == 0.0 ? at_s : seen.first_s;
@@ -77,11 +77,11 @@ TEST(BabblingNode, leaves_the_map_as_if_its_refused_readings_had_never_been_sent
     }
     const RunResult expected = run(quiet, rest);
     const RunResult result = run(scene);
-    const std::uint64_t refused = result.accounts.readings.rejected(ReadingReason::node_babbling);
+    const std::uint64_t refused = result.inputs.readings.rejected(ReadingReason::node_babbling);
     EXPECT_GT(refused, 60U);
-    EXPECT_EQ(result.accounts.readings.in(), expected.accounts.readings.in() + refused);
-    EXPECT_EQ(result.accounts.readings.used(), expected.accounts.readings.used());
-    EXPECT_GT(result.accounts.readings.used(), 80U)
+    EXPECT_EQ(result.inputs.readings.in(), expected.inputs.readings.in() + refused);
+    EXPECT_EQ(result.inputs.readings.used(), expected.inputs.readings.used());
+    EXPECT_GT(result.inputs.readings.used(), 80U)
         << "the left node's ten, and the right one's before and after";
     EXPECT_TRUE(result.has_equal_maps(expected));
 }
@@ -91,18 +91,18 @@ TEST(BabblingNode, is_judged_in_a_replay_as_it_was_live) {
     live.config.release = Release::once_placed;
     const RunResult then = run(live);
     const RunResult now = run(babbling_scene());
-    EXPECT_GT(now.accounts.readings.rejected(ReadingReason::node_babbling), 60U);
-    EXPECT_EQ(now.accounts.readings.rejected(ReadingReason::node_babbling),
-              then.accounts.readings.rejected(ReadingReason::node_babbling));
-    EXPECT_EQ(now.accounts.frames.rejected(FrameReason::node_refused),
-              then.accounts.frames.rejected(FrameReason::node_refused));
+    EXPECT_GT(now.inputs.readings.rejected(ReadingReason::node_babbling), 60U);
+    EXPECT_EQ(now.inputs.readings.rejected(ReadingReason::node_babbling),
+              then.inputs.readings.rejected(ReadingReason::node_babbling));
+    EXPECT_EQ(now.inputs.frames.rejected(FrameReason::node_refused),
+              then.inputs.frames.rejected(FrameReason::node_refused));
 }
 
 TEST(BabblingNode, whose_joint_states_come_too_often_gives_no_joint_state) {
     Scene scene = good_scene();
     scene.rig.joints.rate_hz = 40.0;  // 178 frames a second: a hundred samples are 400
     const RunResult result = run(scene);
-    EXPECT_GT(result.accounts.frames.rejected(FrameReason::node_refused), 2'000U);
+    EXPECT_GT(result.inputs.frames.rejected(FrameReason::node_refused), 2'000U);
 }
 
 /// What came from `from_s` on for `held_s` comes 50 us apart when that is over, and what came then waits for

@@ -29,7 +29,7 @@ std::vector<StampedFrame> frames_with_jump(wire::NodeId node, double step_s) {
 TEST(ClockSteps, none_uses_every_reading) {
     const Scene scene = turning_scene();
     const Pipeline pipeline = play(scene, scene.bus.frames());
-    EXPECT_EQ(pipeline.accounts().readings.used(), 149U) << pipeline.account_text();
+    EXPECT_EQ(pipeline.inputs().readings.used(), 149U) << pipeline.inputs_text();
     expect_hits_where_shots_ended(pipeline, 60);
 }
 
@@ -47,7 +47,7 @@ TEST(ClockSteps, of_the_wall_clock_put_no_range_in_the_wrong_place) {
             const Pipeline pipeline = play(scene, frames);
             expect_hits_where_shots_ended(pipeline, 60);
             // The exchanges of 5.1 and 6.1 s agree again.
-            EXPECT_GT(pipeline.accounts().readings.used(), 90U) << pipeline.account_text();
+            EXPECT_GT(pipeline.inputs().readings.used(), 90U) << pipeline.inputs_text();
         }
     }
 }
@@ -70,7 +70,7 @@ TEST(ClockSteps, of_the_wall_clock_by_an_hour_are_counted_and_over_after_two_exc
         EXPECT_EQ(clock.steps_ahead(), step_s > 0.0 ? 1U : 0U);
         EXPECT_EQ(clock.relocks(), 1U);
         // Lost: 48 readings of 4.5 to 6.101 s, and the few around them that wait or have no pose.
-        EXPECT_GE(pipeline.accounts().readings.used(), 149U - 48U - 10U) << pipeline.account_text();
+        EXPECT_GE(pipeline.inputs().readings.used(), 149U - 48U - 10U) << pipeline.inputs_text();
     }
 }
 
@@ -117,7 +117,7 @@ TEST(ClockSteps, of_one_frame_of_ours_stamped_ahead_cost_what_comes_within_four_
             wrong->stamp.ns += std::llround(1e9 * ahead_s);
             const Pipeline pipeline = play(scene, frames);
             expect_hits_where_shots_ended(pipeline, 60);
-            EXPECT_GE(pipeline.accounts().readings.used(), 149U - 2U) << pipeline.account_text();
+            EXPECT_GE(pipeline.inputs().readings.used(), 149U - 2U) << pipeline.inputs_text();
             const HostClockEstimate& clock = pipeline.intake().host_clock();
             EXPECT_EQ(clock.steps_back() + clock.steps_ahead() + clock.relocks(), 0U);
         }
@@ -129,13 +129,13 @@ std::vector<StampedFrame> frames_with_host_back(double back_s) {
     std::vector<StampedFrame> frames = turning_scene().bus.frames();
     for (StampedFrame& entry : frames) {
         const auto decoded = wire::decode(entry.frame);
-        const auto* told = decoded ? std::get_if<wire::FollowUp>(&decoded->message) : nullptr;
-        if (told == nullptr || entry.stamp < wall_at(kStep_s)) {
+        const auto* reported = decoded ? std::get_if<wire::FollowUp>(&decoded->message) : nullptr;
+        if (reported == nullptr || entry.stamp < wall_at(kStep_s)) {
             continue;
         }
         const auto back_us = static_cast<std::uint64_t>(std::llround(1e6 * back_s));
-        entry.frame =
-            wire::encode(wire::FollowUp{told->sequence, told->host_time_us - back_us}, decoded->node_id);
+        entry.frame = wire::encode(wire::FollowUp{reported->sequence, reported->host_time_us - back_us},
+                                   decoded->node_id);
     }
     return frames;
 }
@@ -151,7 +151,7 @@ TEST(ClockSteps, back_of_the_host_that_sends_sync_are_counted_and_over_after_two
             // A second passes in doubt; up to 0.15 s more are waited for.
             EXPECT_EQ(pipeline.times_back(), back_s > 1.15 ? 1U : 0U);
             // In doubt from 5.101 s, told anew at 6.101 s; the nodes' clocks have settled 0.2 s later.
-            EXPECT_GE(pipeline.accounts().readings.used(), 149U - 37U - 12U) << pipeline.account_text();
+            EXPECT_GE(pipeline.inputs().readings.used(), 149U - 37U - 12U) << pipeline.inputs_text();
         }
     }
 }
@@ -219,7 +219,7 @@ Pipeline play_in_two(const Scene& scene, const std::vector<StampedFrame>& frames
         frames, [](const StampedFrame& entry) { return entry.stamp >= wall_at(kStep_s); });
     Pipeline first = play(scene, {frames.begin(), step});
     Pipeline second = make_pipeline(scene);
-    second.go_on_from(first);
+    second.resume_from(first);
     std::vector<StampedFrame> rest;
     for (const StampedFrame& entry : frames) {  // who the nodes are is asked for anew
         const auto decoded = wire::decode(entry.frame);
@@ -229,7 +229,7 @@ Pipeline play_in_two(const Scene& scene, const std::vector<StampedFrame>& frames
     rest.insert(rest.end(), step, frames.end());
     ScriptedSource source(rest);
     EXPECT_TRUE(replay(second, source, nullptr).is_complete());
-    EXPECT_GT(second.accounts().readings.used(), 30U) << second.account_text();
+    EXPECT_GT(second.inputs().readings.used(), 30U) << second.inputs_text();
     return second;
 }
 
@@ -278,12 +278,12 @@ TEST(ClockSteps, back_leave_the_camera_its_place) {
     }
     pipeline.finish();
     EXPECT_EQ(pipeline.times_back(), 1U);
-    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::out_of_order), 0U)
-        << pipeline.account_text();
-    EXPECT_GE(pipeline.accounts().depth_frames.used(), 30U) << pipeline.account_text();
+    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::out_of_order), 0U)
+        << pipeline.inputs_text();
+    EXPECT_GE(pipeline.inputs().depth_frames.used(), 30U) << pipeline.inputs_text();
 }
 
-// A camera that this machine's clock dates does not leap with the bus.
+// A camera that this machine's clock dates does not jump with the bus.
 TEST(ClockSteps, ahead_make_images_of_the_time_before_late_and_the_map_no_older) {
     Scene scene = turning_scene();
     scene.config.release = Release::once_placed;
@@ -299,7 +299,7 @@ TEST(ClockSteps, ahead_make_images_of_the_time_before_late_and_the_map_no_older)
     }
     pipeline.finish();
     EXPECT_EQ(pipeline.times_ahead(), 1U);
-    EXPECT_GE(pipeline.accounts().depth_frames.rejected(DepthReason::late), 10U) << pipeline.account_text();
+    EXPECT_GE(pipeline.inputs().depth_frames.rejected(DepthReason::late), 10U) << pipeline.inputs_text();
     EXPECT_NEAR(age_of_oldest_s(pipeline.map()), 5.0, 1.0);
 }
 
@@ -325,7 +325,7 @@ TEST(ClockSteps, of_a_sensor_nodes_clock_put_no_range_in_the_wrong_place) {
             SCOPED_TRACE("jump of " + std::to_string(sign * step_s) + " s");
             const Pipeline pipeline = play(turning_scene(), frames_with_jump(kLeft, sign * step_s));
             expect_hits_where_shots_ended(pipeline, 60);
-            EXPECT_GT(pipeline.accounts().readings.used(), 90U) << pipeline.account_text();
+            EXPECT_GT(pipeline.inputs().readings.used(), 90U) << pipeline.inputs_text();
         }
     }
 }
@@ -336,7 +336,7 @@ TEST(ClockSteps, of_the_joint_sources_clock_put_no_range_in_the_wrong_place) {
             SCOPED_TRACE("jump of " + std::to_string(sign * step_s) + " s");
             const Pipeline pipeline = play(turning_scene(kJoints), frames_with_jump(kJoints, sign * step_s));
             expect_hits_where_shots_ended(pipeline, 60);
-            EXPECT_GT(pipeline.accounts().readings.used(), 90U) << pipeline.account_text();
+            EXPECT_GT(pipeline.inputs().readings.used(), 90U) << pipeline.inputs_text();
         }
     }
 }

@@ -43,7 +43,7 @@ TEST(ConeWiring, counts_in_the_maps_that_range_sensors_make_and_gives_the_same_b
     EXPECT_EQ(as_cone.depth_ot, as_ray.depth_ot);
     EXPECT_NE(as_cone.proximity_ot, as_ray.proximity_ot);
     EXPECT_NE(as_cone.fused_ot, as_ray.fused_ot);
-    EXPECT_EQ(as_cone.accounts.readings.used(), as_ray.accounts.readings.used());
+    EXPECT_EQ(as_cone.inputs.readings.used(), as_ray.inputs.readings.used());
 }
 
 TEST(ConeWiring, counts_zones_with_parameters_of_their_own) {
@@ -62,20 +62,20 @@ class Changes final : public CommitListener {
     void on_depth(const DepthFrame&, const Evidence&) override {}
     void on_reading(const RangeMeasurement&, const Beam&, std::span<const VoxelUpdate> updates) override {
         for (const VoxelUpdate& update : updates) {
-            EXPECT_TRUE(told_now_.insert(update.key).second) << "each voxel once";
-            told_[update.key] += update.log_odds;
+            EXPECT_TRUE(reported_now_.insert(update.key).second) << "each voxel once";
+            reported_[update.key] += update.log_odds;
         }
-        told_now_.clear();
+        reported_now_.clear();
     }
     void on_maps(std::span<const FedMap> maps) override {
         find_map(maps, MapFeed::both)->for_each_known([&](VoxelKey key, float log_odds) {
-            EXPECT_NEAR(told_[key], log_odds, 1e-4);
+            EXPECT_NEAR(reported_[key], log_odds, 1e-4);
         });
     }
 
   private:
-    std::set<VoxelKey> told_now_;
-    std::map<VoxelKey, float> told_;
+    std::set<VoxelKey> reported_now_;
+    std::map<VoxelKey, float> reported_;
 };
 
 /// The arm stands, and its sensor is a cone.
@@ -86,7 +86,7 @@ class StandingCone : public testing::Test {
         scene.mapping.standing = fast_mapping().standing;
         builder_.emplace(
             MapBuilder::build(scene.rig, one_joint_robot(), scene.mapping, {}, every_feed()).value());
-        builder_->tell(&changes_);
+        builder_->set_listener(&changes_);
     }
     void read(std::optional<double> range_m, int times, double period_s = 0.033) {
         for (int i = 0; i < times; ++i) {
@@ -210,7 +210,7 @@ TEST_F(StandingCone, sees_through_nothing_over_where_time_leaps) {
     constexpr double kOfNineZones_s = 0.3;
     read(0.5, 30, kOfNineZones_s);
     read(1.0, 2, kOfNineZones_s);
-    builder_->forget_motion({});
+    builder_->clear_motion({});
     read(1.0, 2, kOfNineZones_s);
     EXPECT_GE(occupied(), 1U);
     read(1.0, 1, kOfNineZones_s);
@@ -307,7 +307,7 @@ TEST_F(StandingZones, take_nothing_from_each_other) {
 TEST_F(StandingCone, forgets_what_it_was_told_where_time_leaps) {
     read(1.0, 30);
     read(0.5, 3);
-    builder_->forget_motion({});
+    builder_->clear_motion({});
     read(0.5, 3);
     EXPECT_EQ(occupied(), 0U);
     read(0.5, 1);

@@ -89,10 +89,10 @@ Pipeline play(const Scene& scene, Pipeline pipeline, PatientWorker& worker, int 
             worker.end();
             pipeline.on_worker_done();
         }
-        EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+        EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     }
     pipeline.finish();
-    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     return pipeline;
 }
 
@@ -105,19 +105,19 @@ TEST_P(DepthWorkerTest, loses_nothing_and_the_order_told_makes_the_same_map_howe
     PatientWorker worker;
     OrderOf order;
     Pipeline made = make_pipeline(scene);
-    made.tell(&order);
+    made.set_listener(&order);
     made.work_beside(&worker);
     // The pipeline is moved before anything is given to it.
     const Pipeline pipeline = play(scene, std::move(made), worker, GetParam());
-    const auto& frames = pipeline.accounts().depth_frames;
-    EXPECT_EQ(frames.used() + frames.rejected(DepthReason::queue_overflow), 6U) << pipeline.account_text();
+    const auto& frames = pipeline.inputs().depth_frames;
+    EXPECT_EQ(frames.used() + frames.rejected(DepthReason::queue_overflow), 6U) << pipeline.inputs_text();
     EXPECT_EQ(frames.used(), static_cast<std::uint64_t>(worker.begun));
     if (GetParam() <= 7) {
         EXPECT_EQ(frames.used(), 6U) << "it is quick enough";
     } else if (GetParam() == kNeverDone) {
         EXPECT_EQ(frames.used(), 1U) << "the first, at the end";
     }
-    EXPECT_EQ(pipeline.accounts().readings.used(), 40U) << pipeline.account_text();
+    EXPECT_EQ(pipeline.inputs().readings.used(), 40U) << pipeline.inputs_text();
 
     Pipeline replayed = make_pipeline(scene);
     ScriptedDepth depth(order.frames());
@@ -141,23 +141,23 @@ TEST(DepthWorker, lets_readings_go_into_the_map_while_it_works) {
         while (depth != scene.depth.end() && pipeline.now() && depth->captured <= *pipeline.now()) {
             pipeline.on_depth(*depth++);
         }
-        if (worker.begun == 0) used_at_begin = pipeline.accounts().readings.used();
+        if (worker.begun == 0) used_at_begin = pipeline.inputs().readings.used();
     }
     EXPECT_EQ(worker.begun, 1) << "the others wait for the first";
-    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::queue_overflow), 3U) << "but two";
-    EXPECT_GE(pipeline.accounts().readings.used(), used_at_begin + 30);
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 0U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::queue_overflow), 3U) << "but two";
+    EXPECT_GE(pipeline.inputs().readings.used(), used_at_begin + 30);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 0U);
     pipeline.on_worker_done();
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 0U) << "it is not done";
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 0U) << "it is not done";
     EXPECT_EQ(worker.waits, 0);
     worker.end();
     pipeline.on_worker_done();
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
     EXPECT_EQ(worker.begun, 2);
     pipeline.finish();
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 2U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 2U);
     EXPECT_EQ(worker.waits, 1) << "for the one that it was at, and no other";
-    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
 }
 
 TEST(DepthWorker, is_not_given_a_frame_that_cannot_be_placed) {
@@ -168,7 +168,7 @@ TEST(DepthWorker, is_not_given_a_frame_that_cannot_be_placed) {
     made.work_beside(&worker);
     const Pipeline pipeline = play(scene, std::move(made), worker, 1);
     EXPECT_EQ(worker.begun, 0);
-    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::joints_missing), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::joints_missing), 1U);
 }
 
 TEST(DepthWorker, s_frame_is_not_used_once_the_pose_that_a_replay_needs_is_forgotten) {
@@ -179,12 +179,12 @@ TEST(DepthWorker, s_frame_is_not_used_once_the_pose_that_a_replay_needs_is_forgo
         PatientWorker worker;
         OrderOf order;
         Pipeline made = make_pipeline(scene);
-        made.tell(&order);
+        made.set_listener(&order);
         made.work_beside(&worker);
         const Pipeline pipeline = play(scene, std::move(made), worker, patience);
-        const auto& frames = pipeline.accounts().depth_frames;
-        EXPECT_EQ(frames.used(), patience == 5 ? 1U : 0U) << pipeline.account_text();
-        EXPECT_EQ(frames.rejected(DepthReason::late), patience == 5 ? 0U : 1U) << pipeline.account_text();
+        const auto& frames = pipeline.inputs().depth_frames;
+        EXPECT_EQ(frames.used(), patience == 5 ? 1U : 0U) << pipeline.inputs_text();
+        EXPECT_EQ(frames.rejected(DepthReason::late), patience == 5 ? 0U : 1U) << pipeline.inputs_text();
         EXPECT_EQ(order.frames().size(), frames.used());
     }
 }
@@ -198,7 +198,7 @@ TEST(DepthWorker, s_refusal_is_counted) {
     made.work_beside(&worker);
     const Pipeline pipeline = play(scene, std::move(made), worker, 3);
     EXPECT_EQ(worker.begun, 1);
-    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::wrong_size), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::wrong_size), 1U);
 }
 
 /// The first `refusals` pieces of work find no memory to begin with.
@@ -232,10 +232,10 @@ TEST(DepthWorker, that_finds_no_memory_costs_its_frame_and_no_other) {
             pipeline.on_depth(scene.depth[next]);
     }
     pipeline.finish();
-    const auto& frames = pipeline.accounts().depth_frames;
-    EXPECT_EQ(frames.rejected(DepthReason::no_memory), 2U) << pipeline.account_text();
-    EXPECT_EQ(frames.used(), next - 2U) << pipeline.account_text();
-    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    const auto& frames = pipeline.inputs().depth_frames;
+    EXPECT_EQ(frames.rejected(DepthReason::no_memory), 2U) << pipeline.inputs_text();
+    EXPECT_EQ(frames.used(), next - 2U) << pipeline.inputs_text();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ Pipeline play(const Scene& scene, const std::vector<StampedFrame>& frames, const
         look(pipeline);
     }
     pipeline.finish();
-    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     return pipeline;
 }
 
@@ -67,7 +67,7 @@ Nanoseconds longest_wait(Scene scene) {
     Nanoseconds longest{0};
     HostTime came{};
     play(scene, frames, [&](const Pipeline& pipeline) {
-        const auto& readings = pipeline.accounts().readings;
+        const auto& readings = pipeline.inputs().readings;
         if (!pipeline.now()) return;
         if (readings.in() > taken_in) came = *pipeline.now();
         taken_in = readings.in();
@@ -116,8 +116,8 @@ TEST(LiveRelease, tells_which_readings_each_frame_put_onto_the_map_whatever_they
 
 TEST(LiveRelease, builds_the_map_that_the_order_of_capture_builds_where_the_order_is_the_same) {
     const Pipeline live = play(live_scene(), [](const Pipeline&) {});
-    EXPECT_EQ(live.accounts().readings.used(), 10U);
-    EXPECT_EQ(live.accounts().depth_frames.used(), 6U);
+    EXPECT_EQ(live.inputs().readings.used(), 10U);
+    EXPECT_EQ(live.inputs().depth_frames.used(), 6U);
     EXPECT_EQ(encode_ot(live.map()), run(good_scene()).fused_ot);
 }
 
@@ -137,12 +137,12 @@ TEST(LiveRelease, gives_up_a_reading_without_joints_once_the_lag_is_over) {
     }
     std::optional<HostTime> given_up;
     const Pipeline pipeline = play(scene, [&](const Pipeline& now) {
-        if (!given_up && now.accounts().readings.rejected(ReadingReason::joints_missing) > 0) {
+        if (!given_up && now.inputs().readings.rejected(ReadingReason::joints_missing) > 0) {
             given_up = now.now();
         }
     });
-    EXPECT_EQ(pipeline.accounts().readings.used(), 11U) << pipeline.account_text();
-    ASSERT_TRUE(given_up) << pipeline.account_text();
+    EXPECT_EQ(pipeline.inputs().readings.used(), 11U) << pipeline.inputs_text();
+    ASSERT_TRUE(given_up) << pipeline.inputs_text();
     EXPECT_GT(*given_up, host_at(9.005) + scene.config.lag - std::chrono::milliseconds(1));
     EXPECT_LT(*given_up, host_at(9.005) + scene.config.lag + std::chrono::milliseconds(60));
 }
@@ -151,16 +151,16 @@ TEST(LiveRelease, counts_a_reading_in_a_gap_of_the_joints_as_soon_as_the_gap_is_
     Scene scene = live_scene();
     scene.bus.range(7.15, kLeft, good_reading());  // no joints between 7.0 and 7.3 s
     const Pipeline pipeline = play(scene, [](const Pipeline&) {});
-    EXPECT_EQ(pipeline.accounts().readings.rejected(ReadingReason::joints_missing), 1U);
-    EXPECT_EQ(pipeline.accounts().readings.used(), 10U);
+    EXPECT_EQ(pipeline.inputs().readings.rejected(ReadingReason::joints_missing), 1U);
+    EXPECT_EQ(pipeline.inputs().readings.used(), 10U);
 }
 
 TEST(LiveRelease, takes_an_older_reading_after_a_younger_one) {
     Scene scene = live_scene();
     scene.bus.range(3.80, kLeft, good_reading(kSpare), 0.1);  // captured early, arrives 0.1 s later
     const Pipeline pipeline = play(scene, [](const Pipeline&) {});
-    EXPECT_EQ(pipeline.accounts().readings.rejected(ReadingReason::late), 0U);
-    EXPECT_EQ(pipeline.accounts().readings.used(), 11U) << pipeline.account_text();
+    EXPECT_EQ(pipeline.inputs().readings.rejected(ReadingReason::late), 0U);
+    EXPECT_EQ(pipeline.inputs().readings.used(), 11U) << pipeline.inputs_text();
 }
 
 TEST(LiveRelease, takes_a_depth_frame_at_once_if_the_robot_is_not_removed_from_it) {
@@ -168,7 +168,7 @@ TEST(LiveRelease, takes_a_depth_frame_at_once_if_the_robot_is_not_removed_from_i
     scene.mapping.removes_robot_from_depth = false;
     Pipeline pipeline = make_pipeline(scene);
     pipeline.on_depth(flat_frame(4.0));
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
 }
 
 /// The bus up to 9 s, and then silence that somebody looks at every 50 ms, with an image every 100 ms.
@@ -185,20 +185,20 @@ TEST(LiveRelease, uses_images_beside_a_silent_bus_where_the_robot_is_not_removed
     Scene scene = live_scene();
     scene.mapping.removes_robot_from_depth = false;
     Pipeline pipeline = play_into_silence(scene, 12.04);
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 30U) << pipeline.account_text();
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 30U) << pipeline.inputs_text();
     pipeline.on_depth(flat_frame(12.99));
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 31U) << "less than a second ahead";
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 31U) << "less than a second ahead";
     pipeline.on_depth(flat_frame(13.02));
-    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::ahead_of_time), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::ahead_of_time), 1U);
 }
 
 TEST(LiveRelease, gives_up_images_beside_a_silent_bus_that_alone_tells_where_the_robot_is) {
     const Pipeline pipeline = play_into_silence(live_scene(), 12.04);
-    const auto& frames = pipeline.accounts().depth_frames;
+    const auto& frames = pipeline.inputs().depth_frames;
     EXPECT_EQ(frames.in(), 30U);
     EXPECT_EQ(frames.used(), 0U);
     // 27 of them 250 ms old and more.
-    EXPECT_EQ(frames.rejected(DepthReason::joints_missing), 27U) << pipeline.account_text();
+    EXPECT_EQ(frames.rejected(DepthReason::joints_missing), 27U) << pipeline.inputs_text();
     EXPECT_TRUE(pipeline.is_balanced());
 }
 
@@ -206,12 +206,12 @@ TEST(LiveRelease, gives_up_a_reading_that_waits_when_the_bus_falls_silent) {
     Scene scene = live_scene();
     scene.bus.range(9.005, kLeft, good_reading(kSpare));  // no joint state after it
     Pipeline pipeline = play_on(scene, 9.1);
-    const auto& readings = pipeline.accounts().readings;
-    EXPECT_EQ(readings.rejected(ReadingReason::joints_missing), 0U) << pipeline.account_text();
+    const auto& readings = pipeline.inputs().readings;
+    EXPECT_EQ(readings.rejected(ReadingReason::joints_missing), 0U) << pipeline.inputs_text();
     pipeline.on_silence(host_at(9.24));
     EXPECT_EQ(readings.rejected(ReadingReason::joints_missing), 0U);
     pipeline.on_silence(host_at(9.26));
-    EXPECT_EQ(readings.rejected(ReadingReason::joints_missing), 1U) << pipeline.account_text();
+    EXPECT_EQ(readings.rejected(ReadingReason::joints_missing), 1U) << pipeline.inputs_text();
 }
 
 TEST(LiveRelease, takes_the_bus_s_time_again_when_it_speaks_after_a_silence) {
@@ -223,7 +223,7 @@ TEST(LiveRelease, takes_the_bus_s_time_again_when_it_speaks_after_a_silence) {
             pipeline.on_can(entry.frame, entry.stamp);
     }
     pipeline.on_depth(flat_frame(7.0));
-    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::ahead_of_time), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::ahead_of_time), 1U);
 }
 
 TEST(LiveRelease, holds_a_depth_frame_until_its_joints_are_here) {
@@ -235,12 +235,12 @@ TEST(LiveRelease, holds_a_depth_frame_until_its_joints_are_here) {
         pipeline.on_can(entry.frame, entry.stamp);
         if (!is_given && pipeline.now() && *pipeline.now() >= host_at(4.0)) {
             pipeline.on_depth(flat_frame(4.05));
-            EXPECT_EQ(pipeline.accounts().depth_frames.used(), 0U);
+            EXPECT_EQ(pipeline.inputs().depth_frames.used(), 0U);
             is_given = true;
         }
         if (is_given && *pipeline.now() >= host_at(4.07)) break;
     }
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
     pipeline.finish();
 }
 

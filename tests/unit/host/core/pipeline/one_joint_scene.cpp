@@ -171,15 +171,15 @@ RunResult run(const Scene& scene, std::vector<StampedFrame> frames) {
     ScriptedSource can(std::move(frames));
     ScriptedDepth depth(scene.depth);
     const ReplayOutcome outcome = replay(pipeline, can, &depth, [&](const ReplayProgress&) {
-        EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+        EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     });
     EXPECT_TRUE(outcome.is_complete());
-    return {.accounts = pipeline.accounts(),
+    return {.inputs = pipeline.inputs(),
             .depth_ot = encode_ot(pipeline.map(MapFeed::camera)),
             .proximity_ot = encode_ot(pipeline.map(MapFeed::ranges)),
             .fused_ot = encode_ot(pipeline.map()),
             .outcome = outcome,
-            .account_text = pipeline.account_text()};
+            .inputs_text = pipeline.inputs_text()};
 }
 
 }  // namespace octoskin::test

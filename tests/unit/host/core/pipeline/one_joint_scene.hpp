@@ -75,12 +75,12 @@ void keep_alive(Scene& scene, wire::NodeId node, double from_s = 0.0);
 
 /// What came out, and the maps as .ot files.
 struct RunResult {
-    PipelineAccounts accounts;
+    PipelineInputs inputs;
     std::string depth_ot;
     std::string proximity_ot;
     std::string fused_ot;
     ReplayOutcome outcome;
-    std::string account_text;
+    std::string inputs_text;
     [[nodiscard]] bool has_equal_maps(const RunResult& other) const {
         return depth_ot == other.depth_ot && proximity_ot == other.proximity_ot && fused_ot == other.fused_ot;
     }

@@ -39,7 +39,7 @@ void expect_one_each(const std::vector<Case<Reason>>& cases, std::set<Reason> el
 
 /// Both runs; one more in, one more rejected for this reason, everything else as before.
 template <class Reason>
-void expect_one_more(const Case<Reason>& given, Account<Reason> PipelineAccounts::*account) {
+void expect_one_more(const Case<Reason>& given, InputCounters<Reason> PipelineInputs::*inputs) {
     Scene good = good_scene();
     if (given.prepare) {
         given.prepare(good);
@@ -48,12 +48,12 @@ void expect_one_more(const Case<Reason>& given, Account<Reason> PipelineAccounts
     given.provoke(bad);
     const RunResult expected = run(good);
     const RunResult result = run(bad);
-    const Account<Reason>& before = expected.accounts.*account;
-    const Account<Reason>& after = result.accounts.*account;
-    EXPECT_EQ(after.rejected(given.reason), before.rejected(given.reason) + 1) << result.account_text;
-    EXPECT_EQ(after.rejected(), before.rejected() + 1) << result.account_text;
+    const InputCounters<Reason>& before = expected.inputs.*inputs;
+    const InputCounters<Reason>& after = result.inputs.*inputs;
+    EXPECT_EQ(after.rejected(given.reason), before.rejected(given.reason) + 1) << result.inputs_text;
+    EXPECT_EQ(after.rejected(), before.rejected() + 1) << result.inputs_text;
     EXPECT_GT(after.used(), 0U);
-    EXPECT_TRUE(result.has_equal_maps(expected)) << result.account_text;
+    EXPECT_TRUE(result.has_equal_maps(expected)) << result.inputs_text;
 }
 
 // Frames.
@@ -96,7 +96,7 @@ const std::vector<Case<FrameReason>>& frame_cases() {
          [](Scene& s) { s.bus.send(4.0, forged(wire::Heartbeat{}, kLeft, 6, 3, 6)); }},
         {R::unknown_node, message(wire::Range{good_reading()}, 50)},
         {R::unknown_sensor, message(wire::RangeAux{.sensor = 9, .sequence = 0, .signal = {}}, kLeft)},
-        {R::for_nodes, message(wire::Command{}, kLeft)},
+        {R::host_command, message(wire::Command{}, kLeft)},
         {R::sync_unmatched,
          message(wire::FollowUp{.sequence = 31, .host_time_us = 4'000'000}, wire::kHostId)},
         {R::sync_repeated,
@@ -127,7 +127,7 @@ const std::vector<Case<FrameReason>>& frame_cases() {
              }
          }},
         {R::joint_no_host_time, message(wire::JointState{wire::JointPair{}}, kJoints, 0.05)},
-        {R::for_people, message(wire::BlackBox{}, kLeft)},
+        {R::diagnostic_frame, message(wire::BlackBox{}, kLeft)},
         {R::mark_ignored, message(wire::Mark{wire::MarkKind::stop, 3'500'000}, wire::kHostId, 3.5)},
     };
     return all;
@@ -135,7 +135,7 @@ const std::vector<Case<FrameReason>>& frame_cases() {
 
 class FrameReasons : public testing::TestWithParam<Case<FrameReason>> {};
 TEST_P(FrameReasons, are_counted_once_and_leave_the_maps_alone) {
-    expect_one_more(GetParam(), &PipelineAccounts::frames);
+    expect_one_more(GetParam(), &PipelineInputs::frames);
 }
 INSTANTIATE_TEST_SUITE_P(Each, FrameReasons, testing::ValuesIn(frame_cases()), name_of_case<FrameReason>);
 TEST(FrameReasonsAll, have_a_case_each) {
@@ -202,7 +202,7 @@ TEST_P(JointReasons, are_counted_once_and_leave_the_maps_alone) {
             prepare(scene);
         }
     };
-    expect_one_more(given, &PipelineAccounts::joint_samples);
+    expect_one_more(given, &PipelineInputs::joint_samples);
 }
 INSTANTIATE_TEST_SUITE_P(Each, JointReasons, testing::ValuesIn(joint_cases()), name_of_case<JointReason>);
 TEST(JointReasonsAll, have_a_case_each) {
@@ -217,9 +217,9 @@ TEST(JointReasonsAll, drop_the_oldest_where_too_many_wait) {
     const RunResult result = run(crowded);
     // 150 ms of 100 Hz wait: ten of them too many. None reaches a reading in time but those of the last
     // moment.
-    EXPECT_GT(result.accounts.joint_samples.rejected(JointReason::queue_overflow), 500U);
-    EXPECT_EQ(result.accounts.readings.used(), 0U);
-    EXPECT_EQ(result.accounts.readings.rejected(ReadingReason::joints_missing), 10U);
+    EXPECT_GT(result.inputs.joint_samples.rejected(JointReason::queue_overflow), 500U);
+    EXPECT_EQ(result.inputs.readings.used(), 0U);
+    EXPECT_EQ(result.inputs.readings.rejected(ReadingReason::joints_missing), 10U);
 }
 
 // Depth frames.
@@ -256,7 +256,7 @@ const std::vector<Case<DepthReason>>& depth_cases() {
 
 class DepthReasons : public testing::TestWithParam<Case<DepthReason>> {};
 TEST_P(DepthReasons, are_counted_once_and_leave_the_maps_alone) {
-    expect_one_more(GetParam(), &PipelineAccounts::depth_frames);
+    expect_one_more(GetParam(), &PipelineInputs::depth_frames);
 }
 INSTANTIATE_TEST_SUITE_P(Each, DepthReasons, testing::ValuesIn(depth_cases()), name_of_case<DepthReason>);
 TEST(DepthReasonsAll, have_a_case_each) {
@@ -267,14 +267,14 @@ TEST(DepthReasonsAll, reject_every_frame_without_a_camera_in_the_rig) {
     Scene scene = good_scene();
     scene.rig.camera.reset();
     const RunResult result = run(scene);
-    EXPECT_EQ(result.accounts.depth_frames.rejected(DepthReason::no_camera), 6U);
+    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::no_camera), 6U);
     EXPECT_EQ(result.fused_ot, result.proximity_ot);
 }
 TEST(DepthReasonsAll, reject_every_frame_of_a_camera_outside_the_octree) {
     Scene scene = good_scene();
     scene.rig.camera->T_base_camera.translation().x() = 2000.0;
     const RunResult result = run(scene);
-    EXPECT_EQ(result.accounts.depth_frames.rejected(DepthReason::outside_map), 6U);
+    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::outside_map), 6U);
     EXPECT_EQ(result.fused_ot, result.proximity_ot);
 }
 TEST(DepthReasonsAll, refuse_the_newest_where_too_many_wait) {
@@ -282,8 +282,8 @@ TEST(DepthReasonsAll, refuse_the_newest_where_too_many_wait) {
     scene.config.waiting_max.depth_frames = 2;
     const RunResult result = run(scene);
     // Ten a second, each waits 250 ms: no room at 4.2 and 4.5 s.
-    EXPECT_EQ(result.accounts.depth_frames.rejected(DepthReason::queue_overflow), 2U);
-    EXPECT_EQ(result.accounts.depth_frames.used(), 4U);
+    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::queue_overflow), 2U);
+    EXPECT_EQ(result.inputs.depth_frames.used(), 4U);
 }
 TEST(DepthReasonsAll, reject_a_frame_that_comes_after_the_map_has_gone_on) {
     const Scene scene = good_scene();
@@ -294,8 +294,8 @@ TEST(DepthReasonsAll, reject_a_frame_that_comes_after_the_map_has_gone_on) {
     pipeline.on_depth(flat_frame(3.6));  // the last reading in the map was captured at 3.802
     pipeline.on_depth(flat_frame(4.0));
     pipeline.finish();
-    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::late), 1U);
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::late), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
     EXPECT_TRUE(pipeline.is_balanced());
 }
 

@@ -49,7 +49,7 @@ Pipeline play(const Scene& scene) {
     ScriptedSource can(scene.bus.frames());
     ScriptedDepth depth(scene.depth);
     EXPECT_TRUE(replay(pipeline, can, &depth).is_complete());
-    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     return pipeline;
 }
 
@@ -70,7 +70,7 @@ TEST(Pipeline, places_one_range_at_the_joint_position_of_its_own_capture_time) {
     EXPECT_EQ(voxels(pipeline.map(MapFeed::ranges)), expected);
     EXPECT_EQ(voxels(pipeline.map()), expected);
     EXPECT_TRUE(voxels(pipeline.map(MapFeed::camera)).empty());
-    EXPECT_EQ(pipeline.accounts().readings.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().readings.used(), 1U);
 }
 
 TEST(Pipeline, tells_a_sensor_whose_readings_are_all_rejected_at_the_gate_or_in_the_map) {
@@ -105,8 +105,8 @@ TEST(Pipeline, places_a_range_of_a_fd_frame_the_same_way) {
     const Pipeline pipeline = play(scene);
     EXPECT_EQ(voxels(pipeline.map(MapFeed::ranges)).size(), 14U);
     EXPECT_FLOAT_EQ(voxels(pipeline.map(MapFeed::ranges)).at(key(0, 16, 0)), 0.9636F);
-    EXPECT_EQ(pipeline.accounts().readings.in(), 2U);
-    EXPECT_EQ(pipeline.accounts().readings.rejected(ReadingReason::status_fault), 1U);
+    EXPECT_EQ(pipeline.inputs().readings.in(), 2U);
+    EXPECT_EQ(pipeline.inputs().readings.rejected(ReadingReason::status_fault), 1U);
 }
 
 TEST(Pipeline, places_a_depth_frame_and_leaves_the_robot_out) {
@@ -128,7 +128,7 @@ TEST(Pipeline, places_a_depth_frame_and_leaves_the_robot_out) {
     expected[key(10, 0, 0)] = 0.94F;
     EXPECT_EQ(voxels(pipeline.map(MapFeed::camera)), expected);
     EXPECT_EQ(voxels(pipeline.map()), expected);
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 3U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 3U);
     EXPECT_EQ(pipeline.depth_stage()->robot_pixels(), 2U);
 }
 
@@ -164,8 +164,8 @@ TEST(Pipeline, is_not_hurried_by_a_depth_frame_that_comes_early) {
         }
     }
     pipeline.finish();
-    EXPECT_EQ(pipeline.accounts().readings.used(), 10U) << pipeline.account_text();
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().readings.used(), 10U) << pipeline.inputs_text();
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
 }
 
 TEST(Pipeline, calls_late_only_what_the_map_itself_has_passed) {
@@ -175,14 +175,14 @@ TEST(Pipeline, calls_late_only_what_the_map_itself_has_passed) {
     scene.bus.range(3.8980, kLeft, good_reading(kSpare),
                     0.1095);  // captured before it, comes after it was released
     const Pipeline pipeline = play(scene);
-    EXPECT_EQ(pipeline.accounts().readings.rejected(ReadingReason::self_hit), 1U);
-    EXPECT_EQ(pipeline.accounts().readings.used(), 11U) << pipeline.account_text();
+    EXPECT_EQ(pipeline.inputs().readings.rejected(ReadingReason::self_hit), 1U);
+    EXPECT_EQ(pipeline.inputs().readings.used(), 11U) << pipeline.inputs_text();
 }
 
 TEST(Pipeline, adds_both_kinds_of_measurement_to_the_fused_map_in_the_order_of_capture) {
     const RunResult all = run(good_scene());
-    EXPECT_EQ(all.accounts.readings.used(), 10U);
-    EXPECT_EQ(all.accounts.depth_frames.used(), 6U);
+    EXPECT_EQ(all.inputs.readings.used(), 10U);
+    EXPECT_EQ(all.inputs.depth_frames.used(), 6U);
     EXPECT_NE(all.depth_ot, all.fused_ot);
     EXPECT_NE(all.proximity_ot, all.fused_ot);
     Scene no_depth = good_scene();
@@ -250,8 +250,8 @@ TEST(Pipeline, gives_the_same_bytes_in_whatever_order_frames_arrive_within_the_l
         }
         std::ranges::stable_sort(late, {}, &StampedFrame::stamp);
         const RunResult shuffled = run(scene, late);
-        EXPECT_TRUE(shuffled.has_equal_maps(in_order)) << shuffled.account_text << in_order.account_text;
-        EXPECT_EQ(shuffled.accounts.readings.used(), 10U);
+        EXPECT_TRUE(shuffled.has_equal_maps(in_order)) << shuffled.inputs_text << in_order.inputs_text;
+        EXPECT_EQ(shuffled.inputs.readings.used(), 10U);
     }
 }
 
@@ -314,7 +314,7 @@ TEST(Pipeline, maps_with_a_camera_alone_where_the_robot_need_not_be_taken_out) {
     scene.bus = ScriptedBus{};
     scene.mapping.removes_robot_from_depth = false;
     const RunResult result = run(scene);
-    EXPECT_EQ(result.accounts.depth_frames.used(), 6U);
+    EXPECT_EQ(result.inputs.depth_frames.used(), 6U);
 }
 
 }  // namespace

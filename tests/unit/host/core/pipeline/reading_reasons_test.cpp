@@ -242,12 +242,12 @@ TEST_P(ReadingReasons, are_counted_once_and_leave_the_maps_alone) {
     given.provoke(bad);
     const RunResult expected = run(good);
     const RunResult result = run(bad);
-    const auto& readings = result.accounts.readings;
-    EXPECT_EQ(readings.in(), expected.accounts.readings.in() + 1) << result.account_text;
-    EXPECT_EQ(readings.rejected(given.reason), expected.accounts.readings.rejected(given.reason) + 1)
-        << result.account_text;
-    EXPECT_EQ(readings.rejected(), expected.accounts.readings.rejected() + 1) << result.account_text;
-    EXPECT_EQ(readings.used(), expected.accounts.readings.used());
+    const auto& readings = result.inputs.readings;
+    EXPECT_EQ(readings.in(), expected.inputs.readings.in() + 1) << result.inputs_text;
+    EXPECT_EQ(readings.rejected(given.reason), expected.inputs.readings.rejected(given.reason) + 1)
+        << result.inputs_text;
+    EXPECT_EQ(readings.rejected(), expected.inputs.readings.rejected() + 1) << result.inputs_text;
+    EXPECT_EQ(readings.used(), expected.inputs.readings.used());
     EXPECT_GT(readings.used(), 0U);
     EXPECT_TRUE(result.has_equal_maps(expected));
 }
@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ReadingReasons, testing::ValuesIn(cases()), name_
 TEST(ReadingReasonsAll, have_a_case_each) {
     std::set<ReadingReason> seen = {ReadingReason::queue_overflow,       // below
                                     ReadingReason::sensor_disputed,      // below
-                                    ReadingReason::contradicts_camera};  // witness_wiring_test
+                                    ReadingReason::contradicts_camera};  // cross_check_wiring_test
     for (const ReadingCase& given : cases()) {
         EXPECT_TRUE(seen.insert(given.reason).second);
     }
@@ -281,15 +281,15 @@ TEST(ReadingReasonsAll, keep_a_sensor_out_that_two_senders_have_until_a_second_a
         reading.range_mm += 100;
         bad.bus.send(t + 0.016, wire::Range{reading}, kLeft);
     }
-    const auto& before = run(good).accounts.readings;
+    const auto& before = run(good).inputs.readings;
     const RunResult result = run(bad);
-    const auto& readings = result.accounts.readings;
-    EXPECT_EQ(readings.in() - before.in(), 61U + 7U) << result.account_text;
+    const auto& readings = result.inputs.readings;
+    EXPECT_EQ(readings.in() - before.in(), 61U + 7U) << result.inputs_text;
     // Seven, and the second one's twin, which waited.
-    EXPECT_EQ(readings.rejected(ReadingReason::contradicts_reading), 7U + 1U) << result.account_text;
+    EXPECT_EQ(readings.rejected(ReadingReason::contradicts_reading), 7U + 1U) << result.inputs_text;
     // Between 5.049 s and 6.214 s.
-    EXPECT_EQ(readings.rejected(ReadingReason::sensor_disputed), 35U) << result.account_text;
-    EXPECT_EQ(readings.used() - before.used(), 61U - 1U - 35U) << result.account_text;
+    EXPECT_EQ(readings.rejected(ReadingReason::sensor_disputed), 35U) << result.inputs_text;
+    EXPECT_EQ(readings.used() - before.used(), 61U - 1U - 35U) << result.inputs_text;
 }
 
 TEST(ReadingReasonsAll, drop_the_oldest_where_too_many_wait) {
@@ -299,8 +299,8 @@ TEST(ReadingReasonsAll, drop_the_oldest_where_too_many_wait) {
     const RunResult expected = run(good);
     const RunResult result = run(crowded);
     // Every 33 ms one, each waits 250 ms: seven at a time, and the last three get through.
-    EXPECT_EQ(result.accounts.readings.used(), 3U);
-    EXPECT_EQ(result.accounts.readings.rejected(ReadingReason::queue_overflow), 7U);
+    EXPECT_EQ(result.inputs.readings.used(), 3U);
+    EXPECT_EQ(result.inputs.readings.rejected(ReadingReason::queue_overflow), 7U);
     EXPECT_EQ(result.depth_ot, expected.depth_ot);
 }
 

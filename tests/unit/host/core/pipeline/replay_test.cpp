@@ -48,9 +48,9 @@ TEST(Replay, gives_each_depth_frame_in_when_the_log_has_come_to_its_capture_time
     ScriptedSource can(scene.bus.frames());
     ScriptedDepth depth({flat_frame(0.2), flat_frame(4.0), flat_frame(8.9)});
     EXPECT_TRUE(replay(pipeline, can, &depth).is_complete());
-    EXPECT_EQ(pipeline.accounts().depth_frames.rejected(DepthReason::joints_missing), 1U)
+    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::joints_missing), 1U)
         << "no clock at 0.2 s";
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 2U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 2U);
     EXPECT_TRUE(pipeline.is_balanced());
 }
 
@@ -82,8 +82,8 @@ TEST(Replay, uses_what_a_source_gave_before_it_failed_and_says_why_it_did) {
     EXPECT_FALSE(outcome.is_complete());
     EXPECT_EQ(outcome.can_error.value().what, "can.log: reading failed after line 3433");
     EXPECT_EQ(outcome.depth_error.value().what, "depth.oni: ends within frame 6");
-    EXPECT_EQ(pipeline.accounts().readings.used(), 10U);
-    EXPECT_EQ(pipeline.accounts().depth_frames.used(), 6U);
+    EXPECT_EQ(pipeline.inputs().readings.used(), 10U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 6U);
     EXPECT_TRUE(pipeline.is_balanced());
 }
 
@@ -92,7 +92,7 @@ TEST(Replay, needs_no_depth_source) {
     Pipeline pipeline = make_pipeline(scene);
     ScriptedSource can(scene.bus.frames());
     EXPECT_TRUE(replay(pipeline, can, nullptr).is_complete());
-    EXPECT_EQ(pipeline.accounts().readings.used(), 10U);
+    EXPECT_EQ(pipeline.inputs().readings.used(), 10U);
 }
 
 TEST(Replay, of_a_log_twice_in_succession_gives_the_map_of_once) {
@@ -104,8 +104,8 @@ TEST(Replay, of_a_log_twice_in_succession_gives_the_map_of_once) {
     }
     const RunResult result = run(scene, twice);
     EXPECT_TRUE(result.has_equal_maps(once));
-    EXPECT_EQ(result.accounts.readings.in(), 20U);
-    EXPECT_EQ(result.accounts.readings.used(), 10U);
+    EXPECT_EQ(result.inputs.readings.in(), 20U);
+    EXPECT_EQ(result.inputs.readings.used(), 10U);
 }
 
 TEST(Replay, of_the_last_reading_again_with_a_new_clock_map_uses_it_once) {
@@ -123,7 +123,7 @@ TEST(Replay, of_the_last_reading_again_with_a_new_clock_map_uses_it_once) {
             twice.push_back(entry);
         }
         EXPECT_EQ(run(scene, twice).proximity_ot, once.proximity_ot) << end_s;
-        EXPECT_EQ(run(scene, twice).accounts.readings.used(), 10U) << end_s;
+        EXPECT_EQ(run(scene, twice).inputs.readings.used(), 10U) << end_s;
     }
 }
 
@@ -135,12 +135,12 @@ TEST(Replay, loses_no_frame_of_a_camera_that_outlives_the_bus) {
         scene.depth.push_back(flat_frame(7.4 + k / 30.0));
     }
     const RunResult result = run(scene);
-    EXPECT_EQ(result.accounts.depth_frames.rejected(DepthReason::queue_overflow), 0U) << result.account_text;
+    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::queue_overflow), 0U) << result.inputs_text;
     // Joints end at 9.0 s: 49 frames until then.
-    EXPECT_EQ(result.accounts.depth_frames.used(), 49U) << result.account_text;
-    EXPECT_EQ(result.accounts.depth_frames.used() +
-                  result.accounts.depth_frames.rejected(DepthReason::joints_missing),
-              79U);
+    EXPECT_EQ(result.inputs.depth_frames.used(), 49U) << result.inputs_text;
+    EXPECT_EQ(
+        result.inputs.depth_frames.used() + result.inputs.depth_frames.rejected(DepthReason::joints_missing),
+        79U);
 }
 
 TEST(Replay, ignores_marks_far_from_now) {
@@ -148,7 +148,7 @@ TEST(Replay, ignores_marks_far_from_now) {
     scene.config.begin = MapBegin::start_mark;
     scene.bus.send(3.45, wire::Mark{wire::MarkKind::start, 3'450'000}, wire::kHostId);
     const RunResult expected = run(scene);
-    EXPECT_EQ(expected.accounts.readings.used(), 10U);
+    EXPECT_EQ(expected.inputs.readings.used(), 10U);
     for (const auto kind : {wire::MarkKind::start, wire::MarkKind::stop}) {
         for (const std::uint64_t at_us :
              {std::uint64_t{0}, std::uint64_t{10'000'000}, (std::uint64_t{1} << 48) - 1}) {
@@ -160,7 +160,7 @@ TEST(Replay, ignores_marks_far_from_now) {
                 }
                 const RunResult result = run(damaged);
                 EXPECT_TRUE(result.has_equal_maps(expected)) << at_us << " at " << sent_s;
-                EXPECT_EQ(result.accounts.frames.rejected(FrameReason::mark_ignored), 1U);
+                EXPECT_EQ(result.inputs.frames.rejected(FrameReason::mark_ignored), 1U);
             }
         }
     }
@@ -170,7 +170,7 @@ TEST(Replay, keeps_a_mark_until_the_time_is_known) {
     Scene scene = good_scene();
     scene.config.begin = MapBegin::start_mark;
     scene.bus.send(0.05, wire::Mark{wire::MarkKind::start, 50'000}, wire::kHostId);
-    EXPECT_EQ(run(scene).accounts.readings.used(), 10U);
+    EXPECT_EQ(run(scene).inputs.readings.used(), 10U);
 }
 
 TEST(Replay, maps_from_start_to_stop_if_told_so) {
@@ -180,10 +180,10 @@ TEST(Replay, maps_from_start_to_stop_if_told_so) {
     scene.bus.send(3.6, wire::Mark{wire::MarkKind::start, 3'530'000}, wire::kHostId);
     scene.bus.send(4.2, wire::Mark{wire::MarkKind::stop, 4'100'000}, wire::kHostId);
     const RunResult result = run(scene);
-    EXPECT_EQ(result.accounts.readings.rejected(ReadingReason::outside_marks), 1U);
-    EXPECT_EQ(result.accounts.readings.used(), 9U);
-    EXPECT_EQ(result.accounts.depth_frames.rejected(DepthReason::outside_marks), 4U);
-    EXPECT_EQ(result.accounts.depth_frames.used(), 2U);
+    EXPECT_EQ(result.inputs.readings.rejected(ReadingReason::outside_marks), 1U);
+    EXPECT_EQ(result.inputs.readings.used(), 9U);
+    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::outside_marks), 4U);
+    EXPECT_EQ(result.inputs.depth_frames.used(), 2U);
 }
 
 }  // namespace

@@ -37,8 +37,8 @@ Scene scene_without_measurements() {
 
 /// Whether the pipeline itself begins there. Nothing is mapped: no image comes, and no map is written.
 bool begins_with_start(const Scene& scene) {
-    const PipelineAccounts accounts = play(scene, scene.bus.frames()).accounts();
-    return accounts.frames.rejected(FrameReason::mark_ignored) == 0;
+    const PipelineInputs inputs = play(scene, scene.bus.frames()).inputs();
+    return inputs.frames.rejected(FrameReason::mark_ignored) == 0;
 }
 
 TEST(StartScan, finds_a_start_exactly_where_the_pipeline_takes_it) {
@@ -83,7 +83,7 @@ TEST(StartScan, goes_on_to_a_later_start_that_counts) {
     Scene scene = with_mark(wire::MarkKind::start, 3.0, 5.0);
     scene.bus.send(3.4, wire::Mark{wire::MarkKind::start, 3'400'000}, wire::kHostId);
     EXPECT_TRUE(scan(scene).has_start());
-    EXPECT_EQ(run(scene).accounts.readings.used(), 10U);
+    EXPECT_EQ(run(scene).inputs.readings.used(), 10U);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ Pipeline play(const Scene& scene, const std::vector<StampedFrame>& frames) {
     Pipeline pipeline = make_pipeline(scene);
     ScriptedSource source(frames);
     EXPECT_TRUE(replay(pipeline, source, nullptr).is_complete());
-    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.account_text();
+    EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     return pipeline;
 }
 

@@ -41,7 +41,7 @@ TEST(Evidence, is_that_of_the_voxel_that_was_confirmed_the_longest_ago) {
     for (int round = 0; round < 20; ++round) {
         FusedMap map = aging_map(20);
         for (int second = 0; second < 40; ++second) {
-            map.go_on(at_second(second));
+            map.advance_time(at_second(second));
             std::vector<VoxelUpdate> updates;
             for (int i = 0; i < 300; ++i)
                 updates.push_back({map.key_of({place(random), place(random), place(random)}).value(), -0.4F});
@@ -66,7 +66,7 @@ TEST(Evidence, of_space_without_any_is_none) {
     FusedMap map = aging_map(20);
     feed(map, std::vector<VoxelUpdate>{{map.key_of({0, 0, 0}).value(), -0.4F}});
     EXPECT_FALSE(weakest_in(map, capsule).has_value()) << "no clock";
-    map.go_on(at_second(0));
+    map.advance_time(at_second(0));
     EXPECT_FALSE(weakest_in(map, capsule)->confirmation.has_value()) << "nobody knows how old";
     EXPECT_TRUE(weakest_in(map, capsule)->is_stale);
     EXPECT_FALSE(weakest_in(map, {{5, 0, 0}, {5, 0, 0.2}, 0.1}).has_value()) << "unknown";
@@ -80,12 +80,12 @@ TEST(Evidence, makes_a_free_posture_stale_but_an_occupied_one_is_occupied) {
     confirm_about_origin(map, at_second(0));
     const auto state = [&] { return worst_of(query, map, *query.pose(std::vector{0.0, 0.0}))->state; };
     EXPECT_EQ(state(), PostureState::free);
-    map.go_on(at_second(10));
+    map.advance_time(at_second(10));
     EXPECT_EQ(state(), PostureState::stale);
     const auto stale = worst_of(query, map, *query.pose(std::vector{0.0, 0.0})).value();
     EXPECT_TRUE(stale.link && stale.voxel && map.is_stale(*stale.voxel));
     feed(map, std::vector<VoxelUpdate>{{map.key_of({0.4, 0, 0.3}).value(), 3.5F}});
-    map.go_on(at_second(100));
+    map.advance_time(at_second(100));
     EXPECT_EQ(state(), PostureState::occupied) << "however old";
 }
 

@@ -217,8 +217,8 @@ TEST(PathQuery, tells_the_least_of_what_each_posture_is_from_with_and_without_a_
         const Leg leg(query, map, std::array{turn(random), 0.0}, std::array{turn(random), 0.2});
         const double reach_m = i % 2 == 0 ? 0.3 : 0.5;  // the field tells as far as 0.38
         const auto searched = ask(query, map, leg, {.reach_m = reach_m});
-        const auto told = ask(query, map, leg, {.reach_m = reach_m, .field = &field});
-        ASSERT_TRUE(searched && told);
+        const auto reported = ask(query, map, leg, {.reach_m = reach_m, .field = &field});
+        ASSERT_TRUE(searched && reported);
         PostureClearance least;
         for (std::size_t posture = 0; posture < searched->postures; ++posture) {
             const auto capsules = leg.pose(query, posture);
@@ -231,7 +231,7 @@ TEST(PathQuery, tells_the_least_of_what_each_posture_is_from_with_and_without_a_
                 take(least.not_free_m, found->not_free_m);
             }
         }
-        for (const LegAnswer& answer : {*searched, *told}) {
+        for (const LegAnswer& answer : {*searched, *reported}) {
             ASSERT_EQ(answer.clearance.occupied_m, least.occupied_m) << i;
             ASSERT_EQ(answer.clearance.not_free_m, least.not_free_m) << i;
             EXPECT_EQ(answer.clearance.not_free_link, searched->clearance.not_free_link);

@@ -75,7 +75,7 @@ inline FusedMap free_about_origin(std::uint32_t stale_after_s = 0) {
 
 /// All of its space is measured at an instant by range sensors.
 inline void confirm_about_origin(FusedMap& map, HostTime now) {
-    map.go_on(now);
+    map.advance_time(now);
     std::vector<VoxelUpdate> updates;
     map.for_each_known([&](VoxelKey key, float) { updates.push_back({key, -0.4F}); });
     feed(map, updates, SensorKind::range);

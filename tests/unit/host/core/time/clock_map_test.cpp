@@ -44,7 +44,7 @@ HostTime at_s(double seconds) {
 ClockMap locked_map(const NodeClock& clock, int count, const ClockMapConfig& config = {}) {
     ClockMap map(config);
     for (int k = 1; k <= count; ++k) {
-        EXPECT_EQ(map.add({at_s(k), clock.at(at_s(k))}), SampleVerdict::used);
+        EXPECT_EQ(map.add({at_s(k), clock.at(at_s(k))}), SampleEffect::used);
     }
     return map;
 }
@@ -92,7 +92,7 @@ TEST(ClockMap, stays_within_half_a_millisecond_and_within_its_bound_under_jitter
             const HostTime sync = at_s(k);
             const HostTime stamped = sync + Nanoseconds{std::llround(between(-49e3, 49e3))};
             const NodeTime heard = clock.at(sync + Nanoseconds{std::llround(between(-49e3, 49e3))});
-            ASSERT_EQ(map.add({stamped, heard}), SampleVerdict::used);
+            ASSERT_EQ(map.add({stamped, heard}), SampleEffect::used);
             for (int i = 0; i < 12 && k >= 2; ++i) {
                 const HostTime truth = sync + Nanoseconds{std::llround(between(0.2e9, 1.19e9))};
                 const auto mapped = map.locate(clock.residue_at(truth), truth + Nanoseconds{30'000'000});
@@ -123,9 +123,9 @@ TEST(ClockMap, widens_its_bound_with_silence_and_gives_up_after_five_seconds) {
         const auto mapped = map.locate(clock.residue_at(truth), truth);
         ASSERT_TRUE(mapped.has_value()) << silence;
         EXPECT_GT(mapped->error_bound, last);
-        const auto told = map.error_bound(truth);
-        ASSERT_TRUE(told);
-        EXPECT_NEAR(static_cast<double>((*told - mapped->error_bound).count()), 0.0, 1'000.0);
+        const auto reported = map.error_bound(truth);
+        ASSERT_TRUE(reported);
+        EXPECT_NEAR(static_cast<double>((*reported - mapped->error_bound).count()), 0.0, 1'000.0);
         last = mapped->error_bound;
     }
     EXPECT_FALSE(map.fault(at_s(13.0)).has_value());
@@ -184,9 +184,9 @@ TEST(ClockMap, resolves_a_residue_at_its_edges) {
 TEST(ClockMap, ignores_a_single_wrong_exchange_but_trusts_nothing_until_the_next) {
     const NodeClock clock{.start_us = 0, .drift = 80e-6};
     ClockMap map = locked_map(clock, 5);
-    EXPECT_EQ(map.add({at_s(6), clock.at(at_s(6.02))}), SampleVerdict::contradicts);
+    EXPECT_EQ(map.add({at_s(6), clock.at(at_s(6.02))}), SampleEffect::contradicts);
     EXPECT_EQ(map.locate(clock.residue_at(at_s(6.5)), at_s(6.5)).error(), ClockFault::in_doubt);
-    EXPECT_EQ(map.add({at_s(7), clock.at(at_s(7))}), SampleVerdict::used);
+    EXPECT_EQ(map.add({at_s(7), clock.at(at_s(7))}), SampleEffect::used);
     EXPECT_LE(error_ns(map, clock, at_s(7.5)), 2'000);
 }
 
@@ -196,9 +196,9 @@ TEST(ClockMap, locks_again_two_exchanges_after_the_counter_jumped) {
         NodeClock after = before;
         after.start_us += jump_us;
         ClockMap map = locked_map(before, 5);  // the jump comes right after the fifth
-        EXPECT_EQ(map.add({at_s(6), after.at(at_s(6))}), SampleVerdict::contradicts) << jump_us;
+        EXPECT_EQ(map.add({at_s(6), after.at(at_s(6))}), SampleEffect::contradicts) << jump_us;
         EXPECT_EQ(map.locate(after.residue_at(at_s(6.5)), at_s(6.5)).error(), ClockFault::in_doubt);
-        EXPECT_EQ(map.add({at_s(7), after.at(at_s(7))}), SampleVerdict::relocked);
+        EXPECT_EQ(map.add({at_s(7), after.at(at_s(7))}), SampleEffect::relocked);
         EXPECT_LE(error_ns(map, after, at_s(7.3)), 2'000);
     }
 }
@@ -206,23 +206,23 @@ TEST(ClockMap, locks_again_two_exchanges_after_the_counter_jumped) {
 TEST(ClockMap, is_not_relocked_by_two_wrong_exchanges_that_disagree) {
     const NodeClock clock{.start_us = 0};
     ClockMap map = locked_map(clock, 5);
-    EXPECT_EQ(map.add({at_s(6), clock.at(at_s(6.02))}), SampleVerdict::contradicts);
-    EXPECT_EQ(map.add({at_s(7), clock.at(at_s(7.5))}), SampleVerdict::contradicts);
-    EXPECT_EQ(map.add({at_s(8), clock.at(at_s(8))}), SampleVerdict::used);
+    EXPECT_EQ(map.add({at_s(6), clock.at(at_s(6.02))}), SampleEffect::contradicts);
+    EXPECT_EQ(map.add({at_s(7), clock.at(at_s(7.5))}), SampleEffect::contradicts);
+    EXPECT_EQ(map.add({at_s(8), clock.at(at_s(8))}), SampleEffect::used);
     EXPECT_LE(error_ns(map, clock, at_s(8.3)), 2'000);
 }
 
 TEST(ClockMap, refuses_a_rate_that_no_crystal_has) {
     ClockMap map;
     map.add({at_s(1), {1'000'000}});
-    EXPECT_EQ(map.add({at_s(2), {2'001'000}}), SampleVerdict::contradicts) << "1000 ppm";
-    EXPECT_EQ(map.add({at_s(3), {3'000'000}}), SampleVerdict::used);
+    EXPECT_EQ(map.add({at_s(2), {2'001'000}}), SampleEffect::contradicts) << "1000 ppm";
+    EXPECT_EQ(map.add({at_s(3), {3'000'000}}), SampleEffect::used);
 }
 
 TEST(ClockMap, refuses_a_counter_that_stands_still) {
     ClockMap map;
     map.add({at_s(1), {1'000'000}});
-    EXPECT_EQ(map.add({at_s(1.0001), {1'000'000}}), SampleVerdict::contradicts);
+    EXPECT_EQ(map.add({at_s(1.0001), {1'000'000}}), SampleEffect::contradicts);
 }
 
 TEST(ClockMap, allows_for_a_wandering_clock_in_its_bound) {
@@ -233,7 +233,7 @@ TEST(ClockMap, allows_for_a_wandering_clock_in_its_bound) {
     ClockMap map(config);
     std::int64_t error_max = 0;
     for (int k = 1; k <= 60; ++k) {
-        ASSERT_EQ(map.add({at_s(k), clock.at(at_s(k))}), SampleVerdict::used);
+        ASSERT_EQ(map.add({at_s(k), clock.at(at_s(k))}), SampleEffect::used);
         const HostTime truth = at_s(k + 1.1);
         if (k >= 2) {
             const auto mapped = map.locate(clock.residue_at(truth), truth);
@@ -249,7 +249,7 @@ TEST(ClockMap, allows_for_a_wandering_clock_in_its_bound) {
 TEST(ClockMap, starts_anew_after_a_minute_without_exchange) {
     const NodeClock clock{.start_us = 0};
     ClockMap map = locked_map(clock, 5);
-    EXPECT_EQ(map.add({at_s(66), {7}}), SampleVerdict::used);
+    EXPECT_EQ(map.add({at_s(66), {7}}), SampleEffect::used);
     EXPECT_EQ(map.fault(at_s(66)), ClockFault::not_ready);
 }
 

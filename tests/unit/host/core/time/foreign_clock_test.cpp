@@ -18,9 +18,9 @@ class ForeignClockTest : public testing::Test {
         now_ = now_ + kSecond;
         sequence_ = static_cast<std::uint8_t>((sequence_ + 1U) % wire::kSyncSequenceCount);
         clock_.on_sync(sequence_, now_);
-        clock_.on_follow_up(told(sequence_, now_ + ahead));
+        clock_.on_follow_up(reported(sequence_, now_ + ahead));
     }
-    static wire::FollowUp told(std::uint8_t sequence, HostTime at) {
+    static wire::FollowUp reported(std::uint8_t sequence, HostTime at) {
         return {sequence, static_cast<std::uint64_t>(at.ns / 1000)};
     }
     [[nodiscard]] std::optional<Nanoseconds> ahead() const { return clock_.ahead(now_); }
@@ -86,14 +86,14 @@ TEST_F(ForeignClockTest, stays_within_a_millisecond_of_a_drifting_clock_with_jit
 }
 
 TEST_F(ForeignClockTest, is_not_told_by_an_answer_to_another_sync_or_a_second_one) {
-    clock_.on_follow_up(told(0, now_ + kQuarter));
+    clock_.on_follow_up(reported(0, now_ + kQuarter));
     for (int i = 0; i < 5; ++i) {
         clock_.on_sync(1, now_);
-        clock_.on_follow_up(told(2, now_ + kQuarter));
+        clock_.on_follow_up(reported(2, now_ + kQuarter));
         EXPECT_FALSE(ahead());
     }
-    clock_.on_follow_up(told(1, now_ + kQuarter));
-    for (int i = 0; i < 5; ++i) clock_.on_follow_up(told(1, now_ + kQuarter));
+    clock_.on_follow_up(reported(1, now_ + kQuarter));
+    for (int i = 0; i < 5; ++i) clock_.on_follow_up(reported(1, now_ + kQuarter));
     EXPECT_FALSE(ahead()) << "one exchange, however often it is told";
 }
 

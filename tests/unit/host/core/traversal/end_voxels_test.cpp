@@ -15,10 +15,10 @@ namespace {
 constexpr std::size_t kVoxelsMax = std::size_t{1} << 26U;
 
 /// Each brick's voxels in which rays end, ray by ray.
-std::map<MortonCode, BrickMask> masks_of(const PlacedImage& rays) {
+std::map<MortonCode, BrickMask> masks_of(const ProjectedImage& rays) {
     std::map<MortonCode, BrickMask> masks;
     for (std::size_t i = 0; i < rays.pixels(); ++i) {
-        if (rays.key_z[i] == PlacedImage::kNoKey) continue;
+        if (rays.key_z[i] == ProjectedImage::kNoKey) continue;
         const VoxelKey key{static_cast<std::uint16_t>(rays.key_xy[i]),
                            static_cast<std::uint16_t>(rays.key_xy[i] >> 16U),
                            static_cast<std::uint16_t>(rays.key_z[i])};
@@ -27,17 +27,17 @@ std::map<MortonCode, BrickMask> masks_of(const PlacedImage& rays) {
     return masks;
 }
 
-KeyBox box_of(const PlacedImage& rays, const VoxelLattice& lattice) {
+KeyBox box_of(const ProjectedImage& rays, const VoxelLattice& lattice) {
     return {*lattice.key_of(rays.lowest.cast<double>()), *lattice.key_of(rays.highest.cast<double>())};
 }
 
-PlacedImage placed(std::uint32_t width, std::uint32_t height, const VoxelLattice& lattice,
-                   double range_max_m) {
+ProjectedImage placed(std::uint32_t width, std::uint32_t height, const VoxelLattice& lattice,
+                      double range_max_m) {
     property::RandomGeometry random(width + height, lattice.resolution_m());
     CameraIntrinsics camera = kSmallCamera;
     camera.width = width;
     camera.height = height;
-    PlacedImage rays;
+    ProjectedImage rays;
     const Eigen::Isometry3d T_map_camera = random.camera_pose();
     place_voxels(random.depth_image(width, height), PixelRays(camera), lattice, T_map_camera, range_max_m,
                  rays);
@@ -49,7 +49,7 @@ TEST(EndVoxels, are_those_of_each_ray_in_images_of_any_size_however_many_parts_t
     std::size_t found = 0;
     for (const std::uint32_t width : {1U, 3U, 17U, 64U, 100U}) {
         for (const std::uint32_t height : {1U, 2U, 40U}) {
-            const PlacedImage rays = placed(width, height, lattice, height == 2 ? 0.0 : 1.7);
+            const ProjectedImage rays = placed(width, height, lattice, height == 2 ? 0.0 : 1.7);
             const auto expected = masks_of(rays);
             on_each_instruction_set([&](const std::string& name) {
                 SCOPED_TRACE(name + ", " + std::to_string(width) + " x " + std::to_string(height));
@@ -77,7 +77,7 @@ TEST(EndVoxels, are_those_of_each_ray_in_images_of_any_size_however_many_parts_t
 
 TEST(EndVoxels, are_none_outside_of_the_box_and_forgotten_with_the_next_image) {
     const VoxelLattice lattice(0.04);
-    const PlacedImage rays = placed(64, 40, lattice, 0.0);
+    const ProjectedImage rays = placed(64, 40, lattice, 0.0);
     EndVoxels ends;
     ASSERT_TRUE(ends.begin(box_of(rays, lattice), kVoxelsMax, 1));
     ends.mark(rays, 0);
@@ -86,8 +86,8 @@ TEST(EndVoxels, are_none_outside_of_the_box_and_forgotten_with_the_next_image) {
         EXPECT_EQ(ends.of(morton_of(box.lowest.moved(axis, -1).cube().lowest)), BrickMask{});
         EXPECT_EQ(ends.of(morton_of(box.highest.moved(axis, 1).cube().lowest)), BrickMask{});
     }
-    PlacedImage nothing = rays;
-    nothing.key_z.assign(nothing.key_z.size(), PlacedImage::kNoKey);
+    ProjectedImage nothing = rays;
+    nothing.key_z.assign(nothing.key_z.size(), ProjectedImage::kNoKey);
     ASSERT_TRUE(ends.begin(box_of(rays, lattice), kVoxelsMax, 1));
     ends.mark(nothing, 0);
     for (const auto& [brick, mask] : masks_of(rays)) EXPECT_EQ(ends.of(brick), BrickMask{});
@@ -95,7 +95,7 @@ TEST(EndVoxels, are_none_outside_of_the_box_and_forgotten_with_the_next_image) {
 
 TEST(EndVoxels, are_refused_where_the_box_is_too_large) {
     const VoxelLattice lattice(0.04);
-    const PlacedImage rays = placed(17, 2, lattice, 0.0);
+    const ProjectedImage rays = placed(17, 2, lattice, 0.0);
     const KeyBox box = box_of(rays, lattice);
     const std::size_t voxels = BrickBox::of(box).bricks() * kBrickVoxels;
     EndVoxels ends;

@@ -28,9 +28,9 @@ void expect_exact(const CameraIntrinsics& camera, unsigned seed, const Case& a_c
     }
     const VoxelLattice lattice(a_case.resolution_m);
     const PixelRays pixel_rays(camera);
-    PlacedImage placed;
+    ProjectedImage placed;
     place_image(image, pixel_rays, lattice, T_map_camera, a_case.range_max_m, placed);
-    MarkGrid grid;
+    VisitedGrid grid;
     span(grid, placed, lattice);
     const std::set<VoxelKey> hits = hit_by(placed, lattice);
     const auto ends = [&](MortonCode brick) {

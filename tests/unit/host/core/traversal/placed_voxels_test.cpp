@@ -12,19 +12,20 @@ namespace octoskin {
 namespace {
 
 struct PlacedTwice {
-    PlacedImage exact;
-    PlacedImage voxels;
+    ProjectedImage exact;
+    ProjectedImage voxels;
 };
 
 PlacedTwice placed_twice(const DepthImage& image, const VoxelLattice& lattice,
-                         const Eigen::Isometry3d& T_map_camera, double range_max_m, Crew* crew = nullptr) {
+                         const Eigen::Isometry3d& T_map_camera, double range_max_m,
+                         ThreadPool* pool = nullptr) {
     CameraIntrinsics camera = kSmallCamera;
     camera.width = image.width;
     camera.height = image.height;
     const PixelRays pixel_rays(camera);
     PlacedTwice placed;
-    place_image(image, pixel_rays, lattice, T_map_camera, range_max_m, placed.exact, crew);
-    place_voxels(image, pixel_rays, lattice, T_map_camera, range_max_m, placed.voxels, crew);
+    place_image(image, pixel_rays, lattice, T_map_camera, range_max_m, placed.exact, pool);
+    place_voxels(image, pixel_rays, lattice, T_map_camera, range_max_m, placed.voxels, pool);
     return placed;
 }
 
@@ -41,7 +42,7 @@ void expect_same(const PlacedTwice& placed) {
         SCOPED_TRACE(i);
         ASSERT_EQ(voxels.key_z[i], exact.key_z[i]);
         ASSERT_EQ(voxels.reach_m[i] < 0.0F, exact.reach_m[i] < 0.0F);
-        if (exact.key_z[i] == PlacedImage::kNoKey) {
+        if (exact.key_z[i] == ProjectedImage::kNoKey) {
             ASSERT_NEAR(voxels.reach_m[i], exact.reach_m[i], rounding_m);
             ASSERT_NEAR(voxels.passed_m[i], exact.passed_m[i], rounding_m);
             continue;
@@ -68,7 +69,7 @@ TEST(PlacedVoxels, are_those_of_the_exact_ends_near_faces_and_maximum_near_and_f
                 if (i % 3 != 0) image.depth_m[i] = std::nextafter(image.depth_m[i], i % 3 == 1 ? 0.0F : 9.0F);
             }
         }
-        std::optional<PlacedImage> first;
+        std::optional<ProjectedImage> first;
         on_each_instruction_set([&](const std::string& name) {
             SCOPED_TRACE(name + ", seed " + std::to_string(seed));
             const PlacedTwice placed = placed_twice(image, lattice, T_map_camera, range_max_m);
@@ -107,7 +108,7 @@ TEST(PlacedVoxels, of_rays_that_leave_the_octree_are_left_out_as_the_exact_ones_
 
 TEST(PlacedVoxels, are_those_of_images_of_any_size_whoever_places_them) {
     const VoxelLattice lattice(0.04);
-    Crew crew(3);
+    ThreadPool pool(3);
     for (const std::uint32_t width : {1U, 5U, 17U, 63U, 64U, 100U, 128U}) {
         for (const std::uint32_t height : {1U, 33U, 70U}) {
             property::RandomGeometry random(width + height, 0.04);
@@ -116,7 +117,7 @@ TEST(PlacedVoxels, are_those_of_images_of_any_size_whoever_places_them) {
             on_each_instruction_set([&](const std::string& name) {
                 SCOPED_TRACE(name + ", " + std::to_string(width) + " x " + std::to_string(height));
                 expect_same(placed_twice(image, lattice, T_map_camera, 1.7));
-                expect_same(placed_twice(image, lattice, T_map_camera, 1.7, &crew));
+                expect_same(placed_twice(image, lattice, T_map_camera, 1.7, &pool));
             });
         }
     }
@@ -132,7 +133,7 @@ TEST(PlacedVoxels, are_bounded) {
         const VoxelKey lowest = *lattice.key_of(placed.lowest.cast<double>());
         const VoxelKey highest = *lattice.key_of(placed.highest.cast<double>());
         for (std::size_t i = 0; i < placed.pixels(); ++i) {
-            if (placed.key_z[i] == PlacedImage::kNoKey) continue;
+            if (placed.key_z[i] == ProjectedImage::kNoKey) continue;
             const auto x = static_cast<std::uint16_t>(placed.key_xy[i]);
             const auto y = static_cast<std::uint16_t>(placed.key_xy[i] >> 16U);
             ASSERT_TRUE(lowest.x <= x && x <= highest.x && lowest.y <= y && y <= highest.y);

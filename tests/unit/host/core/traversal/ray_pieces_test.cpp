@@ -14,9 +14,9 @@ namespace {
 constexpr float kEnd = std::numeric_limits<float>::infinity();
 
 /// Ends that a camera would not give: rays along axes, planes and diagonals, of no length, of a few voxels.
-PlacedImage nasty_rays(unsigned seed, const VoxelLattice& lattice) {
+ProjectedImage nasty_rays(unsigned seed, const VoxelLattice& lattice) {
     property::RandomGeometry random(seed, lattice.resolution_m());
-    PlacedImage image;
+    ProjectedImage image;
     image.width = 500;
     image.height = 1;
     image.origin = random.point(3.0);
@@ -39,8 +39,8 @@ TEST(RayPieces, of_whole_rays_are_what_octomap_visits_on_every_instruction_set) 
     on_each_instruction_set([](const std::string& name) {
         for (unsigned seed = 0; seed < testing_support::cases(4); ++seed) {
             const VoxelLattice lattice(seed % 2 == 0 ? 0.04 : 0.1);
-            const PlacedImage image = nasty_rays(seed, lattice);
-            MarkGrid grid;
+            const ProjectedImage image = nasty_rays(seed, lattice);
+            VisitedGrid grid;
             span(grid, image, lattice);
             std::vector<RayPiece> pieces;
             for (std::uint32_t i = 0; i < image.width; ++i) pieces.push_back({i, 0.0F, kEnd});
@@ -58,12 +58,12 @@ TEST(RayPieces, put_together_are_the_whole_ray_or_the_ray_is_named) {
     on_each_instruction_set([&](const std::string& name) {
         for (unsigned seed = 100; seed < 100 + testing_support::cases(2); ++seed) {
             const VoxelLattice lattice(0.04);
-            const PlacedImage image = nasty_rays(seed, lattice);
+            const ProjectedImage image = nasty_rays(seed, lattice);
             property::RandomGeometry random(seed, 0.04);
-            MarkGrid grid;
+            VisitedGrid grid;
             span(grid, image, lattice);
             for (std::uint32_t i = 0; i < image.width; i += 41) {
-                PlacedImage one = image;
+                ProjectedImage one = image;
                 for (std::uint32_t j = 0; j < image.width; ++j) {
                     if (j != i) one.reach_m[j] = -1.0F;
                 }
@@ -89,13 +89,13 @@ TEST(RayPieces, put_together_are_the_whole_ray_or_the_ray_is_named) {
 TEST(RayPieces, of_a_ray_through_corner_after_corner_name_it_and_mark_nothing_beside_it) {
     on_each_instruction_set([](const std::string& name) {
         const VoxelLattice lattice(0.25);
-        PlacedImage image;
+        ProjectedImage image;
         image.width = image.height = 1;
         image.end_x = image.end_y = image.end_z = {2.125F};
         image.range_m = {1.0};
         image.reach_m = {2.125F};
         image.highest = Eigen::Vector3f::Constant(2.125F);
-        MarkGrid grid;
+        VisitedGrid grid;
         span(grid, image, lattice);
         std::vector<std::uint32_t> undecided;
         walk_pieces(image, lattice, std::vector<RayPiece>{{0, 1.1F, kEnd}}, grid, undecided);

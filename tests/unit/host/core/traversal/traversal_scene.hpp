@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "host/core/traversal/mark_grid.hpp"
-#include "host/core/traversal/placed_image.hpp"
+#include "host/core/traversal/projected_image.hpp"
+#include "host/core/traversal/visited_grid.hpp"
 #include "host/core/voxels/ray_walk.hpp"
 #include "tests/property/mapping/random_geometry.hpp"
 #include "tests/support/instruction_sets.hpp"
@@ -17,7 +17,7 @@ inline constexpr CameraIntrinsics kSmallCamera{
     .width = 64, .height = 53, .fx = 45.6, .fy = 45.6, .cx = 32.0, .cy = 26.5};
 
 /// What walk_ray_keys() visits of every ray.
-inline std::set<VoxelKey> walked(const PlacedImage& image, const VoxelLattice& lattice) {
+inline std::set<VoxelKey> walked(const ProjectedImage& image, const VoxelLattice& lattice) {
     std::set<VoxelKey> voxels;
     for (std::size_t i = 0; i < image.pixels(); ++i) {
         if (image.reach_m[i] < 0.0F) continue;
@@ -28,7 +28,7 @@ inline std::set<VoxelKey> walked(const PlacedImage& image, const VoxelLattice& l
 }
 
 /// In which a ray ends in something.
-inline std::set<VoxelKey> hit_by(const PlacedImage& image, const VoxelLattice& lattice) {
+inline std::set<VoxelKey> hit_by(const ProjectedImage& image, const VoxelLattice& lattice) {
     std::set<VoxelKey> voxels;
     for (std::size_t i = 0; i < std::size_t{image.width} * image.height; ++i) {
         if (image.reach_m[i] < 0.0F || image.range_m[i] < 0.0) continue;
@@ -38,12 +38,12 @@ inline std::set<VoxelKey> hit_by(const PlacedImage& image, const VoxelLattice& l
     return voxels;
 }
 
-inline void span(MarkGrid& grid, const PlacedImage& image, const VoxelLattice& lattice) {
+inline void span(VisitedGrid& grid, const ProjectedImage& image, const VoxelLattice& lattice) {
     ASSERT_TRUE(grid.span(*lattice.key_of(image.lowest.cast<double>()),
                           *lattice.key_of(image.highest.cast<double>()), std::size_t{1} << 30U));
 }
 
-inline std::set<VoxelKey> drained(MarkGrid& grid) {
+inline std::set<VoxelKey> drained(VisitedGrid& grid) {
     std::set<VoxelKey> voxels;
     grid.drain([&](MortonCode brick, const BrickMask& passed) {
         for (std::size_t word = 0; word < passed.size(); ++word) {

@@ -27,7 +27,7 @@ struct Truth {
 };
 
 Truth truth_of(VoxelKey key, const CameraIntrinsics& camera, const VoxelLattice& lattice,
-               const Eigen::Isometry3d& T_map_camera, const PlacedImage& image) {
+               const Eigen::Isometry3d& T_map_camera, const ProjectedImage& image) {
     constexpr double kUnsure_m = 1e-3;
     const Eigen::Vector3d centre_map = lattice.centre_of(key);
     const Eigen::Vector3d centre = T_map_camera.inverse() * centre_map;
@@ -61,7 +61,7 @@ Truth truth_of(VoxelKey key, const CameraIntrinsics& camera, const VoxelLattice&
 
 struct Scene {
     Eigen::Isometry3d T_map_camera;
-    PlacedImage image;
+    ProjectedImage image;
 };
 
 Scene scene_of(unsigned seed, const VoxelLattice& lattice) {
@@ -78,12 +78,12 @@ Scene scene_of(unsigned seed, const VoxelLattice& lattice) {
 
 /// Calls visit(brick) for some of the bricks about the image's rays.
 template <class Visit>
-void for_some_bricks(const PlacedImage& image, const VoxelLattice& lattice, Visit&& visit) {
+void for_some_bricks(const ProjectedImage& image, const VoxelLattice& lattice, Visit&& visit) {
     const KeyBox box{*lattice.key_of(image.lowest.cast<double>()),
                      *lattice.key_of(image.highest.cast<double>())};
     std::size_t brick_number = 0;
     walk_bricks(
-        box, [](const VoxelCube&) { return CubeVerdict::some; },
+        box, [](const VoxelCube&) { return CubeCoverage::some; },
         [&](MortonCode brick, bool) {
             if (++brick_number % 5 == 0) visit(brick);
         });
@@ -91,7 +91,7 @@ void for_some_bricks(const PlacedImage& image, const VoxelLattice& lattice, Visi
 
 /// Calls visit(key) for an eight-hundredth of the voxels about the image's rays.
 template <class Visit>
-void for_some_voxels(const PlacedImage& image, const VoxelLattice& lattice, Visit&& visit) {
+void for_some_voxels(const ProjectedImage& image, const VoxelLattice& lattice, Visit&& visit) {
     for_some_bricks(image, lattice, [&](MortonCode brick) {
         for (std::size_t cell = brick / kBrickVoxels % 160; cell < kBrickVoxels; cell += 160)
             visit(key_of_morton(brick + cell));
@@ -117,7 +117,7 @@ TEST(VoxelRays, say_of_each_voxel_what_all_pixels_that_see_it_say_on_every_instr
         for (unsigned seed = 0; seed < scenes.size(); ++seed) {
             const Scene& scene = scenes[seed];
             const CertainView view(kSmallCamera, lattice, scene.T_map_camera, scene.image);
-            ReachWindows reach;
+            RangePyramid reach;
             reach.take(scene.image);
             rays.begin(view, scene.image, reach, lattice);
             for_some_voxels(scene.image, lattice, [&](VoxelKey key) {
@@ -154,7 +154,7 @@ TEST(VoxelRays, give_the_same_bits_on_every_instruction_set) {
     const VoxelLattice lattice(kResolution_m);
     const Scene scene = scene_of(7, lattice);
     const CertainView view(kSmallCamera, lattice, scene.T_map_camera, scene.image);
-    ReachWindows reach;
+    RangePyramid reach;
     reach.take(scene.image);
     constexpr BrickMask kAll = [] {
         BrickMask all;

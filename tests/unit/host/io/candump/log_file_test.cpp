@@ -20,7 +20,7 @@ const std::filesystem::path kData = std::filesystem::path(OCTOSKIN_SOURCE_DIR) /
 
 struct ReadBack {
     std::vector<LogEntry> entries;
-    Account<LineFault> account;
+    InputCounters<LineFault> inputs;
     std::array<std::uint64_t, 9> first_lines{};
 };
 
@@ -37,12 +37,12 @@ ReadBack read_all(const std::filesystem::path& file) {
         back.entries.push_back(**entry);
     }
     EXPECT_FALSE(reader->next()->has_value()) << "an end stays an end";
-    back.account = reader->account();
+    back.inputs = reader->inputs();
     for (std::size_t i = 0; i < back.first_lines.size(); ++i) {
         back.first_lines[i] = reader->first_line(static_cast<LineFault>(i));
     }
-    EXPECT_TRUE(back.account.is_balanced());
-    EXPECT_EQ(back.account.used(), back.entries.size());
+    EXPECT_TRUE(back.inputs.is_balanced());
+    EXPECT_EQ(back.inputs.used(), back.entries.size());
     return back;
 }
 
@@ -63,7 +63,7 @@ class TemporaryFile {
 
 TEST(LogReader, reads_every_form_of_a_line) {
     const ReadBack back = read_all(kData / "every-form.log");
-    EXPECT_EQ(back.account.in(), 10U);
+    EXPECT_EQ(back.inputs.in(), 10U);
     EXPECT_EQ(back.entries.size(), 10U);
 }
 
@@ -71,14 +71,14 @@ TEST(LogReader, tolerates_carriage_returns) {
     const ReadBack back = read_all(kData / "crlf.log");
     ASSERT_EQ(back.entries.size(), 2U);
     EXPECT_EQ(back.entries[1].frame.data[0], 0x2B);
-    EXPECT_EQ(back.account.rejected(LineFault::blank), 1U);
+    EXPECT_EQ(back.inputs.rejected(LineFault::blank), 1U);
 }
 
 TEST(LogReader, counts_a_line_the_file_ends_in) {
     for (const char* file : {"truncated-in-data.log", "truncated-in-stamp.log"}) {
         const ReadBack back = read_all(kData / file);
         EXPECT_EQ(back.entries.size(), 1U) << file;
-        EXPECT_EQ(back.account.rejected(LineFault::truncated), 1U) << file;
+        EXPECT_EQ(back.inputs.rejected(LineFault::truncated), 1U) << file;
     }
 }
 
@@ -91,14 +91,14 @@ TEST(LogReader, leaves_a_line_cut_between_bytes_to_the_frames_checksum) {
 TEST(LogReader, steps_over_lines_of_other_programs) {
     const ReadBack back = read_all(kData / "foreign-lines.log");
     EXPECT_EQ(back.entries.size(), 1U);
-    EXPECT_EQ(back.account.rejected(LineFault::foreign), 5U);
+    EXPECT_EQ(back.inputs.rejected(LineFault::foreign), 5U);
 }
 
 TEST(LogReader, counts_each_fault_once_with_the_number_of_its_first_line) {
     const ReadBack back = read_all(kData / "every-fault.log");
     EXPECT_TRUE(back.entries.empty());
     for (std::size_t i = 0; i < 9; ++i) {
-        EXPECT_EQ(back.account.rejected(static_cast<LineFault>(i)), 1U) << names_of(LineFault{})[i];
+        EXPECT_EQ(back.inputs.rejected(static_cast<LineFault>(i)), 1U) << names_of(LineFault{})[i];
         EXPECT_EQ(back.first_lines[i], i + 1) << names_of(LineFault{})[i];
     }
 }
@@ -109,8 +109,8 @@ TEST(LogReader, holds_no_more_of_a_line_without_end_than_its_bound_and_goes_on_a
                                << "\n(1436509053.850871) vcan0 044#2A\n";
     const ReadBack back = read_all(file.path());
     EXPECT_EQ(back.entries.size(), 1U);
-    EXPECT_EQ(back.account.rejected(LineFault::too_long), 1U);
-    EXPECT_EQ(back.account.in(), 2U);
+    EXPECT_EQ(back.inputs.rejected(LineFault::too_long), 1U);
+    EXPECT_EQ(back.inputs.in(), 2U);
 }
 
 TEST(LogReader, takes_the_longest_line_that_is_allowed) {
@@ -119,8 +119,8 @@ TEST(LogReader, takes_the_longest_line_that_is_allowed) {
     std::ofstream(file.path()) << line << std::string(kLineBytesMax - line.size(), 'A') << "\n"
                                << line << std::string(kLineBytesMax + 1 - line.size(), 'A') << "\n";
     const ReadBack back = read_all(file.path());
-    EXPECT_EQ(back.account.rejected(LineFault::length), 1U) << "320 bytes are a line, if a bad one";
-    EXPECT_EQ(back.account.rejected(LineFault::too_long), 1U);
+    EXPECT_EQ(back.inputs.rejected(LineFault::length), 1U) << "320 bytes are a line, if a bad one";
+    EXPECT_EQ(back.inputs.rejected(LineFault::too_long), 1U);
 }
 
 TEST(LogReader, says_why_a_file_cannot_be_opened) {
@@ -137,7 +137,7 @@ TEST(LogSource, gives_the_frames_of_a_log_with_their_stamps_and_then_ends) {
     EXPECT_EQ((*frame)->stamp.ns, 1'436'509'053'850'870'000);
     EXPECT_EQ((*frame)->frame.can_id, 0x44U);
     EXPECT_FALSE(source.next()->has_value());
-    EXPECT_EQ(source.reader().account().rejected(LineFault::foreign), 5U);
+    EXPECT_EQ(source.reader().inputs().rejected(LineFault::foreign), 5U);
 }
 
 TEST(LogWriter, writes_a_log_that_reads_back_equal) {

@@ -248,11 +248,11 @@ TEST(MapMemory, a_map_that_gets_none_to_date_what_it_holds_tries_again) {
     ASSERT_TRUE(map.set_cube({.lowest = {32768, 32768, 32768}, .height = 6}, -1.0F));
     constexpr std::int64_t kSecond = 1'000'000'000;
     is_memory_gone = true;
-    for (int second = 0; second < 5; ++second) map.go_on({second * kSecond});
+    for (int second = 0; second < 5; ++second) map.advance_time({second * kSecond});
     is_memory_gone = false;
     EXPECT_EQ(map.counters().undated, 5U);
     EXPECT_EQ(map.known_voxels(), 1U << 18U);
-    for (int second = 5; second < 9; ++second) map.go_on({second * kSecond});
+    for (int second = 5; second < 9; ++second) map.advance_time({second * kSecond});
     EXPECT_EQ(map.known_voxels(), 0U) << "since the clock began nobody has confirmed it";
 }
 

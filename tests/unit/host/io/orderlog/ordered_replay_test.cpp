@@ -20,7 +20,7 @@ using namespace test;
 constexpr std::size_t kJoints = 1;
 
 /// What a recorder keeps of a run.
-class Keeper final : public CommitListener {
+class Saver final : public CommitListener {
   public:
     void on_joints(const JointMeasurement& joints) override { put(joints); }
     void on_reading(const RangeMeasurement& reading, const Beam&, std::span<const VoxelUpdate>) override {
@@ -66,7 +66,7 @@ struct Recorded {
     std::string first_ot;
     std::string first_state;
     std::string last_ot;
-    Keeper keeper;
+    Saver saver;
 };
 
 /// Plays the scene and records from frame `begin` of the bus on, to frame `end`.
@@ -80,8 +80,8 @@ Recorded record(const Scene& scene, std::size_t begin, std::size_t end) {
             recorded.first_ot = encode_ot(pipeline.map());
             recorded.first_state = encode_snapshot(pipeline.builder().state(), {.mapping_crc32 = kMapping});
             pipeline.builder().for_each_joint_sample(
-                [&](const JointMeasurement& joints) { recorded.keeper.put(joints); });
-            pipeline.tell(&recorded.keeper);
+                [&](const JointMeasurement& joints) { recorded.saver.put(joints); });
+            pipeline.set_listener(&recorded.saver);
         }
         pipeline.on_can(frames[i].frame, frames[i].stamp);
         while (depth != scene.depth.end() && pipeline.now() && depth->captured <= *pipeline.now()) {
@@ -114,8 +114,8 @@ void expect_live_map_from_any_moment_on(const Scene& scene) {
     for (const double begin_s : {0.0, 3.55, 3.99}) {
         const Recorded recorded = record(scene, frame_at(scene, begin_s), scene.bus.frames().size());
         MapBuilder builder = make_builder(scene, recorded.first_state);
-        TextSource order(recorded.keeper.text);
-        ScriptedDepth depth(recorded.keeper.frames);
+        TextSource order(recorded.saver.text);
+        ScriptedDepth depth(recorded.saver.frames);
         const OrderedOutcome outcome = replay_in_order(builder, order, &depth);
         EXPECT_TRUE(outcome.took_all()) << "begun at " << begin_s << " s";
         EXPECT_TRUE(encode_ot(builder.map()) == recorded.last_ot) << "begun at " << begin_s << " s";
@@ -154,16 +154,16 @@ TEST(OrderedReplay, gives_the_live_map_where_a_saved_one_waits_for_its_first_mea
     EXPECT_EQ(pipeline.begin_with(std::move(saved)), 0U);
     pipeline.wait(4);
     const std::string first = encode_snapshot(pipeline.builder().state(), {.mapping_crc32 = kMapping});
-    Keeper keeper;
-    pipeline.tell(&keeper);
+    Saver saver;
+    pipeline.set_listener(&saver);
     const auto expect_same = [&] {
         MapBuilder builder = make_builder(scene, first);
-        TextSource order(keeper.text);
+        TextSource order(saver.text);
         EXPECT_TRUE(replay_in_order(builder, order, nullptr).took_all());
         EXPECT_TRUE(encode_snapshot(builder.state(), {}) == encode_snapshot(pipeline.builder().state(), {}));
     };
     for (const std::int64_t seconds : {4, 5, 8, 11}) pipeline.wait(seconds);
-    EXPECT_EQ(keeper.text, "W 5\nW 8\nW 11\n");
+    EXPECT_EQ(saver.text, "W 5\nW 8\nW 11\n");
     expect_same();
     for (const StampedFrame& entry : scene.bus.frames()) pipeline.on_can(entry.frame, entry.stamp);
     expect_same();
@@ -177,25 +177,26 @@ TEST(OrderedReplay, needs_the_first_map_and_the_joint_samples_before_it) {
     ASSERT_TRUE(recorded.first_ot != recorded.last_ot);
     const Recorded unrecorded = record(scene, 0, 1);
     MapBuilder without_map = make_builder(scene, unrecorded.first_state);
-    TextSource order(recorded.keeper.text);
-    ScriptedDepth depth(recorded.keeper.frames);
+    TextSource order(recorded.saver.text);
+    ScriptedDepth depth(recorded.saver.frames);
     EXPECT_TRUE(replay_in_order(without_map, order, &depth).took_all());
     EXPECT_TRUE(encode_ot(without_map.map()) != recorded.last_ot);
     MapBuilder without_past = make_builder(scene, recorded.first_state);
-    const std::size_t first_committed = recorded.keeper.text.find_first_of("RD");
-    TextSource later(recorded.keeper.text.substr(first_committed));
-    ScriptedDepth again(recorded.keeper.frames);
+    const std::size_t first_committed = recorded.saver.text.find_first_of("RD");
+    TextSource later(recorded.saver.text.substr(first_committed));
+    ScriptedDepth again(recorded.saver.frames);
     EXPECT_FALSE(replay_in_order(without_past, later, &again).took_all());
 }
 
 TEST(OrderedReplay, begins_where_the_recording_does_and_not_with_the_joint_samples_of_before) {
     const Scene scene = live_scene();
     const std::string text = "J 1000000000 0\nJ 3010000000 0\nJ 3020000000 0\nR 1 0 0 3015000000 0.52 0.01\n";
-    for (const auto& [told, begin_ns] : {std::pair{std::optional<HostTime>(), 3'015'000'000},
-                                         std::pair{std::optional(HostTime{3'012'000'000}), 3'012'000'000}}) {
+    for (const auto& [reported, begin_ns] :
+         {std::pair{std::optional<HostTime>(), 3'015'000'000},
+          std::pair{std::optional(HostTime{3'012'000'000}), 3'012'000'000}}) {
         MapBuilder builder = make_builder(scene, record(scene, 0, 1).first_state);
         TextSource order(text);
-        const OrderedOutcome outcome = replay_in_order(builder, order, nullptr, {}, told);
+        const OrderedOutcome outcome = replay_in_order(builder, order, nullptr, {}, reported);
         EXPECT_EQ(outcome.begin, HostTime{begin_ns});
         EXPECT_EQ(outcome.now, HostTime{3'015'000'000});
     }

@@ -42,7 +42,7 @@ ReportInput two_seeds() {
     input.results = evaluation::collect(runs, {{"simulate", 12.5, 14.25}}, {{"world", "experiment.sdf"}});
     const Image dot{1, 1, {10, 20, 30, 255}};
     input.pictures = {{"The scene", "A room.", dot, dot}, {"Fused", "Both.", dot, dot}};
-    input.accounts = {{"ranges", 100, 90, {{"no_target", 7}, {"stale", 3}, {"duplicate", 0}}}};
+    input.inputs = {{"ranges", 100, 90, {{"no_target", 7}, {"stale", 3}, {"duplicate", 0}}}};
     input.results.is_papers_experiment = true;
     input.results.unknown_space = {.region = {{0.02, 0.0, 0.0}, 1.0, 0.0},
                                    .region_m3 = 2.1,
@@ -84,7 +84,7 @@ std::string first_unbalanced_tag(const std::string& html) {
 TEST(Report, has_every_section) {
     const std::string html = report_html(two_seeds());
     for (const char* id : {"pictures", "paper", "paired", "unknown", "metrics", "update", "calibration",
-                           "account", "idealisations", "times", "reproduce"}) {
+                           "inputs", "idealisations", "times", "reproduce"}) {
         EXPECT_THAT(html, HasSubstr(std::string("<section id=\"") + id + "\"")) << id;
     }
     EXPECT_THAT(html, HasSubstr("<h1>octoskin: what the camera cannot see</h1>"));
@@ -191,7 +191,7 @@ TEST(Report, draws_what_ranges_count_as_they_were_counted) {
     input.range_counting = {.has_rays = false, .cone = ConeModel{}, .zone = {}, .counts = {}};
     const std::string cones = report_html(input);
     EXPECT_THAT(cones, HasSubstr("The range sensors of this run see a cone."));
-    EXPECT_THAT(cones, HasSubstr("A range of up to 0.7 m adds 1 to H in all"));
+    EXPECT_THAT(cones, HasSubstr("A range of up to 0.7 m adds 1 to H in total"));
     EXPECT_THAT(cones, HasSubstr("whole cone: 0.646")) << "1.37 of 2.12";
     EXPECT_THAT(cones, Not(HasSubstr("Range sensor</li>"))) << "the update model's curve is of none of them";
     EXPECT_THAT(cones, Not(HasSubstr("Fig. 2")));
@@ -210,7 +210,7 @@ TEST(Report, balances_the_account_or_says_that_it_does_not) {
     EXPECT_THAT(report_html(input), HasSubstr("<th>ranges</th><td>100</td><td>90</td><td>10</td>"));
     EXPECT_THAT(report_html(input), HasSubstr("no_target"));
     EXPECT_THAT(report_html(input), Not(HasSubstr("duplicate"))) << "counters at 0 are left out";
-    input.accounts[0].received = 101;
+    input.inputs[0].received = 101;
     EXPECT_THAT(report_html(input), HasSubstr("ranges (does not balance)"));
 }
 
@@ -228,7 +228,7 @@ TEST(Report, disarms_hostile_names) {
     input.pictures[0].caption = "caf\xe9 & \"quotes\"";
     input.results.maps[0].configuration = "<i>";
     input.results.maps[0].map = "<u>";
-    input.accounts[0].input = "<u>";
+    input.inputs[0].input = "<u>";
     input.reproduce = {"./demo && echo '<done>'"};
     const std::string html = report_html(input);
     EXPECT_THAT(html, Not(HasSubstr("<script>")));

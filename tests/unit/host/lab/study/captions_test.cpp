@@ -65,7 +65,7 @@ TEST(Idealisations, call_a_sensor_a_ray_only_if_the_rig_does) {
     EXPECT_THAT(
         idealisations_of(rig, kitchen()),
         AllOf(Contains(HasSubstr("The range sensors see a cone of 27 degrees as a bundle of sub-rays;")),
-              Contains(HasSubstr("scatters 50 % of the light")),
+              Contains(HasSubstr("diffuse with a reflectivity of 50 %")),
               Contains(HasSubstr("follow from the signal")), Each(Not(HasSubstr("ideal ray"))),
               Each(Not(HasSubstr("1.5 cm")))));
 }

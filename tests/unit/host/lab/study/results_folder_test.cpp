@@ -48,7 +48,8 @@ TEST(ResultsFolder, may_hold_nothing_or_what_octoskin_hides) {
     const auto refused = check_results_folder(open(folder));
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
-    EXPECT_THAT(refused.error().message, HasSubstr(folder.path().string() + ": has a a that no"));
+    EXPECT_THAT(refused.error().message,
+                HasSubstr(folder.path().string() + ": contains a, which is not an unchanged result"));
 }
 
 TEST(ResultsFolder, is_ours_as_long_as_each_file_is_as_it_was_noted) {
@@ -58,16 +59,16 @@ TEST(ResultsFolder, is_ours_as_long_as_each_file_is_as_it_was_noted) {
                                    "recording/robot.urdf", "recording/meta.yaml"}) {
         const std::string ours = ScratchFolder::read(folder / name);
         folder.write(name, ours + "edited");
-        EXPECT_THAT(refusal(folder), HasSubstr(": has a " + name + " that is not an unchanged result"))
+        EXPECT_THAT(refusal(folder), HasSubstr(": contains " + name + ", which is not an unchanged result"))
             << name;
         folder.write(name, ours);
         EXPECT_EQ(refusal(folder), "") << name;
     }
     folder.write("recording/order.log", "of a daemon");
-    EXPECT_THAT(refusal(folder), HasSubstr(": has a recording/order.log that"));
+    EXPECT_THAT(refusal(folder), HasSubstr(": contains recording/order.log, which"));
     std::filesystem::remove(folder / "recording/order.log");
     folder.write("maps.yaml", "never noted");
-    EXPECT_THAT(refusal(folder), HasSubstr(": has a maps.yaml that"));
+    EXPECT_THAT(refusal(folder), HasSubstr(": contains maps.yaml, which"));
 }
 
 TEST(ResultsFolder, is_nobodys_without_its_notes_or_with_others_in_their_place) {
@@ -75,24 +76,25 @@ TEST(ResultsFolder, is_nobodys_without_its_notes_or_with_others_in_their_place) 
     make_results(folder);
     const std::string notes = ScratchFolder::read(folder / kNotes);
     std::filesystem::remove(folder / kNotes);
-    EXPECT_THAT(refusal(folder), HasSubstr(": has a metrics.json that"));
+    EXPECT_THAT(refusal(folder), HasSubstr(": contains metrics.json, which"));
     // What says of itself that octoskin made it says nothing of what became of it.
     folder.write("metrics.json", "{\"unknown_space\": {}, \"program\": \"octoskin 0.1.0\"}");
-    EXPECT_THAT(refusal(folder), HasSubstr(": has a metrics.json that"));
+    EXPECT_THAT(refusal(folder), HasSubstr(": contains metrics.json, which"));
     folder.write("metrics.json", "{}");
     for (const std::string& garbage :
          {std::string("garbage"), std::string(), notes + "0x00000000 ../x\n", notes + notes,
           notes.substr(notes.find('\n') + 1), std::string(std::size_t{1} << 20U, 'x')}) {
         folder.write(kNotes, garbage);
-        EXPECT_THAT(refusal(folder), HasSubstr(": has a .octoskin-experiment that")) << garbage.substr(0, 80);
+        EXPECT_THAT(refusal(folder), HasSubstr(": contains .octoskin-experiment, which"))
+            << garbage.substr(0, 80);
     }
     std::filesystem::remove(folder / kNotes);
     folder.write("notes", notes);
     std::filesystem::create_symlink("notes", folder / kNotes);
-    EXPECT_THAT(refusal(folder), HasSubstr(": has a .octoskin-experiment that"));
+    EXPECT_THAT(refusal(folder), HasSubstr(": contains .octoskin-experiment, which"));
     std::filesystem::remove(folder / kNotes);
     std::filesystem::create_directory(folder / kNotes);
-    EXPECT_THAT(refusal(folder), HasSubstr(": has a .octoskin-experiment that"));
+    EXPECT_THAT(refusal(folder), HasSubstr(": contains .octoskin-experiment, which"));
 }
 
 TEST(ResultsFolder, has_nothing_else_in_the_place_of_what_is_written) {

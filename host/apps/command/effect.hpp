@@ -1,0 +1,17 @@
+// How the effect of a command shows in the node's messages, and why a node refuses a command.
+#pragma once
+
+#include <string>
+
+#include "host/apps/command/node_view.hpp"
+
+namespace octoskin::commanding {
+
+/// Whether everything that the command changes has changed. `now` contains the messages since the command.
+/// Not for `reset`, which ends the run that `now` describes.
+[[nodiscard]] bool is_in_effect(const Order& order, const NodeView& now, bool has_sent_black_box);
+
+/// The text for the user on the refusal of this command: the reason and the remedy.
+[[nodiscard]] std::string refusal(const Order& order, const NodeView& view);
+
+}  // namespace octoskin::commanding

@@ -1,0 +1,104 @@
+#include "host/apps/daemon/daemon_client.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "common/time.hpp"
+#include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/unix_socket.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr const char* kSignOfLife = R"({"ok":true})";
+
+/// Whether JSON nests too deep for its reader and writer, which recurse for each level. A daemon's answers
+/// have fewer than ten levels.
+bool is_nested_too_deep(std::string_view json) {
+    constexpr int kLevelsMax = 64;
+    int level = 0;
+    bool is_text = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (is_text && c == '\\') ++i;  // an escaped quote ends no text
+        if (c == '"') is_text = !is_text;
+        if (is_text) continue;
+        if (c == '[' || c == '{') ++level;
+        if (c == ']' || c == '}') --level;
+        if (level > kLevelsMax) return true;
+    }
+    return false;
+}
+
+/// Whether there is something to read before `end`.
+bool is_readable(int descriptor, HostTime end) {
+    while (true) {  // again after a signal
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - monotonic_now());
+        if (left.count() <= 0) return false;
+        pollfd answer{descriptor, POLLIN, 0};
+        const int ready = ::poll(&answer, 1, static_cast<int>(left.count()));
+        if (ready >= 0 || errno != EINTR) return ready > 0;
+    }
+}
+
+/// Sends a line and its line feed, and returns the line of the answer, or an error text.
+Result<std::string, std::string> exchange_lines(int descriptor, const std::string& line, HostTime end) {
+    // A new connection has room for a request.
+    const ssize_t sent = ::send(descriptor, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && errno != EPIPE)
+        return unexpected(std::string("the daemon does not accept the request: ") + std::strerror(errno));
+    constexpr std::size_t kAnswerMax = std::size_t{64} << 20U;
+    std::string answer;
+    while (!answer.ends_with('\n')) {  // bounded by `end`
+        if (answer.size() > kAnswerMax)
+            return unexpected(std::string("the answer has no end: is it a daemon that listens there?"));
+        if (!is_readable(descriptor, end))
+            return unexpected(std::string("the daemon did not answer in time"));
+        std::array<char, 4096> bytes{};
+        const ssize_t count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
+        if (count == 0 || (count < 0 && errno == ECONNRESET)) {
+            return unexpected(std::string(answer.empty()
+                                              ? "the daemon closed the connection without an answer"
+                                              : "the daemon closed the connection in mid-answer") +
+                              " (has it just ended?)");
+        }
+        if (count < 0 && errno != EAGAIN && errno != EINTR)
+            return unexpected(std::string("cannot read the daemon's answer: ") + std::strerror(errno));
+        if (count > 0) answer.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+    answer.pop_back();
+    return answer;
+}
+
+}  // namespace
+
+Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request,
+                                         std::chrono::milliseconds patience) {
+    const HostTime begun = monotonic_now();
+    const auto descriptor = connect_unix_socket(socket, SOCK_STREAM, std::min(patience, kLetInMax));
+    if (!descriptor) return unexpected(descriptor.error());
+    auto answer = patience > kLetInMax ? exchange_lines(*descriptor, "hello\n", begun + kLetInMax)
+                                       : Result<std::string, std::string>(kSignOfLife);
+    if (answer && *answer == kSignOfLife)
+        answer = exchange_lines(*descriptor, request + '\n', begun + patience);
+    ::close(*descriptor);
+    if (!answer) return fail(ExitCode::io_failed, socket.string() + ": " + answer.error());
+    if (is_nested_too_deep(*answer)) return unexpected(foreign_answer(socket));
+    return std::move(answer).value();
+}
+
+AppError foreign_answer(const std::filesystem::path& socket) {
+    return {ExitCode::bad_data, socket.string() +
+                                    ": not the answer of a daemon of this version: restart the daemon if its "
+                                    "version differs; --socket names another place"};
+}
+
+}  // namespace octoskin

@@ -1,0 +1,107 @@
+// What is typed, as commands for the bus.
+#include "host/apps/command/order.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "common/wire/names.hpp"
+
+namespace octoskin::commanding {
+namespace {
+
+using wire::CommandCode;
+
+rig::Rig rig_of(const std::string& name) {
+    const auto rig = rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/" + name + ".yaml");
+    EXPECT_TRUE(rig) << rig.error().message();
+    return *rig;
+}
+Wish wish(const std::string& node, const std::string& code, const std::string& sensor = "") {
+    return {.node = node, .code = code, .sensor = sensor, .period_ms = {}, .seconds = {}};
+}
+std::string refusal_of(const rig::Rig* rig, const Wish& wish) {
+    const auto orders = orders_of(rig, wish, 0);
+    if (orders) return "taken";
+    EXPECT_EQ(orders.error().code, ExitCode::usage);
+    return orders.error().message;
+}
+
+TEST(CommandOrder, finds_nodes_and_sensors_by_name_and_by_number) {
+    const rig::Rig bench = rig_of("bench_one_board");
+    for (const std::string node : {"bench", "1", "all"}) {
+        for (const std::string sensor : {"back", "2"}) {
+            const auto orders = orders_of(&bench, wish(node, "stop", sensor), 77);
+            ASSERT_TRUE(orders) << orders.error().message;
+            ASSERT_EQ(orders->size(), 1U);
+            const Order& order = orders->front();
+            EXPECT_EQ(order.node_id, 1);
+            EXPECT_EQ(order.command, (wire::Command{.code = CommandCode::stop, .sensor = 2, .sequence = 77}));
+            EXPECT_EQ(order.whom(), "node 1 'bench'");
+            EXPECT_EQ(order.known->node_hash, node_hash(bench.nodes[0].config));
+            EXPECT_EQ(order.is_sensor_by_name, sensor == "back");
+        }
+    }
+    const auto bare = orders_of(nullptr, wish("62", "start"), 3);
+    ASSERT_TRUE(bare);
+    EXPECT_EQ(bare->front().node_id, 62);
+    EXPECT_EQ(bare->front().command.sensor, wire::kAllSensors);
+    EXPECT_EQ(bare->front().whom(), "node 62");
+}
+
+TEST(CommandOrder, all_is_every_sensor_board_of_the_rig_and_not_its_joint_source) {
+    const rig::Rig experiment = rig_of("experiment");
+    ASSERT_EQ(experiment.nodes.size(), 2U);
+    const auto orders = orders_of(&experiment, wish("all", "start"), 0);
+    ASSERT_TRUE(orders);
+    ASSERT_EQ(orders->size(), 2U);
+    EXPECT_EQ(orders->at(0).node_id, experiment.nodes[0].config.node_id);
+    EXPECT_EQ(orders->at(1).node_id, experiment.nodes[1].config.node_id);
+}
+
+TEST(CommandOrder, names_what_there_is_instead) {
+    const rig::Rig bench = rig_of("bench_one_board");
+    EXPECT_EQ(refusal_of(&bench, wish("x", "stop")), "no node 'x' in rig bench_one_board: it has bench (1)");
+    EXPECT_EQ(refusal_of(&bench, wish("bench", "stop", "top")),
+              "no sensor 'top' on node 1 'bench': it has front, left, back, right");
+    const std::string joints = std::to_string(bench.joints.node_id);
+    EXPECT_EQ(refusal_of(&bench, wish(joints, "stop")),
+              fmt::format("node {} is the rig's joint source: it takes no commands", joints));
+    for (const std::string node : {"bench", "all", "0", "63", "64", "256", "-1", "1x", ""})
+        EXPECT_EQ(refusal_of(nullptr, wish(node, "stop")),
+                  fmt::format("no node '{}': without --rig a node is a number, 1 to 62", node));
+    for (const std::string sensor : {"63", "256", "front", "-1"})
+        EXPECT_EQ(refusal_of(nullptr, wish("1", "stop", sensor)),
+                  fmt::format("no sensor '{}': without --rig a sensor is a number, from 0", sensor));
+}
+
+// An option that would mean nothing is a mistake of whoever typed it.
+TEST(CommandOrder, takes_of_each_option_only_what_the_code_has) {
+    for (const auto& [code, name] : wire::values_of(CommandCode{})) {
+        const bool is_calibration =
+            code == CommandCode::calibrate_offset || code == CommandCode::calibrate_crosstalk;
+        const Wish plain = wish("1", name);
+        const bool needs_period = code == CommandCode::set_rate;
+        EXPECT_EQ(orders_of(nullptr, plain, 0).has_value(), !is_calibration && !needs_period) << name;
+        Wish with_period = plain;
+        with_period.period_ms = 100;
+        const auto rate = orders_of(nullptr, with_period, 0);
+        EXPECT_EQ(rate.has_value(), needs_period) << name;
+        EXPECT_TRUE(!rate || rate->front().command.argument == 100);
+        Wish with_seconds = plain;
+        with_seconds.seconds = 30;
+        const auto blink = orders_of(nullptr, with_seconds, 0);
+        EXPECT_EQ(blink.has_value(), code == CommandCode::identify) << name;
+        EXPECT_TRUE(!blink || blink->front().command.argument == 30);
+        Wish with_sensor = wish("1", name, "0");
+        if (needs_period) with_sensor.period_ms = 100;
+        const bool is_of_the_node =
+            code == CommandCode::identify || code == CommandCode::reset || code == CommandCode::send_info;
+        EXPECT_EQ(orders_of(nullptr, with_sensor, 0).has_value(), !is_calibration && !is_of_the_node) << name;
+    }
+    EXPECT_EQ(orders_of(nullptr, wish("1", "identify"), 0)->front().command.argument, 10);
+    EXPECT_NE(refusal_of(nullptr, wish("1", "halt")).find("the commands are start, stop, set_rate"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace octoskin::commanding
