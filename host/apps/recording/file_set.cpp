@@ -42,6 +42,18 @@ Unexpected<AppError> of_a_daemon(const OpenFolder& folder) {
                          "belongs to a daemon's map, which is kept in this folder; give another directory");
 }
 
+/// Either map can be the only copy.
+Unexpected<AppError> beside_a_daemons_map(const OpenFolder& folder) {
+    const std::string ready = folder.shown(kReady).string();
+    return cannot_create(folder.shown(kDaemonsSnapshot),
+                         "belongs to a daemon's map, and the files of a killed run wait in " + ready +
+                             " to replace it: to keep the daemon's map, move " + ready +
+                             " into an empty folder, where octoskin repair completes it; to replace the map, "
+                             "move fused.ot, fused.bt and fused.snapshot to another folder and run octoskin "
+                             "repair " +
+                             folder.shown().string());
+}
+
 Unexpected<AppError> cannot_write(const FolderError& error) {
     if (error.fault == FolderFault::foreign_owner || error.fault == FolderFault::link)
         return cannot_create(error.path, error.reason());
@@ -57,13 +69,20 @@ bool is_there(const OpenFolder& folder, const fs::path& name) {
     return folder.kind_of(name) != EntryKind::absent;
 }
 
-/// Takes the daemons' lock, if the file exists: no daemon starts while it is held. A daemon does not lock the
-/// folder itself, because every user who can read the folder could then keep it from starting.
-Result<FileLock, AppError> keep_daemons_out(const OpenFolder& folder) {
-    auto taken = FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive);
-    if (!taken) return busy(folder);
+/// For now: a daemon may start later.
+Status<AppError> check_for_daemon(const OpenFolder& folder) {
+    if (!FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive)) return busy(folder);
     if (is_there(folder, kDaemonsSnapshot)) return of_a_daemon(folder);
-    return std::move(*taken);
+    return Done{};
+}
+
+/// No daemon starts while the result exists.
+Result<DaemonsKeptOut, AppError> keep_daemons_out(const OpenFolder& folder) {
+    auto kept = DaemonsKeptOut::from(folder);
+    if (!kept) return cannot_write(kept.error());
+    if (!*kept) return busy(folder);
+    if (is_there(folder, kDaemonsSnapshot)) return of_a_daemon(folder);
+    return std::move(**kept);
 }
 
 /// The steps in their order; `put` ends with the file that marks the set as complete.
@@ -262,7 +281,7 @@ Status<AppError> carry_out(Move& moving) {
     return moved;
 }
 
-/// True if there was an interrupted operation.
+/// True if there was an interrupted operation. No daemon may start meanwhile.
 Result<bool, AppError> finish_interrupted(const OpenFolder& folder) {
     if (!is_there(folder, kReady)) return false;
     const auto ready = folder.open_folder(kReady);  // owned by the caller or root, like the folder itself
@@ -271,9 +290,10 @@ Result<bool, AppError> finish_interrupted(const OpenFolder& folder) {
     if (!journal) return unexpected(journal.error());
     Move moving(folder, *journal);
     if (const auto moved = carry_out(moving); !moved) {
-        return fail(ExitCode::cannot_create, moved.error().message + "; the files of a killed run wait in " +
-                                                 ready->shown().string() +
-                                                 ": try again later, or remove them");
+        return fail(ExitCode::cannot_create,
+                    moved.error().message + "; the files of a killed run wait in " + ready->shown().string() +
+                        ", and may be the only ones: remedy this, then run octoskin repair " +
+                        folder.shown().string());
     }
     return true;
 }
@@ -296,7 +316,11 @@ FileSet::FileSet(FileSet&& other) noexcept
       lock_(std::move(other.lock_)) {}
 
 FileSet::~FileSet() {
-    if (!is_open_) return;
+    discard();
+}
+
+void FileSet::discard() {
+    if (!std::exchange(is_open_, false)) return;
     static_cast<void>(folder_.remove_all(kDraftFolder));
     if (is_new_) remove_made_folder(folder_);
 }
@@ -311,9 +335,12 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
     };
     auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
-    // No daemon holds the lock now; one may start while the set is being made.
-    if (const auto daemons = keep_daemons_out(folder); !daemons) return unexpected(daemons.error());
-    if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
+    if (const auto checked = check_for_daemon(folder); !checked) return unexpected(checked.error());
+    if (is_there(folder, kReady)) {
+        const auto daemons = keep_daemons_out(folder);
+        if (!daemons) return unexpected(daemons.error());
+        if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
+    }
     Unfinished unfinished(folder, kDraftFolder, made->is_new);
     // An existing one is left over from a killed process.
     if (const auto removed = folder.remove_all(kDraftFolder); !removed)
@@ -338,10 +365,13 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
     }
     if (const auto flushed = flush(draft_, kJournal); !flushed) return flushed;
     if (const auto flushed = flush(draft_); !flushed) return flushed;
+    const auto whole = unfinished_.finish();  // a signal that ends the process must not leave the lock file
     // A daemon may have started since; from here on none can.
     const auto daemons = keep_daemons_out(folder_);
-    if (!daemons) return unexpected(daemons.error());
-    const auto whole = unfinished_.finish();
+    if (!daemons) {
+        discard();
+        return unexpected(daemons.error());
+    }
     if (const auto decided = move(folder_, kDraftFolder, kReady); !decided) return decided;
     is_open_ = false;
     Move moving(folder_, journal);
@@ -383,12 +413,11 @@ Result<bool, AppError> settle_file_set(const OpenFolder& folder) {
     if (!is_there(folder, kReady)) return false;
     const auto lock = FileLock::take(folder, FileLock::Kind::exclusive);
     if (!lock) return busy(folder);
+    if (is_there(folder, kDaemonsSnapshot)) return beside_a_daemons_map(folder);
     const auto daemons = keep_daemons_out(folder);
     if (!daemons) {
-        return fail(daemons.error().code,
-                    daemons.error().message +
-                        "; the files of a run that was killed before the daemon started wait in " +
-                        folder.shown(kReady).string() + ": remove them");
+        return fail(daemons.error().code, daemons.error().message + "; the files of a killed run wait in " +
+                                              folder.shown(kReady).string() + ", and may be the only ones");
     }
     return finish_interrupted(folder);
 }

@@ -8,21 +8,20 @@
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/apps/recording/daemons_lock.hpp"
 #include "host/apps/recording/file_lock.hpp"
 #include "host/apps/recording/unfinished.hpp"
 
 namespace octoskin {
 
-/// A daemon holds a lock on this file in the folder of its maps.
-inline constexpr const char* kDaemonsLock = "lock";
 /// The whole state of a daemon's map; only a daemon writes it.
 inline constexpr const char* kDaemonsSnapshot = "fused.snapshot";
 
 /// The files are written into a hidden folder beside their final places. `commit` flushes them to the disk
 /// and renames that folder, which is the decisive step; then it moves file after file. An error undoes the
-/// moves. If the process dies, the next writer of the folder completes the moves; readers refuse the folder
-/// meanwhile.
-/// Everything happens below one descriptor, without following links, and only with names of a fixed list.
+/// moves. If the process dies, the next writer of the folder completes the moves;
+/// readers refuse the folder meanwhile. No daemon starts there while files are moved. Everything happens
+/// below one descriptor, without following links, and only with names of a fixed list.
 class FileSet {
   public:
     /// Creates `folder` if it does not exist, locks it against other octoskin processes, completes or removes
@@ -62,6 +61,7 @@ class FileSet {
 
   private:
     FileSet(OpenFolder folder, OpenFolder draft, bool is_new, Unfinished unfinished, FileLock lock);
+    void discard();
 
     OpenFolder folder_;
     OpenFolder draft_;
@@ -79,8 +79,8 @@ class FileSet {
 [[nodiscard]] bool is_file_of_set(const std::filesystem::path& name);
 
 /// Completes the remains of a process that was killed while it moved files into place; true if there were
-/// any. Errors (cannot_create): another octoskin is working there; a folder of another user; errors of the
-/// file system.
+/// any. Errors (cannot_create): another octoskin is working there; the files wait beside a daemon's map; a
+/// folder of another user; errors of the file system.
 [[nodiscard]] Result<bool, AppError> settle_file_set(const OpenFolder& folder);
 
 }  // namespace octoskin

@@ -19,10 +19,12 @@ std::vector<FilePlace> files_of(const RecordingPaths& paths) {
     return files;
 }
 
+/// Apart from what a killed octoskin can leave.
 bool is_occupied(const OpenFolder& folder) {
     const auto names = folder.names();
-    return names && std::any_of(names->begin(), names->end(),
-                                [](const std::string& name) { return name != FileSet::kDraftFolder; });
+    return names && std::any_of(names->begin(), names->end(), [](const std::string& name) {
+               return name != FileSet::kDraftFolder && name != kDaemonsLock;
+           });
 }
 
 Status<AppError> check_replaceable(const RecordingPaths& paths) {

@@ -133,6 +133,31 @@ TEST(FileSetTest, keeps_no_daemon_from_beginning_until_its_files_come) {
     ::close(lock);
 }
 
+/// Of one that others can open they can keep the lock; one that stays is in the way of nothing.
+TEST(FileSetTest, leaves_no_lock_file_of_its_own_and_keeps_one_that_is_there) {
+    for (const bool is_there : {false, true}) {
+        const ScratchFolder folder;
+        fill_old(folder.path());
+        if (is_there) write(folder / kDaemonsLock, "mine");
+        ASSERT_TRUE(replace_by_new(folder.path()));
+        EXPECT_EQ(reported(folder.path()),
+                  is_there ? "can.log=new depth.oni=new lock=mine meta.yaml=new" : kNew);
+    }
+}
+
+TEST(FileSetTest, removes_its_draft_where_a_daemon_has_begun_to_keep_its_map) {
+    const ScratchFolder parent;
+    const fs::path folder = parent / "new";
+    {
+        auto set = FileSet::begin(folder);
+        ASSERT_TRUE(set);
+        for (const fs::path& file : kFiles) write(set->draft().shown() / file, "new");
+        write(folder / kDaemonsSnapshot, "the daemon's");
+        ASSERT_FALSE(set->commit(kFiles, {}));
+    }
+    EXPECT_EQ(reported(folder), "fused.snapshot=the daemon's");
+}
+
 TEST(FileSetTest, the_lock_goes_with_its_process) {
     const ScratchFolder folder;
     const pid_t child = ::fork();
@@ -222,7 +247,7 @@ TEST(FileSetTest, an_error_while_it_moves_takes_all_of_it_back_until_it_can_be_d
         EXPECT_EQ(reported(folder.path()), expected);
         fs::remove(folder / obstacle);
         ASSERT_TRUE(settle(folder.path())) << obstacle;
-        EXPECT_EQ(reported(folder.path()), kNew);
+        EXPECT_EQ(reported(folder.path()), kNew) << "and no lock file";
     }
 }
 
@@ -317,6 +342,7 @@ TEST(FileSetTest, killed_at_any_instant_it_is_the_old_set_or_the_new_one) {
         ::kill(child, SIGKILL);
         ASSERT_EQ(::waitpid(child, nullptr, 0), child);
         { ASSERT_TRUE(FileSet::begin(folder.path())); }
+        fs::remove(folder / kDaemonsLock);  // a killed one can leave it
         const std::string now = reported(folder.path());
         EXPECT_TRUE(now == kOld || now == kNew) << now;
     }

@@ -113,6 +113,7 @@ TEST(RecordingDraftTest, clears_away_what_a_killed_one_left) {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / ".octoskin-part");
     folder.write(".octoskin-part/depth.oni", "half");
+    folder.write("lock", "1");
     auto draft = RecordingDraft::create(folder.path(), false);
     ASSERT_TRUE(draft) << draft.error().message;
     fill(*draft, "log");

@@ -6,7 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <filesystem>
 #include <optional>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "host/apps/recording/file_set.hpp"
 #include "host/io/folder/descriptor.hpp"
@@ -46,6 +51,40 @@ TEST(FolderLock, is_taken_where_files_are_about_to_be_put_and_keeps_them_out) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
     EXPECT_FALSE(std::filesystem::exists(scratch / "fused.ot"));
+}
+
+/// In a folder without a lock file as well as beside that of an earlier daemon.
+TEST(FolderLock, is_not_taken_while_files_are_moved_into_the_folder) {
+    constexpr int kFiles = 100;
+    std::vector<std::filesystem::path> names;
+    for (int i = 0; i < kFiles; ++i)
+        names.emplace_back("mesh_" + std::string(i < 10 ? "0" : "") + std::to_string(i) + ".stl");
+    for (const bool is_lock_there : {false, true}) {
+        for (int round = 0; round < 5; ++round) {
+            const testing_support::ScratchFolder scratch;
+            if (is_lock_there) scratch.write("lock", "");
+            auto files = FileSet::begin(FilePlace(scratch.path()));
+            ASSERT_TRUE(files) << files.error().message;
+            for (const auto& name : names) ASSERT_TRUE(files->draft().create_new(name));
+            const auto ready = scratch / FileSet::kReadyFolder;
+            std::atomic<bool> is_over = false;
+            bool is_taken = false;
+            std::thread daemon([&] {
+                while (!is_over && !is_taken) {
+                    if (!std::filesystem::exists(ready)) continue;
+                    const auto taken = FolderLock::take(scratch.path());
+                    is_taken = taken && std::filesystem::exists(ready);
+                }
+            });
+            const auto put = files->commit(names, {});
+            is_over = true;
+            daemon.join();
+            EXPECT_FALSE(is_taken);
+            ASSERT_TRUE(put) << put.error().message;
+            EXPECT_FALSE(std::filesystem::exists(ready));
+            EXPECT_TRUE(FolderLock::take(scratch.path()));
+        }
+    }
 }
 
 /// What any user can take that may read the folder.
