@@ -1,5 +1,6 @@
 #include "host/apps/daemon/folder_lock.hpp"
 
+#include <spdlog/spdlog.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,6 +19,16 @@ constexpr unsigned kMode = 0600;  // others could lock a file that they can open
 constexpr int kTries = 10;
 
 }  // namespace
+
+/// The files of a killed run are moved before the map is read: later they would replace the daemon's.
+Result<FolderLock, AppError> FolderLock::settled(FolderLock lock) {
+    const auto is_moved = settle_file_set_of_daemon(lock.folder());
+    if (!is_moved) return unexpected(is_moved.error());
+    if (*is_moved)
+        spdlog::warn("{}: the files that a killed octoskin left half moved are in their places",
+                     lock.folder().shown().string());
+    return lock;
+}
 
 AppError FolderLock::cannot_save(const std::filesystem::path& folder, const FolderError& error) {
     if (error.fault == FolderFault::link || error.fault == FolderFault::not_a_file)
@@ -52,7 +63,7 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
         if (status.st_nlink == 1) {
             (void)::fchmod(file.descriptor(), kMode);  // a file of an earlier version, or a copied one
             write_holder(file);
-            return FolderLock(folder, std::move(file));
+            return settled(FolderLock(folder, std::move(file)));
         }
         // A file with several names, or none any more, is left as it is; a new one replaces it.
         if (status.st_nlink > 1) {

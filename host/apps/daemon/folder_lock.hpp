@@ -20,6 +20,8 @@ class FolderLock {
     /// Creates the folder if it is missing. Refuses a folder that another process holds (naming that
     /// process), that cannot be written to, that belongs to another user, or whose lock file is a link or no
     /// regular file. A lock file with several names is replaced, not written to.
+    /// Completes the move of a run that was killed while it put its files there. Refuses the folder if that
+    /// fails, or if the files wait beside a daemon's map.
     [[nodiscard]] static Result<FolderLock, AppError> take(const std::filesystem::path& folder);
     /// The same for a folder that is open for writing. `named`: the path as the user gave it.
     [[nodiscard]] static Result<FolderLock, AppError> take(const OpenFolder& folder,
@@ -31,6 +33,7 @@ class FolderLock {
     [[nodiscard]] const OpenFolder& folder() const noexcept { return folder_; }
 
   private:
+    [[nodiscard]] static Result<FolderLock, AppError> settled(FolderLock lock);
     FolderLock(OpenFolder folder, OpenFile file) : folder_(std::move(folder)), file_(std::move(file)) {}
     OpenFolder folder_;
     OpenFile file_;

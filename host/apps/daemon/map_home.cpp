@@ -8,7 +8,9 @@
 namespace octoskin {
 namespace {
 
+/// Also one that a killed run has not put in its place.
 bool has_map(const OpenFolder& folder) {
+    if (folder.kind_of(FileSet::kReadyFolder) != EntryKind::absent) return true;
     for (const char* file : kMapFiles)
         if (folder.kind_of(file) != EntryKind::absent) return true;
     return false;
@@ -65,17 +67,17 @@ bool MapHome::look() {
         return false;
     }
     if (has_map(*there)) {  // not even locked: another daemon may be about to start with it
-        problem_ = fmt::format(
-            "{}: this folder replaced the maps' folder while octoskin ran, and contains another map, which "
-            "is not overwritten: move {} out of it to have this map saved there; or end octoskin and start "
-            "it again to continue with the other map; {}",
-            place_.string(), kMapFilesText, where_it_goes());
+        problem_ = why_not_overwritten();
         return false;
     }
     auto next = FolderLock::take(*there, place_);
     if (!next) {
         problem_ = fmt::format("the maps' folder was replaced while octoskin ran: {}; {}",
                                next.error().message, where_it_goes());
+        return false;
+    }
+    if (has_map(*there)) {  // another octoskin put it there before the lock was taken
+        problem_ = why_not_overwritten();
         return false;
     }
     lock_ = std::move(next).value();
@@ -97,6 +99,14 @@ std::string MapHome::where() const {
 std::string MapHome::where_it_goes() const {
     const std::string now = where();
     return now.empty() ? "the map is not saved" : "the map is still saved in " + now;
+}
+
+std::string MapHome::why_not_overwritten() const {
+    return fmt::format(
+        "{}: this folder replaced the maps' folder while octoskin ran, and contains another map, which "
+        "is not overwritten: move {} (and {}) out of it to have this map saved there; or end octoskin and "
+        "start it again to continue with the other map; {}",
+        place_.string(), kMapFilesText, FileSet::kReadyFolder, where_it_goes());
 }
 
 std::string MapHome::why_not_there() const {

@@ -35,6 +35,7 @@ class MapHome {
     MapHome(std::filesystem::path named, FolderLock lock);
     [[nodiscard]] bool is_in_its_place() const;
     [[nodiscard]] std::string why_not_there() const;
+    [[nodiscard]] std::string why_not_overwritten() const;
     /// Where the map is saved meanwhile, for messages.
     [[nodiscard]] std::string where_it_goes() const;
 

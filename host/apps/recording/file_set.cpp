@@ -422,4 +422,12 @@ Result<bool, AppError> settle_file_set(const OpenFolder& folder) {
     return finish_interrupted(folder);
 }
 
+Result<bool, AppError> settle_file_set_of_daemon(const OpenFolder& folder) {
+    // Who moves files holds the lock of daemons, too: there is no need for that of the folder, which every
+    // user who can read the folder can hold.
+    if (!is_there(folder, kReady)) return false;
+    if (is_there(folder, kDaemonsSnapshot)) return beside_a_daemons_map(folder);
+    return finish_interrupted(folder);
+}
+
 }  // namespace octoskin

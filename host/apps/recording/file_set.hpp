@@ -19,7 +19,7 @@ inline constexpr const char* kDaemonsSnapshot = "fused.snapshot";
 
 /// The files are written into a hidden folder beside their final places. `commit` flushes them to the disk
 /// and renames that folder, which is the decisive step; then it moves file after file. An error undoes the
-/// moves. If the process dies, the next writer of the folder completes the moves;
+/// moves. If the process dies, the next writer of the folder, or the next daemon, completes the moves;
 /// readers refuse the folder meanwhile. No daemon starts there while files are moved. Everything happens
 /// below one descriptor, without following links, and only with names of a fixed list.
 class FileSet {
@@ -82,5 +82,7 @@ class FileSet {
 /// any. Errors (cannot_create): another octoskin is working there; the files wait beside a daemon's map; a
 /// folder of another user; errors of the file system.
 [[nodiscard]] Result<bool, AppError> settle_file_set(const OpenFolder& folder);
+/// The same for a daemon that holds kDaemonsLock there, before it reads its map.
+[[nodiscard]] Result<bool, AppError> settle_file_set_of_daemon(const OpenFolder& folder);
 
 }  // namespace octoskin

@@ -87,6 +87,49 @@ TEST(FolderLock, is_not_taken_while_files_are_moved_into_the_folder) {
     }
 }
 
+/// A replay that was killed while it moved its files: `former` of an earlier replay, in a file system without
+/// hard links.
+void lay_out_half_moved(const testing_support::ScratchFolder& scratch, bool has_former) {
+    std::filesystem::create_directories(scratch / ".octoskin-ready/.before");
+    scratch.write(".octoskin-ready/.journal", "octoskin-file-set/1\nput fused.ot\nput maps.yaml\n");
+    for (const std::string& name : {std::string("fused.ot"), std::string("maps.yaml")}) {
+        scratch.write(".octoskin-ready/" + name, "new");
+        if (has_former) scratch.write(".octoskin-ready/.before/" + name, "former");
+    }
+}
+
+TEST(FolderLock, completes_the_move_of_a_killed_run) {
+    for (const bool has_former : {false, true}) {
+        const testing_support::ScratchFolder scratch;
+        lay_out_half_moved(scratch, has_former);
+        const auto taken = FolderLock::take(scratch.path());
+        ASSERT_TRUE(taken) << taken.error().message;
+        for (const char* name : {"fused.ot", "maps.yaml"})
+            EXPECT_EQ(testing_support::ScratchFolder::read(scratch / name), "new") << name;
+        EXPECT_FALSE(std::filesystem::exists(scratch / ".octoskin-ready"));
+        EXPECT_FALSE(FolderLock::take(scratch.path())) << "it is held";
+    }
+}
+
+TEST(FolderLock, is_not_taken_where_files_of_a_killed_run_wait_beside_a_daemons_map_or_cannot_be_moved) {
+    for (const std::string& obstacle : {std::string("fused.snapshot"), std::string("maps.yaml/")}) {
+        const testing_support::ScratchFolder scratch;
+        lay_out_half_moved(scratch, true);
+        if (obstacle.ends_with('/')) std::filesystem::create_directory(scratch / "maps.yaml");
+        if (!obstacle.ends_with('/')) scratch.write(obstacle, "the daemon's");
+        const auto refused = FolderLock::take(scratch.path());
+        ASSERT_FALSE(refused) << obstacle;
+        EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+        for (const std::string& part :
+             {"wait in " + (scratch / ".octoskin-ready").string(), std::string("octoskin repair")})
+            EXPECT_NE(refused.error().message.find(part), std::string::npos) << refused.error().message;
+        EXPECT_EQ(testing_support::ScratchFolder::read(scratch / ".octoskin-ready/fused.ot"), "new");
+        EXPECT_EQ(testing_support::ScratchFolder::read(scratch / ".octoskin-ready/.before/fused.ot"),
+                  "former");
+        EXPECT_FALSE(std::filesystem::exists(scratch / "fused.ot"));
+    }
+}
+
 /// What any user can take that may read the folder.
 TEST(FolderLock, is_taken_where_another_process_has_a_lock_of_the_folder_itself) {
     const testing_support::ScratchFolder scratch;

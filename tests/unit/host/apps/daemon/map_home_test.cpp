@@ -67,6 +67,17 @@ TEST_F(MapHomeTest, is_no_folder_with_a_map_of_its_own) {
     }
 }
 
+TEST_F(MapHomeTest, is_no_folder_in_which_maps_of_a_killed_run_wait) {
+    fs::remove_all(maps_);
+    fs::create_directories(maps_ / ".octoskin-ready");
+    scratch_.write("maps/.octoskin-ready/.journal", "octoskin-file-set/1\nput fused.ot\n");
+    scratch_.write("maps/.octoskin-ready/fused.ot", "another map");
+    EXPECT_FALSE(home_.look());
+    EXPECT_NE(home_.problem().find("not overwritten"), std::string::npos) << home_.problem();
+    EXPECT_FALSE(is_held(home_.folder()));
+    EXPECT_EQ(testing_support::ScratchFolder::read(maps_ / ".octoskin-ready/fused.ot"), "another map");
+}
+
 TEST_F(MapHomeTest, is_no_folder_that_another_daemon_holds_and_no_file) {
     fs::rename(maps_, scratch_ / "aside");
     {
