@@ -1,5 +1,6 @@
 #include "host/apps/daemon/growing_file.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -33,6 +34,13 @@ Status<std::string> GrowingFile::append(const std::string& text) {
         if (count <= 0) return failure();
         rest.remove_prefix(static_cast<std::size_t>(count));
     }
+    return Done{};
+}
+
+Status<std::string> GrowingFile::check() const {
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) return failure();
+    if (status.st_nlink == 0) return unexpected(file_.string() + ": was removed while it was written");
     return Done{};
 }
 

@@ -20,6 +20,8 @@ class GrowingFile {
     /// Refuses an existing file.
     [[nodiscard]] Status<std::string> create(const FilePlace& file);
     [[nodiscard]] Status<std::string> append(const std::string& text);
+    /// Error: the file was removed. Its content is lost when it is closed.
+    [[nodiscard]] Status<std::string> check() const;
     /// Writes it to the disk and closes it.
     [[nodiscard]] Status<std::string> finish();
 

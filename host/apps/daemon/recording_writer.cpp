@@ -1,11 +1,14 @@
 #include "host/apps/daemon/recording_writer.hpp"
 
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
+#include <cerrno>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/clocks.hpp"
@@ -21,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kWritePeriod{100};
+constexpr Nanoseconds kCheckPeriod{1'000'000'000};
 constexpr Nanoseconds kDropPatience{100'000'000};
 
 Status<std::string> write_file(const FilePlace& file, const std::string& text) {
@@ -77,9 +81,13 @@ class RecordingWriter::Work {
     [[nodiscard]] Step record();
     [[nodiscard]] Step begin();
     [[nodiscard]] Step write_waiting();
+    /// Error: the folder or a log in it was removed. A moved folder is still written to.
+    [[nodiscard]] Step check(const OpenFolder& held) const;
+    /// The same, once a second.
+    [[nodiscard]] Step check_sometimes(const OpenFolder& held);
     /// True when `finish` or `drop` requests the end.
     [[nodiscard]] bool rest();
-    [[nodiscard]] Step end(RecordingEnd end);
+    [[nodiscard]] Step end(RecordingEnd end, const OpenFolder& held);
     [[nodiscard]] Step keep_first();
     /// Saves the map and returns its checksum; an empty one has neither file nor checksum.
     [[nodiscard]] Result<std::optional<std::uint32_t>, std::string> keep_map(const FusedMap& map,
@@ -100,6 +108,7 @@ class RecordingWriter::Work {
     bool has_ended_ = false;
     std::string error_;
     std::optional<HostTime> writing_since_ = monotonic_now();
+    HostTime checked_ = monotonic_now();
 };
 
 RecordingWriter::RecordingWriter(RecordingBegin begin, MapWriter map_writer)
@@ -214,6 +223,7 @@ Status<std::string> RecordingWriter::Work::record() {
     depth_.begin();
     while (!rest()) {
         if (const Step written = write_waiting(); !written) return written;
+        if (const Step checked = check_sometimes(*made); !checked) return checked;
         if (std::string error = depth_.error(); !error.empty()) return unexpected(std::move(error));
     }
     std::unique_lock guard(mutex_);
@@ -222,7 +232,7 @@ Status<std::string> RecordingWriter::Work::record() {
                           ": the daemon ended before the recording was complete");
     RecordingEnd last = std::move(*std::exchange(end_, std::nullopt));
     guard.unlock();
-    return end(std::move(last));
+    return end(std::move(last), *made);
 }
 
 Result<std::optional<std::uint32_t>, std::string> RecordingWriter::Work::keep_map(
@@ -273,8 +283,26 @@ Status<std::string> RecordingWriter::Work::write_waiting() {
     return order_file_.append(order_.take());
 }
 
-Status<std::string> RecordingWriter::Work::end(RecordingEnd last) {
+Status<std::string> RecordingWriter::Work::check(const OpenFolder& held) const {
+    struct stat status {};
+    if (::fstat(held.descriptor(), &status) != 0)
+        return unexpected(folder().string() + ": " + std::generic_category().message(errno));
+    if (status.st_nlink == 0)
+        return unexpected(folder().string() + ": was removed while the recording was made");
+    if (const Step checked = can_file_.check(); !checked) return checked;
+    return order_file_.check();
+}
+
+Status<std::string> RecordingWriter::Work::check_sometimes(const OpenFolder& held) {
+    const HostTime now = monotonic_now();
+    if (now - checked_ < kCheckPeriod) return Done{};
+    checked_ = now;
+    return check(held);
+}
+
+Status<std::string> RecordingWriter::Work::end(RecordingEnd last, const OpenFolder& held) {
     if (const Step written = write_waiting(); !written) return written;
+    if (const Step checked = check(held); !checked) return checked;
     if (const Step finished = can_file_.finish(); !finished) return finished;
     if (std::string error = depth_.finish(); !error.empty()) return unexpected(std::move(error));
     if (!last.last_map)

@@ -66,6 +66,40 @@ class RecordingWriterTest : public testing::Test {
     testing_support::ScratchFolder folder_;
 };
 
+TEST_F(RecordingWriterTest, ends_with_an_error_where_its_folder_or_a_file_of_it_is_removed) {
+    for (const char* const gone : {"recording", "recording/can.log", "recording/order.log"}) {
+        std::filesystem::remove_all(folder_ / "recording");
+        RecordingWriter writer(begin());
+        ASSERT_EQ(writer.refusal(kPatience), "");
+        while (!std::filesystem::exists(folder_ / "recording/order.log")) std::this_thread::yield();
+        std::filesystem::remove_all(folder_ / gone);
+        EXPECT_TRUE(writer.wait(Nanoseconds{5'000'000'000})) << gone << ": by itself";
+        EXPECT_NE(writer.error().find((folder_ / gone).string() + ": was removed"), std::string::npos)
+            << writer.error();
+    }
+}
+
+TEST_F(RecordingWriterTest, is_not_complete_where_its_folder_is_removed_just_before_its_end) {
+    RecordingWriter writer(begin());
+    ASSERT_EQ(writer.refusal(kPatience), "");
+    while (!std::filesystem::exists(folder_ / "recording/order.log")) std::this_thread::yield();
+    std::filesystem::remove_all(folder_ / "recording");
+    writer.finish(end(0));
+    ASSERT_TRUE(writer.wait(kPatience));
+    EXPECT_NE(writer.error().find(": was removed"), std::string::npos) << writer.error();
+}
+
+TEST_F(RecordingWriterTest, goes_on_in_a_folder_that_is_moved) {
+    RecordingWriter writer(begin());
+    ASSERT_EQ(writer.refusal(kPatience), "");
+    std::filesystem::rename(folder_ / "recording", folder_ / "moved");
+    std::this_thread::sleep_for(std::chrono::milliseconds{1'500});
+    writer.finish(end(0));
+    ASSERT_TRUE(writer.wait(kPatience));
+    EXPECT_EQ(writer.error(), "");
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "moved/meta.yaml"));
+}
+
 /// Depth frames come from the first moment on, before anybody has looked at the folder.
 TEST_F(RecordingWriterTest, leaves_alone_what_is_in_a_folder_that_it_refuses) {
     std::filesystem::create_directories(folder_ / "recording");
