@@ -41,6 +41,11 @@ bool has_memory_for(const Add& add) {
     }
 }
 
+/// How often the system had no memory for an update of this map.
+std::uint64_t lacks_of(const FusedMap& map) {
+    return map.counters().no_memory + map.counters().ages_without_memory;
+}
+
 /// OpenNI2's recorder stores depth up to 32.767 m. For most rigs a larger depth is no value anyway.
 bool is_storable(const DepthFrame& frame, double depth_max_m) {
     constexpr double kMmPerM = 1000.0;
@@ -61,6 +66,7 @@ Recorder::Recorder(const std::filesystem::path& folder, std::optional<Nanosecond
       begun_(now),
       pipeline_(&pipeline),
       inputs_at_begin_(pipeline.counter_tables()),
+      lacks_(lacks_of(pipeline.map())),
       writer_(begin_of(folder, settings, pipeline, copier_)) {
     entry_.interface = settings.interface;
     // Poses are still interpolated from earlier samples.
@@ -88,13 +94,28 @@ void Recorder::put(const Commit& commit) {
     counts_.lost_commits += is_taken ? 0U : 1U;
 }
 
+void Recorder::lose() noexcept {
+    ++counts_.commits;
+    ++counts_.lost_commits;
+}
+
+bool Recorder::has_map_lacked_memory() noexcept {
+    const std::uint64_t lacks = lacks_of(pipeline_->map());
+    return lacks != std::exchange(lacks_, lacks);
+}
+
 void Recorder::on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) {
-    put(measurement);
+    has_map_lacked_memory() ? lose() : put(measurement);
+}
+
+void Recorder::on_wait(const WaitCommit& passed) {
+    has_map_lacked_memory() ? lose() : put(passed);
 }
 
 void Recorder::on_depth(const DepthFrame& frame, const Evidence&) {
     DepthCommit commit{std::nullopt, frame.captured};
-    if (is_storable(frame, depth_max_m_) && has_memory_for([&] { return writer_.add_depth(frame); })) {
+    if (!has_map_lacked_memory() && is_storable(frame, depth_max_m_) &&
+        has_memory_for([&] { return writer_.add_depth(frame); })) {
         commit.index = depth_frames_++;
     } else {
         ++counts_.lost_depth;
@@ -153,6 +174,11 @@ void Recorder::report_end() {
     } else {
         spdlog::info("recorded {:.1f} s to {}", seconds_of(*stopped_ - begun_), folder_.string());
     }
+    if (why.empty() && !is_complete())
+        spdlog::warn(
+            "{} is incomplete, and its replay gives another map: {} commits and {} depth frames are not in "
+            "it",
+            folder_.string(), counts_.lost_commits, counts_.lost_depth);
 }
 
 std::optional<FusedMap> Recorder::last_map() const {

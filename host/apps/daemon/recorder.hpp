@@ -75,7 +75,7 @@ class Recorder final : public CommitListener {
     [[nodiscard]] std::string error() const { return writer_.error(); }
     /// As RecordingWriter::writing_since.
     [[nodiscard]] std::optional<HostTime> writing_since() const { return writer_.writing_since(); }
-    /// All that went into the map could be recorded so far.
+    /// All that went into the map could be recorded so far, and the map took it as a replay will.
     [[nodiscard]] bool is_complete() const { return counts_.is_complete() && error().empty(); }
     [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
     [[nodiscard]] nlohmann::ordered_json to_json(HostTime now) const;
@@ -84,12 +84,18 @@ class Recorder final : public CommitListener {
     void on_reading(const RangeMeasurement& measurement, const Beam& beam,
                     std::span<const VoxelUpdate> updates) override;
     void on_depth(const DepthFrame& frame, const Evidence& terms) override;
-    void on_wait(const WaitCommit& passed) override { put(passed); }
+    void on_wait(const WaitCommit& passed) override;
+    void on_broken_off() noexcept override { lose(); }
     /// Ends the recording: its replay could not continue from there.
     void on_time_jump() override;
 
   private:
     void put(const Commit& commit);
+    /// Counts a commit that is not in the recording.
+    void lose() noexcept;
+    /// True if the system has lacked memory for the map since the last call: a replay, which has it, gives
+    /// another map.
+    [[nodiscard]] bool has_map_lacked_memory() noexcept;
     /// Counts of rejected inputs since the start, by name.
     [[nodiscard]] std::string remarks() const;
     /// Logs the result once it has ended.
@@ -108,6 +114,7 @@ class Recorder final : public CommitListener {
     std::vector<CounterTable> inputs_at_begin_;
     candump::LogEntry entry_;
     orderlog::Trailer counts_;
+    std::uint64_t lacks_ = 0;           ///< times that the system had no memory for the map, ever
     std::uint64_t commits_before_ = 0;  ///< joint samples in the daemon at the start
     std::uint64_t can_frames_ = 0;
     std::uint64_t depth_frames_ = 0;

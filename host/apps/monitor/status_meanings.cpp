@@ -268,11 +268,13 @@ constexpr std::array kStatusMeanings = {
             "joint samples, readings and depth frames that went into the map during it"},
     Meaning{"recording", "lost_can",
             "bus frames that the disk could not take in time: they change no voxel of a replay"},
-    Meaning{"recording", "lost_commits",
-            "measurements that the disk could not take in time: a replay gives another map"},
+    Meaning{
+        "recording", "lost_commits",
+        "measurements that the disk could not take in time, or for which the system lacked memory here or "
+        "in the map: a replay gives another map"},
     Meaning{"recording", "lost_depth",
-            "depth frames that the disk could not take in time, or with depth beyond 32.767 m: a replay "
-            "gives another map"},
+            "depth frames that the disk could not take in time, for which the system lacked memory here or "
+            "in the map, or with depth beyond 32.767 m: a replay gives another map"},
     Meaning{"recording", "is_complete", "it lacks nothing that went into the map"},
     Meaning{"recording", "ended_early",
             "why it ended before its time and without a request: the bus time jumped, the daemon re-read its "

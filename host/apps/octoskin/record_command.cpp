@@ -152,10 +152,11 @@ void tell(const Json& recording) {
     if (const auto lost = recording.at("lost_can").get<std::uint64_t>(); lost > 0)
         spdlog::warn("{} CAN frames are not in can.log: the disk was too slow", lost);
     if (!recording.at("is_complete").get<bool>())
-        throw CommandFailure({ExitCode::failed, folder + ": the disk was too slow for " +
-                                                    recording.at("lost_depth").dump() + " depth frames and " +
-                                                    recording.at("lost_commits").dump() +
-                                                    " commits: a replay does not give the daemon's map"});
+        throw CommandFailure(
+            {ExitCode::failed, folder + ": the disk was too slow, or the memory too little, for " +
+                                   recording.at("lost_depth").dump() + " depth frames and " +
+                                   recording.at("lost_commits").dump() +
+                                   " commits: a replay does not give the daemon's map"});
     if (const auto early = recording.at("ended_early").get<std::string>(); !early.empty())
         throw CommandFailure(
             {ExitCode::failed, folder + ": complete, but it ended before its time: " + early});

@@ -105,8 +105,11 @@ std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
     if (!order.trailer())
         return "order.log is cut off because the daemon was killed; this is its last complete line";
     if (!order.trailer()->is_complete())
-        return fmt::format("{} commits and {} depth frames could not be recorded",
-                           order.trailer()->lost_commits, order.trailer()->lost_depth);
+        return fmt::format(
+            "the recording is incomplete: {} commits and {} depth frames could not be "
+            "recorded as the daemon's map took them (the disk was too slow, there was no "
+            "memory, or depth was beyond 32.767 m)",
+            order.trailer()->lost_commits, order.trailer()->lost_depth);
     if (order.header().rig_hash != rig::rig_hash(rig) && !request.rig.empty()) return "another rig was given";
     if (!played.has_daemons_mapping && request.is_mapping_given) return "another configuration was given";
     if (outcome.depth_missing > 0)

@@ -113,6 +113,7 @@ void BrickEditor::date(MortonCode brick, const BrickMask& voxels, SensorKind kin
         if (is_dated) ages.confirm(brick, voxels, kind);
     } catch (const std::bad_alloc&) {
         is_dated = false;
+        ++counters_.ages_without_memory;
     }
     if (!is_dated) counters_.undated += count_of(voxels);
 }

@@ -60,6 +60,7 @@ void CountWriter::count(const Evidence& evidence) {
             put_in(refused.back().voxels, cell);
         } catch (const std::bad_alloc&) {
             are_refused_known = false;
+            editor_.note(&MapCounters::ages_without_memory);
         }
     };
     bool of_occupied = evidence.prefers_occupied;

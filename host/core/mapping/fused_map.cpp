@@ -39,6 +39,7 @@ void FusedMap::advance_time(HostTime now) noexcept {
         if (layers_.ages.advance_time(now)) date_and_expire();
     } catch (const std::bad_alloc&) {  // expiry and missing time stamps follow in a later second
         ++counters_.undated;
+        ++counters_.ages_without_memory;
     }
 }
 
@@ -49,6 +50,7 @@ bool FusedMap::wait(std::int64_t seconds) noexcept {
         if (is_older) date_and_expire();
     } catch (const std::bad_alloc&) {
         ++counters_.undated;
+        ++counters_.ages_without_memory;
     }
     return is_older;
 }

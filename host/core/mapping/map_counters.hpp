@@ -14,6 +14,9 @@ struct MapCounters {
     std::uint64_t no_memory = 0;   ///< refused: the voxel's space is new, and the system has no memory for it
     /// Applied, but without room or memory for the time stamp. Not part of the sum.
     std::uint64_t undated = 0;
+    /// How often the system had no memory for a time stamp, or to let voxels expire. With memory, the same
+    /// input gives another map, as after `no_memory`. Not part of the sum.
+    std::uint64_t ages_without_memory = 0;
     [[nodiscard]] std::uint64_t refused() const noexcept { return no_room + no_memory; }
     friend bool operator==(const MapCounters&, const MapCounters&) = default;
 };

@@ -50,6 +50,9 @@ class CommitListener {
     virtual void on_wait(const WaitCommit&) {}
     /// Called after each reading and frame, and after the calls about it.
     virtual void on_maps(std::span<const FedMap>) {}
+    /// An exception has left an input while it was applied, or before the listener was notified of it: the
+    /// maps may have a part of it or all of it. No other call about this input follows.
+    virtual void on_broken_off() noexcept {}
     /// Time jump: later inputs are from before the earlier ones or far ahead of them, or the machine slept. A
     /// replay in this order ends here.
     virtual void on_time_jump() {}

@@ -130,8 +130,18 @@ FusedMap& MapBuilder::own_map() noexcept {
     return found->map;
 }
 
+template <class Apply>
+auto MapBuilder::watched(const Apply& apply) {
+    try {
+        return apply();
+    } catch (...) {
+        if (listener_ != nullptr) listener_->on_broken_off();
+        throw;
+    }
+}
+
 Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
-    const auto added = robot_.add(joints);
+    const auto added = watched([&] { return robot_.add(joints); });
     if (added && listener_ != nullptr) {
         listener_->on_joints(joints);
     }
@@ -161,8 +171,8 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     }
     const BeamSource& source = measurement.source;
     const bool is_out = is_refused(source.node_id, source.sensor);
-    const Status<ReadingReason> added =
-        is_out ? unexpected(ReadingReason::contradicts_camera) : add_range(measurement, *beam);
+    const Status<ReadingReason> added = is_out ? unexpected(ReadingReason::contradicts_camera)
+                                               : watched([&] { return add_range(measurement, *beam); });
     if (cross_check_ && (added || is_out)) {
         cross_check_->on_beam(*beam, beams_.T_map_sensor(source, *robot),
                               beams_.twists_map(source, *robot, robot_.robot()));
@@ -218,6 +228,11 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     if (depth.robot && robot_.at(depth.frame.captured) == nullptr) {
         return unexpected(DepthReason::late);
     }
+    watched([&] { add_depth(depth); });
+    return Done{};
+}
+
+void MapBuilder::add_depth(const DepthWork& depth) {
     MapFeeder(maps_, depth.frame.captured, nullptr, listener_).apply(depth.updates->terms, nullptr);
     if (cross_check_) {
         depth_stage_->swap_images(seen_);
@@ -227,7 +242,6 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
         listener_->on_depth(depth.frame, depth.updates->terms);
         listener_->on_maps(maps_);
     }
-    return Done{};
 }
 
 }  // namespace octoskin

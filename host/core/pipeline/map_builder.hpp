@@ -136,6 +136,10 @@ class MapBuilder {
 
     [[nodiscard]] FusedMap& own_map() noexcept;
     [[nodiscard]] Status<ReadingReason> add_range(const RangeMeasurement& measurement, const Beam& beam);
+    void add_depth(const DepthWork& depth);
+    /// Calls `apply`, which applies one input; notifies the listener if an exception leaves it.
+    template <class Apply>
+    auto watched(const Apply& apply);
 
     RobotTracker robot_;
     BeamBuilder beams_;

@@ -4,15 +4,21 @@
 #include <poll.h>
 
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 
 #include "host/apps/daemon/boot_clock.hpp"
 #include "host/apps/daemon/map_saver.hpp"
 #include "host/apps/daemon/query_server.hpp"
 #include "host/apps/daemon/recorder.hpp"
 #include "host/apps/query/query_request.hpp"
+#include "host/core/pipeline/ordered_replay.hpp"
+#include "host/io/mapfile/octomap_writer.hpp"
+#include "host/io/orderlog/order_reader.hpp"
 #include "tests/support/allocation_hooks.hpp"
 #include "tests/support/evidence.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -23,11 +29,21 @@ namespace {
 thread_local bool is_memory_gone = false;
 thread_local bool is_spared = false;
 std::atomic<bool> is_memory_of_others_gone = false;  ///< of each thread that is not spared
+constexpr std::int64_t kNever = -1;
+thread_local std::int64_t fails_after = kNever;  ///< allocations that succeed before some fail
+thread_local std::int64_t fails_for = 0;         ///< allocations that fail then
+
+/// True if this allocation of the thread is one of those that fail.
+bool is_next_to_fail() {
+    if (fails_after == kNever) return false;
+    if (fails_after > 0) return --fails_after, false;
+    return fails_for > 0 && fails_for-- > 0;
+}
 
 }  // namespace
 
 static void* allocate(std::size_t bytes) {
-    const bool is_refused = is_memory_gone || (is_memory_of_others_gone && !is_spared);
+    const bool is_refused = is_next_to_fail() || is_memory_gone || (is_memory_of_others_gone && !is_spared);
     void* const place = is_refused ? nullptr : std::malloc(bytes);
     if (place == nullptr) throw std::bad_alloc();
     return place;
@@ -72,6 +88,73 @@ TEST(RecorderWithoutMemory, counts_what_it_could_not_keep_as_lost_and_goes_on) {
     EXPECT_EQ(json["commits"], 6);
     EXPECT_FALSE(json["is_complete"].get<bool>());
     EXPECT_EQ(json["error"], "");
+}
+
+std::string bytes_of(const FusedMap& map) {
+    std::string bytes;
+    write_ot(map, [&](std::string_view more) {
+        bytes += more;
+        return true;
+    });
+    return bytes;
+}
+
+/// Readings of a robot that stays, until one ends with a lack of memory; its map has expiry.
+void measure(MapBuilder& builder) try {
+    for (int second = 1; second <= 8; ++second) {
+        const HostTime captured{second * 1'000'000'000LL};
+        for (const int ms : {-10, 0, 10}) {
+            JointMeasurement joints{.sampled = captured + Nanoseconds{ms * 1'000'000LL}};
+            joints.position_rad[0] = test::angle_at(0.0);
+            EXPECT_TRUE(builder.add(joints));
+        }
+        EXPECT_TRUE(builder.integrate({{test::kLeft, test::kGood, 0}, captured, 0.2 + 0.1 * second, 0.01}));
+    }
+} catch (const std::bad_alloc&) {
+}
+
+/// Records readings while `times` allocations fail after the first `allocations`, and replays the recording.
+/// Expects that it is incomplete or gives the map. False if none failed.
+bool record_and_replay(const test::Scene& scene, std::int64_t allocations, std::int64_t times) {
+    const testing_support::ScratchFolder folder;
+    Pipeline pipeline = test::make_pipeline(scene);
+    const RecordedSettings settings{.rig = "name: a\n",
+                                    .robot = "<robot/>",
+                                    .mapping = "base: fast\n",
+                                    .rig_hash = 1,
+                                    .joints = 1,
+                                    .interface = "can0"};
+    Recorder recorder(folder / "recording", {}, settings, pipeline, HostTime{1'000'000'000});
+    fails_after = allocations;
+    fails_for = times;
+    measure(pipeline.builder());
+    fails_after = kNever;
+    const std::string live = bytes_of(pipeline.map());
+    recorder.stop(HostTime{2'000'000'000});
+    EXPECT_TRUE(recorder.wait(Nanoseconds{10'000'000'000}));
+    EXPECT_EQ(recorder.error(), "");
+    auto order = orderlog::OrderReader::open(RecordingPaths(folder / "recording").order());
+    EXPECT_TRUE(order);
+    Pipeline again = test::make_pipeline(scene);
+    const OrderedOutcome outcome = replay_in_order(again.builder(), *order, nullptr);
+    EXPECT_FALSE(outcome.order_error) << outcome.order_error->what;
+    EXPECT_EQ(order->trailer()->is_complete(), recorder.is_complete());
+    if (recorder.is_complete()) {
+        EXPECT_EQ(bytes_of(again.map()), live) << times << " from allocation " << allocations;
+    }
+    return fails_for < times;
+}
+
+TEST(RecorderWithoutMemory, is_complete_only_if_its_replay_gives_the_map) {
+    test::Scene scene = test::good_scene();
+    scene.mapping = fast_mapping();
+    scene.mapping.map.age = {.stale_after_s = 1, .unknown_after_s = 3};
+    for (const std::int64_t times : {1, 20}) {
+        std::int64_t allocations = 0;
+        const std::int64_t step = times == 1 ? 4 : 16;
+        while (record_and_replay(scene, allocations, times)) allocations += step;
+        EXPECT_GT(allocations, 100);
+    }
 }
 
 // A restart behind it adds what this one could not.
