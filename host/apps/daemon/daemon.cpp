@@ -143,6 +143,7 @@ DaemonView Daemon::Parts::view() const {
     const HostTime now = monotonic_now();
     return {.now = now,
             .bus_now = inputs.bus_now(now),
+            .bus_reckoned = inputs.reckoned_bus_now(now),
             .started = started,
             .rig = &settings.host.rig,
             .pipeline = &pipeline,

@@ -263,7 +263,7 @@ Json latency_json(const LatencyHistogram& latency, const LatencyHistogram& age) 
 
 Json map_json(const DaemonView& view) {
     const FusedMap& map = view.pipeline->map();
-    return {{"known_voxels", map.known_voxels()},
+    return {{"known_voxels", map.known_voxels_at(view.bus_reckoned)},
             {"resolution_m", map.resolution_m()},
             {"memory_mib", static_cast<double>(map.memory_bytes()) / (1U << 20U)},
             {"memory_max_mib", map.config().memory_max_mib},

@@ -53,6 +53,8 @@ struct DaemonView {
     /// The same instant on the bus clock (BusTime), which SYNC distributes, maybe from another host. Empty
     /// while it is not known.
     std::optional<HostTime> bus_now;
+    /// The same; while it is not known, reckoned from when it last was.
+    HostTime bus_reckoned;
     HostTime started;
     const HostRig* rig = nullptr;
     const Pipeline* pipeline = nullptr;

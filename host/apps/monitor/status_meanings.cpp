@@ -316,7 +316,7 @@ constexpr std::array kStatusMeanings = {
             "no older"},
     Meaning{"latency", "age_p99_ms", "99 of 100 were no older"},
     Meaning{"latency", "age_max_ms", "the oldest"},
-    Meaning{"map", "known_voxels", "voxels that are free or occupied"},
+    Meaning{"map", "known_voxels", "voxels that are free or occupied now: for a query, too"},
     Meaning{"map", "resolution_m", "the edge of a voxel"},
     Meaning{"map", "memory_mib", "memory that the map takes"},
     Meaning{"map", "memory_max_mib", "the limit in the mapping"},

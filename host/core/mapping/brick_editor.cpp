@@ -10,6 +10,21 @@
 namespace octoskin {
 namespace {
 
+/// Time stamps of voxels that expire.
+struct Due {
+    std::uint16_t first = 0;  ///< the earliest
+    std::uint16_t limit = 0;  ///< above the latest
+};
+
+/// Of now, or of when `passed_s` more seconds have passed.
+Due due_of(const VoxelAges& ages, std::uint32_t unknown_after_s, std::int64_t passed_s = 0) {
+    const std::int64_t rest_s = std::int64_t{unknown_after_s} - passed_s;
+    // Voxels measured before the clock began have aged since it began.
+    const bool takes_all = ages.runs_for_s() >= rest_s;
+    const auto first = static_cast<std::uint16_t>(takes_all ? 1 : VoxelAges::kOfBefore + 1);
+    return {first, ages.stamp_before(static_cast<std::uint32_t>(std::max<std::int64_t>(rest_s, 0)))};
+}
+
 /// The brick's voxels with a time stamp of at least `first` and below `limit`.
 BrickMask stamped_from_to(const StampView& view, std::uint16_t first, std::uint16_t limit) {
     BrickMask voxels{};
@@ -151,10 +166,7 @@ BrickMask BrickEditor::measured_in(MortonCode brick) const noexcept {
 
 void BrickEditor::expire() {
     VoxelAges& ages = layers_.ages;
-    const std::uint16_t limit = ages.stamp_before(config_.age.unknown_after_s);
-    // Voxels measured before the clock began have aged since it began.
-    const bool takes_all = ages.runs_for_s() >= std::int64_t{config_.age.unknown_after_s};
-    const auto first = static_cast<std::uint16_t>(takes_all ? 1 : VoxelAges::kOfBefore + 1);
+    const auto [first, limit] = due_of(ages, config_.age.unknown_after_s);
     ages.look_at_due(first, limit, [&](MortonCode brick) {
         const BrickMask voxels = stamped_from_to(ages.find(brick), first, limit);
         if (count_of(voxels) == 0) return;
@@ -162,6 +174,20 @@ void BrickEditor::expire() {
         if (has_counts(brick)) layers_.counts.expire(brick, voxels);
         ages.forget(brick, voxels);  // last: after a memory failure, the voxels are found again
     });
+}
+
+std::size_t count_due(const MapLayers& layers, std::uint32_t unknown_after_s, std::int64_t passed_s) {
+    const Due due = due_of(layers.ages, unknown_after_s, passed_s);
+    std::size_t voxels = 0;
+    layers.ages.stamps().for_each([&](MortonCode brick, const StampView& stamps) {
+        const BrickView log_odds = layers.log_odds.find(brick);
+        if (log_odds.is_unknown()) return;
+        const BrickMask known = known_in(log_odds);
+        BrickMask expiring = stamped_from_to(stamps, due.first, due.limit);
+        for (std::size_t word = 0; word < known.size(); ++word) expiring[word] &= known[word];
+        voxels += count_of(expiring);
+    });
+    return voxels;
 }
 
 void BrickEditor::expire_log_odds(MortonCode brick, const BrickMask& voxels) {

@@ -99,6 +99,11 @@ class BrickEditor {
     MapCounters& counters_;
 };
 
+/// Number of known voxels that expire if `passed_s` more seconds pass, for an AgeModel::unknown_after_s above
+/// 0. Memory is not needed. About 0.1 us for each brick with time stamps.
+[[nodiscard]] std::size_t count_due(const MapLayers& layers, std::uint32_t unknown_after_s,
+                                    std::int64_t passed_s);
+
 /// The smallest memory limit that these layers comply with, counts with their share of it. Time stamps cover
 /// the same space and use the room that is left.
 [[nodiscard]] std::size_t bytes_needed(const MapLayers& layers) noexcept;

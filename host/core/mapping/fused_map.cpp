@@ -129,6 +129,13 @@ bool FusedMap::is_stale(VoxelKey key) const noexcept {
            layers_.ages.find(brick_of(key)).at(cell_of(key)) < stale_stamp();
 }
 
+std::size_t FusedMap::known_voxels_at(HostTime now) const {
+    const std::int64_t passed_s = layers_.ages.seconds_to(now);
+    const std::uint32_t unknown_after_s = config_.age.unknown_after_s;
+    if (passed_s == 0 || unknown_after_s == 0) return known_voxels();
+    return known_voxels() - count_due(layers_, unknown_after_s, passed_s);
+}
+
 std::size_t FusedMap::memory_bytes() const noexcept {
     return bytes_at_most(layers_.log_odds);
 }

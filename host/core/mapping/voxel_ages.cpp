@@ -76,6 +76,11 @@ bool VoxelAges::advance_time(HostTime now) {
     return true;
 }
 
+std::int64_t VoxelAges::seconds_to(HostTime now) const noexcept {
+    if (!clock_.has_begun || clock_.waits) return 0;
+    return std::max(whole_seconds(now) - clock_.zero_s - clock_.now, std::int64_t{0});
+}
+
 void VoxelAges::advance(std::int64_t passed_s) {
     const std::int64_t shown = clock_.now + passed_s;
     const bool is_shown = shown <= kNowMax;

@@ -60,6 +60,8 @@ class VoxelAges {
     /// scale has changed, and ages continue from their values. True if the second changed. Throws
     /// std::bad_alloc at most once in kAgeMax_s seconds; the clock then keeps its value.
     bool advance_time(HostTime now);
+    /// The whole seconds by which that would advance the clock; 0 if it has not begun or waits.
+    [[nodiscard]] std::int64_t seconds_to(HostTime now) const noexcept;
     static constexpr std::int64_t kBackMax_s = 10;
     /// Time jump: the next time is ahead of the earlier scale by `by`, and no time has passed. Rounded to
     /// whole seconds.

@@ -356,6 +356,23 @@ TEST_F(StatusTest, has_how_much_of_the_map_has_no_time) {
     EXPECT_EQ(status()["map"]["undated"], undated);
 }
 
+TEST_F(StatusTest, counts_no_voxel_that_has_expired_while_nothing_is_measured) {
+    FusedMap map(MapConfig{.age = {.stale_after_s = 2, .unknown_after_s = 8}});
+    for (std::uint16_t second = 0; second < 4; ++second) {
+        map.advance_time(host_at(second));
+        feed(map, std::vector<VoxelUpdate>{{{second, 0, 0}, 1.0F}});
+    }
+    pipeline_->begin_with(std::move(map));
+    for (const double now_s : {0.0, 3.5, 7.9, 8.0, 9.5, 10.0, 11.0, 40'000.0}) {
+        view_.bus_reckoned = host_at(now_s);
+        FusedMap of_query = pipeline_->map().copy();
+        of_query.advance_time(view_.bus_reckoned);
+        EXPECT_EQ(status()["map"]["known_voxels"], of_query.known_voxels()) << now_s;
+    }
+    EXPECT_EQ(status()["map"]["known_voxels"], 0);
+    EXPECT_EQ(pipeline_->map().known_voxels(), 4U);
+}
+
 TEST_F(StatusTest, knows_when_the_buss_time_leapt_ahead) {
     play(daemon_scene(), 6.0);
     EXPECT_FALSE(view_.used.time_ahead);
