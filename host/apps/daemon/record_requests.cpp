@@ -160,7 +160,7 @@ nlohmann::ordered_json RecordRequests::to_json(HostTime now) const {
 }
 
 void RecordRequests::finish(Nanoseconds patience) {
-    if (!recorder_ || recorder_->has_ended()) return;
+    if (!recorder_) return;
     if (!recorder_->wait(patience)) spdlog::error("the recording is incomplete: the disk took too long");
     recorder_->attend(monotonic_now());
 }

@@ -2,12 +2,17 @@
 #include "host/apps/daemon/record_requests.hpp"
 
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include <cerrno>
 #include <functional>
+#include <memory>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <system_error>
+#include <thread>
 
 #include "tests/support/scratch_folder.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
@@ -121,6 +126,19 @@ TEST_F(RecordRequestsTest, ends_as_failed_without_memory_for_the_last_map) {
               std::string::npos)
         << recording;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "recording" / "meta.yaml")) << "nothing vouches for it";
+}
+
+TEST_F(RecordRequestsTest, logs_at_the_daemons_end_how_a_recording_ended_that_was_fast) {
+    EXPECT_TRUE(ask("record start 0 " + (folder_ / "recording").string())["ok"].get<bool>());
+    std::ostringstream lines;
+    const auto before = spdlog::default_logger();
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("", std::make_shared<spdlog::sinks::ostream_sink_mt>(lines)));
+    requests_.stop(HostTime{2'000'000'000}, "the daemon ended");
+    while (!requests_.recorder()->has_ended()) std::this_thread::yield();
+    requests_.finish(std::chrono::seconds(20));
+    spdlog::set_default_logger(before);
+    EXPECT_NE(lines.str().find("the daemon ended"), std::string::npos) << lines.str();
 }
 
 TEST_F(RecordRequestsTest, ends_whole_and_says_why_when_the_buss_time_leaps) {
