@@ -8,15 +8,19 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
 #include "common/time.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
+#include "host/apps/query/query_answer.hpp"
 
 namespace octoskin {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kSignOfLife = R"({"ok":true})";
 
@@ -78,6 +82,34 @@ Result<std::string, std::string> exchange_lines(int descriptor, const std::strin
     return answer;
 }
 
+/// The value of a key; null if there is none.
+const Json& at(const Json& object, const char* key) {
+    static const Json kNothing;
+    const auto found = object.find(key);
+    return object.is_object() && found != object.end() ? *found : kNothing;
+}
+
+bool is_node(const Json& node) {
+    return at(node, "id").is_number_integer() && at(node, "name").is_string() &&
+           at(node, "verdict").is_string();
+}
+
+bool is_joints_socket(const Json& joints) {
+    return joints.is_null() || (at(joints, "above_rate").is_boolean() && at(joints, "rate_hz").is_number());
+}
+
+bool is_status(const Json& status) {
+    const Json& can = at(status, "can");
+    const Json& nodes = at(status, "nodes");
+    const Json& problems = at(status, "problems");
+    return at(status, "octoskin").is_string() && at(status, "rig").is_string() &&
+           at(status, "uptime_s").is_number() && at(can, "interface").is_string() &&
+           at(can, "state").is_string() && nodes.is_array() && std::ranges::all_of(nodes, is_node) &&
+           at(at(status, "map"), "known_voxels").is_number_unsigned() &&
+           is_joints_socket(at(status, "joints_socket")) && problems.is_array() &&
+           std::ranges::all_of(problems, [](const Json& problem) { return problem.is_string(); });
+}
+
 }  // namespace
 
 Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request,
@@ -93,6 +125,15 @@ Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, co
     if (!answer) return fail(ExitCode::io_failed, socket.string() + ": " + answer.error());
     if (is_nested_too_deep(*answer)) return unexpected(foreign_answer(socket));
     return std::move(answer).value();
+}
+
+Result<Json, AppError> ask_status(const std::filesystem::path& socket) {
+    const auto answer = ask_daemon(socket, "status");
+    if (!answer) return unexpected(answer.error());
+    Json status = Json::parse(*answer, nullptr, false);
+    if (const auto refused = refusal_of(status)) return unexpected(*refused);
+    if (!is_status(status)) return unexpected(foreign_answer(socket));
+    return status;
 }
 
 AppError foreign_answer(const std::filesystem::path& socket) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "common/result.hpp"
@@ -19,6 +20,8 @@ inline constexpr std::chrono::milliseconds kLetInMax{5'000};
 [[nodiscard]] Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket,
                                                        const std::string& request,
                                                        std::chrono::milliseconds patience = kLetInMax);
+/// The daemon's status: an answer with what `octoskin status` and `octoskin monitor` show first.
+[[nodiscard]] Result<nlohmann::ordered_json, AppError> ask_status(const std::filesystem::path& socket);
 /// The error for an answer that no daemon of this version gives.
 [[nodiscard]] AppError foreign_answer(const std::filesystem::path& socket);
 

@@ -21,7 +21,6 @@
 #include "host/apps/monitor/screen.hpp"
 #include "host/apps/monitor/scroll.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/query/query_answer.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -115,22 +114,13 @@ class Terminal {
     std::optional<termios> before_;
 };
 
-Result<Json, AppError> ask(const MonitorOptions& options) {
-    const auto answer = ask_daemon(options.socket, "status");
-    if (!answer) return unexpected(answer.error());
-    Json status = Json::parse(*answer, nullptr, false);
-    if (const auto refused = refusal_of(status)) return unexpected(*refused);
-    if (status.is_object()) return status;
-    return unexpected(foreign_answer(options.socket));
-}
-
 /// Two requests a second apart, so that rates are known.
 void show_once(const MonitorOptions& options) {
-    const auto before = ask(options);
+    const auto before = ask_status(options.socket);
     if (!before) throw CommandFailure(before.error());
     const auto begun = Clock::now();
     std::this_thread::sleep_for(1s);
-    const auto now = ask(options);
+    const auto now = ask_status(options.socket);
     if (!now) throw CommandFailure(now.error());
     constexpr ScreenSize kWhole{1'000, 100'000};
     print_text(to_terminal(screen_of(*before, *now, Clock::now() - begun), kWhole, false));
@@ -143,7 +133,7 @@ void watch(const MonitorOptions& options) {
     Json before;
     auto before_at = Clock::now();
     while (is_ended == 0) {  // until Ctrl-C or q
-        const auto now = ask(options);
+        const auto now = ask_status(options.socket);
         const auto now_at = Clock::now();
         if (now) {
             terminal.show(screen_of(before, *now, before.is_null() ? 0s : now_at - before_at));
@@ -167,7 +157,7 @@ void add_monitor_command(CLI::App& app) {
     command->add_option("--socket", options->socket, "Control socket of the daemon")->capture_default_str();
     command->footer(
         "Keys: arrows or j and k, Page keys or space and b, Home and End scroll; q or Ctrl-C ends.\n"
-        "Exit codes: 0; 64 command line; 69 no daemon (--once).");
+        "Exit codes: 0; 64 command line; 65 another program answers, 69 no daemon (--once).");
     command->callback([options] { options->is_once ? show_once(*options) : watch(*options); });
 }
 

@@ -258,11 +258,8 @@ ExitCode answered(const QueryOptions& options) {
     try {
         if (!answer.at("ok").get<bool>()) throw refusal(options, question, answer);
         const ExitCode outcome = outcome_of(answer);
-        if (options.is_json) {
-            print_json(answer.dump(2) + "\n");
-        } else {
-            print_text(query_text(answer) + hint(options, answer));
-        }
+        const std::string text = query_text(answer) + hint(options, answer);  // refuses a foreign answer
+        options.is_json ? print_json(answer.dump(2) + "\n") : print_text(text);
         return outcome;
     } catch (const Json::exception&) {
         throw CommandFailure(foreign_answer(options.socket));

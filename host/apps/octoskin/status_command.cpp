@@ -9,7 +9,6 @@
 #include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/query/query_answer.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -38,17 +37,9 @@ void print_for_people(const nlohmann::ordered_json& status) {
 }
 
 void show_status(const StatusOptions& options) {
-    const auto answer = ask_daemon(options.socket, "status");
-    if (!answer) throw CommandFailure(answer.error());
-    const auto status = nlohmann::ordered_json::parse(*answer, nullptr, false);
-    if (!status.is_object()) throw CommandFailure(foreign_answer(options.socket));
-    if (const auto refused = refusal_of(status)) throw CommandFailure(*refused);
-    if (options.is_json) return print_json(status.dump(2) + "\n");
-    try {
-        print_for_people(status);
-    } catch (const nlohmann::ordered_json::exception&) {
-        throw CommandFailure(foreign_answer(options.socket));
-    }
+    const auto status = ask_status(options.socket);
+    if (!status) throw CommandFailure(status.error());
+    options.is_json ? print_json(status->dump(2) + "\n") : print_for_people(*status);
 }
 
 }  // namespace

@@ -90,6 +90,7 @@ std::string leg_text(const Json& answer, std::size_t index) {
 
 std::string postures_text(const Json& answer) {
     const Json& legs = answer.at("legs");
+    (void)legs.at(0);  // throws: an answer is about at least one posture
     std::string text;
     for (std::size_t i = 0; i < legs.size(); ++i) text += leg_text(answer, i);
     if (legs.size() > 1)

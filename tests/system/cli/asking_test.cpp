@@ -63,6 +63,30 @@ TEST_F(AskingTest, an_answer_of_something_else_is_told) {
     }
 }
 
+TEST_F(AskingTest, an_answer_without_what_this_version_gives_is_refused_in_every_form) {
+    const std::vector<std::string> commands{"status", "status --json", "monitor --once"};
+    for (const char* answer :
+         {"{}", R"({"octoskin": "octoskin 9.0", "rig": "a", "uptime_s": 1, "nodes": [], "problems": []})"}) {
+        for (const Said& each : ask(answer, commands, octoskin)) {
+            EXPECT_EQ(each.exit_code, 65) << each.output;
+            EXPECT_THAT(each.output, HasSubstr("control: not the answer of a daemon of this version"));
+        }
+    }
+}
+
+TEST_F(AskingTest, nothing_is_free_by_an_answer_without_a_posture) {
+    for (const char* answer :
+         {R"({"ok": true, "state": "free"})",
+          R"({"ok": true, "state": "free", "legs": [], "links_unknown": [], "links_without_body": [],)"
+          R"( "links_with_borrowed_body": {}})",
+          R"({"ok": true, "pockets": []})"}) {
+        for (const Said& each : ask(answer, {"query", "query --json"}, octoskin)) {
+            EXPECT_EQ(each.exit_code, 65) << each.output;
+            EXPECT_THAT(each.output, HasSubstr("control: not the answer of a daemon of this version"));
+        }
+    }
+}
+
 TEST_F(AskingTest, what_a_daemon_refuses_is_told_as_it_says) {
     const auto said = ask(R"({"ok": false, "error": "too many clients", "code": 69})",
                           {"status", "monitor --once", "record --stop", "query"}, octoskin);
