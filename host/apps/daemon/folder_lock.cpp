@@ -53,9 +53,10 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
         if (!opened) return unexpected(cannot_save(named / kFile, opened.error()));
         OpenFile& file = opened->file;
         if (::flock(file.descriptor(), LOCK_EX | LOCK_NB) != 0) {
-            return cannot_create(named, "another octoskin" + holder_of(file) +
-                                            " writes its maps there; stop it or wait until it ends, or name "
-                                            "another folder");
+            return cannot_create(named,
+                                 "another octoskin" + holder_of(file) +
+                                     " writes maps there (octoskin run, or octoskin replay at its end); "
+                                     "stop it or wait until it ends, or name another folder");
         }
         struct stat status {};
         if (::fstat(file.descriptor(), &status) != 0)

@@ -8,11 +8,13 @@
 
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "host/apps/recording/file_lock.hpp"
 #include "host/apps/recording/file_set.hpp"
 #include "host/io/folder/descriptor.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -37,6 +39,19 @@ TEST(FolderLock, is_held_by_one_at_a_time_whose_process_is_named) {
     EXPECT_TRUE(FolderLock::take(scratch / "another"));
     first.reset();
     EXPECT_TRUE(FolderLock::take(folder));
+}
+
+/// While its files move, the file names the process of a daemon that has ended.
+TEST(FolderLock, does_not_name_a_process_that_has_ended) {
+    const testing_support::ScratchFolder scratch;
+    std::ofstream(scratch / FolderLock::kFile) << 4'194'305;  // above the largest process id
+    const auto moving =
+        FileLock::take(FilePlace(scratch.path() / FolderLock::kFile), FileLock::Kind::exclusive);
+    ASSERT_TRUE(moving);
+    const auto taken = FolderLock::take(scratch.path());
+    ASSERT_FALSE(taken);
+    EXPECT_EQ(taken.error().message.find("(process"), std::string::npos) << taken.error().message;
+    EXPECT_NE(taken.error().message.find("octoskin replay"), std::string::npos) << taken.error().message;
 }
 
 /// A replay that began before the daemon does not replace the daemon's maps at its end.
