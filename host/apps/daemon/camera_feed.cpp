@@ -10,6 +10,7 @@
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
+#include "host/apps/recording/shortage.hpp"
 #include "host/io/openni2/frame_pipe.hpp"
 #include "host/io/openni2/helper_process.hpp"
 
@@ -101,7 +102,8 @@ void CameraFeed::work() {
         try {
             watch_camera();
         } catch (const std::exception& thrown) {  // no memory for a frame, or for the helper
-            note_closed(thrown.what());
+            const auto shortage = shortage_in(thrown);
+            note_closed(shortage ? shortage->message : thrown.what());
         }
         wait_before_retry();
     }

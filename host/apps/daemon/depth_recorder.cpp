@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/apps/recording/shortage.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 
 namespace octoskin {
@@ -31,7 +32,8 @@ class DepthRecorder::Work {
         try {
             error = record();
         } catch (const std::exception& thrown) {  // no memory, no thread
-            error = oni_.shown().string() + ": " + thrown.what();
+            const auto shortage = shortage_in(thrown);
+            error = oni_.shown().string() + ": " + (shortage ? shortage->message : thrown.what());
         }
         const std::lock_guard lock(mutex_);
         error_ = std::move(error);

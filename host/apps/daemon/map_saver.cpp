@@ -12,6 +12,7 @@
 #include "host/apps/daemon/map_files.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/recording/permission.hpp"
+#include "host/apps/recording/shortage.hpp"
 #include "host/apps/recording/source_file.hpp"
 #include "host/core/mapping/brick_editor.hpp"
 #include "host/io/mapfile/map_file.hpp"
@@ -73,7 +74,9 @@ Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& f
 /// There may be no memory for the message, either.
 std::string why_not(const std::optional<NamedFolder>& folder, const std::exception& thrown) {
     try {
-        return folder ? fmt::format("{}: {}", folder->shown().string(), thrown.what()) : thrown.what();
+        const auto shortage = shortage_in(thrown);
+        const std::string why = shortage ? shortage->message : thrown.what();
+        return folder ? fmt::format("{}: {}", folder->shown().string(), why) : why;
     } catch (const std::exception&) {
         return "no memory";  // not even enough for a longer message
     }

@@ -16,6 +16,7 @@
 #include "host/apps/daemon/growing_file.hpp"
 #include "host/apps/daemon/text_queue.hpp"
 #include "host/apps/recording/file_lock.hpp"
+#include "host/apps/recording/shortage.hpp"
 #include "host/io/snapshot/snapshot_file.hpp"
 
 namespace octoskin {
@@ -197,7 +198,8 @@ void RecordingWriter::Work::run() {
     try {
         outcome = record();
     } catch (const std::exception& thrown) {  // no memory for the text of a map
-        outcome = unexpected(folder().string() + ": " + thrown.what());
+        const auto shortage = shortage_in(thrown);
+        outcome = unexpected(folder().string() + ": " + (shortage ? shortage->message : thrown.what()));
     }
     {
         const std::lock_guard lock(mutex_);
