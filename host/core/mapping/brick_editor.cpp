@@ -166,9 +166,9 @@ BrickMask BrickEditor::measured_in(MortonCode brick) const noexcept {
 
 void BrickEditor::expire() {
     VoxelAges& ages = layers_.ages;
-    const auto [first, limit] = due_of(ages, config_.age.unknown_after_s);
-    ages.look_at_due(first, limit, [&](MortonCode brick) {
-        const BrickMask voxels = stamped_from_to(ages.find(brick), first, limit);
+    const Due due = due_of(ages, config_.age.unknown_after_s);
+    ages.look_at_due(due.first, due.limit, [&](MortonCode brick) {
+        const BrickMask voxels = stamped_from_to(ages.find(brick), due.first, due.limit);
         if (count_of(voxels) == 0) return;
         expire_log_odds(brick, voxels);
         if (has_counts(brick)) layers_.counts.expire(brick, voxels);
