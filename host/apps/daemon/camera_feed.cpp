@@ -102,8 +102,7 @@ void CameraFeed::work() {
         try {
             watch_camera();
         } catch (const std::exception& thrown) {  // no memory for a frame, or for the helper
-            const auto shortage = shortage_in(thrown);
-            note_closed(shortage ? shortage->message : thrown.what());
+            note_closed(reason_of(thrown));
         }
         wait_before_retry();
     }

@@ -32,8 +32,7 @@ class DepthRecorder::Work {
         try {
             error = record();
         } catch (const std::exception& thrown) {  // no memory, no thread
-            const auto shortage = shortage_in(thrown);
-            error = oni_.shown().string() + ": " + (shortage ? shortage->message : thrown.what());
+            error = oni_.shown().string() + ": " + reason_of(thrown);
         }
         const std::lock_guard lock(mutex_);
         error_ = std::move(error);

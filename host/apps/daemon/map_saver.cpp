@@ -74,8 +74,7 @@ Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& f
 /// There may be no memory for the message, either.
 std::string why_not(const std::optional<NamedFolder>& folder, const std::exception& thrown) {
     try {
-        const auto shortage = shortage_in(thrown);
-        const std::string why = shortage ? shortage->message : thrown.what();
+        const std::string why = reason_of(thrown);
         return folder ? fmt::format("{}: {}", folder->shown().string(), why) : why;
     } catch (const std::exception&) {
         return "no memory";  // not even enough for a longer message

@@ -198,8 +198,7 @@ void RecordingWriter::Work::run() {
     try {
         outcome = record();
     } catch (const std::exception& thrown) {  // no memory for the text of a map
-        const auto shortage = shortage_in(thrown);
-        outcome = unexpected(folder().string() + ": " + (shortage ? shortage->message : thrown.what()));
+        outcome = unexpected(folder().string() + ": " + reason_of(thrown));
     }
     {
         const std::lock_guard lock(mutex_);

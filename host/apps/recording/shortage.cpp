@@ -80,4 +80,9 @@ std::optional<AppError> shortage_in(const std::exception& thrown) {
     return AppError{ExitCode::no_resources, what + " (" + failed->what() + ")"};
 }
 
+std::string reason_of(const std::exception& thrown) {
+    const auto shortage = shortage_in(thrown);
+    return shortage ? shortage->message : thrown.what();
+}
+
 }  // namespace octoskin

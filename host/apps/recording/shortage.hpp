@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <optional>
+#include <string>
 
 #include "host/apps/recording/app_error.hpp"
 
@@ -12,5 +13,8 @@ namespace octoskin {
 /// The missing resource with its limit and remedy (`no_resources`); empty if the exception has another cause.
 /// Resources: memory, descriptors, threads, the size of a file.
 [[nodiscard]] std::optional<AppError> shortage_in(const std::exception& thrown);
+
+/// The message of that shortage, or else the exception's own text.
+[[nodiscard]] std::string reason_of(const std::exception& thrown);
 
 }  // namespace octoskin
