@@ -164,6 +164,7 @@ extern "C" {
 }
 
 // Called by the C and C++ libraries when the program must not continue.
+// NOLINTNEXTLINE(bugprone-reserved-identifier): newlib's name.
 [[noreturn]] void __assert_func(const char*, int, const char*, const char*) {
     stop(__builtin_return_address(0));
 }
