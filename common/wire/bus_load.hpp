@@ -30,7 +30,7 @@ struct FrameBits {
 [[nodiscard]] FrameBits worst_case_bits_classical(std::uint8_t payload_len) noexcept;
 
 /// CAN FD frame with an 11-bit identifier, bit rate switch and `payload_len` a CAN FD length. Source: the
-/// frame format of ISO 11898-1:2015; the derivation is in the .cpp and in docs/protocol.md.
+/// frame format of ISO 11898-1:2015; the derivation is in the .cpp.
 [[nodiscard]] FrameBits worst_case_bits_fd(std::uint8_t payload_len) noexcept;
 
 /// The longest time in seconds for which this frame occupies a bus of these rates. A CAN FD frame without bit

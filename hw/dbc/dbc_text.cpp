@@ -59,31 +59,6 @@ Scale scale_of(Unit unit) {
     return {};
 }
 
-bool is_sent_by(NodeKind kind, FrameType type) {
-    switch (type) {
-        case FrameType::joint_state:
-            return kind == NodeKind::joint_source;
-        case FrameType::range:
-        case FrameType::range_fd:
-        case FrameType::range_aux:
-        case FrameType::sensor_health:
-        case FrameType::reflex:
-        case FrameType::calibration:
-        case FrameType::black_box:
-            return kind == NodeKind::sensor_board;
-        case FrameType::heartbeat:
-        case FrameType::sync_report:
-        case FrameType::node_info:
-            return true;
-        case FrameType::sync:
-        case FrameType::follow_up:
-        case FrameType::command:
-        case FrameType::mark:
-            return false;
-    }
-    return false;
-}
-
 std::vector<BusMessage> messages_of(const FrameSpec& spec, const std::vector<Node>& nodes) {
     std::vector<BusMessage> messages;
     const auto add = [&spec, &messages](const std::string& suffix, wire::NodeId id,
@@ -180,6 +155,16 @@ std::string ranges_text(const BusMessage& message) {
     return text;
 }
 
+std::string comments_text(const BusMessage& message) {
+    std::string text;
+    for (const Signal& signal : signals_of(message.spec->type)) {
+        if (!signal.meaning.empty()) {
+            text += fmt::format("CM_ SG_ {} {} \"{}\";\n", message.can_id, signal.name, signal.meaning);
+        }
+    }
+    return text;
+}
+
 std::string value_tables_text(const BusMessage& message) {
     std::string text;
     for (const Signal& signal : signals_of(message.spec->type)) {
@@ -227,6 +212,31 @@ std::string format_text(const BusMessage& message) {
 
 }  // namespace
 
+bool is_sent_by(NodeKind kind, wire::FrameType type) noexcept {
+    switch (type) {
+        case FrameType::joint_state:
+            return kind == NodeKind::joint_source;
+        case FrameType::range:
+        case FrameType::range_fd:
+        case FrameType::range_aux:
+        case FrameType::sensor_health:
+        case FrameType::reflex:
+        case FrameType::calibration:
+        case FrameType::black_box:
+            return kind == NodeKind::sensor_board;
+        case FrameType::heartbeat:
+        case FrameType::sync_report:
+        case FrameType::node_info:
+            return true;
+        case FrameType::sync:
+        case FrameType::follow_up:
+        case FrameType::command:
+        case FrameType::mark:
+            return false;
+    }
+    return false;
+}
+
 std::vector<Node> shipped_nodes() {
     return {{1, NodeKind::sensor_board, "SensorBoard1"},
             {2, NodeKind::sensor_board, "SensorBoard2"},
@@ -262,6 +272,9 @@ std::string dbc_text(const std::vector<Node>& nodes) {
         text += message_text(message);
     }
     text += kComment;
+    for (const BusMessage& message : messages) {
+        text += comments_text(message);
+    }
     text += kAttributes;
     for (const BusMessage& message : messages) {
         text += format_text(message);

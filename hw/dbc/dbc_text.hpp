@@ -7,11 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "common/wire/frame_type.hpp"
 #include "common/wire/messages.hpp"
 
 namespace octoskin::dbc {
 
 enum class NodeKind { sensor_board, joint_source };
+
+/// False for what the host sends.
+[[nodiscard]] bool is_sent_by(NodeKind kind, wire::FrameType type) noexcept;
 
 struct Node {
     wire::NodeId node_id = 0;  ///< 1..62

@@ -11,6 +11,7 @@
 
 #include "common/range_status.hpp"
 #include "common/wire/names.hpp"
+#include "hw/dbc/field_meanings.hpp"
 
 namespace octoskin::dbc {
 namespace {
@@ -66,6 +67,8 @@ class SignalLister {
     Signal& add(const Field& field, Names names = {}) {
         const std::string name = field.index ? fmt::format("{}_{}", field.name, *field.index) : field.name;
         signals_.push_back({.name = name,
+                            .field = field.name,
+                            .index = field.index,
                             .start = position_,
                             .bits = field.bits,
                             .unit = field.unit,
@@ -242,6 +245,9 @@ std::vector<Signal> signals_of(FrameType type) {
         add_range_fd_checksums(signals);
     } else {
         signals.push_back(checksum_signal(spec->checksum, spec->payload_len, "crc"));
+    }
+    for (Signal& signal : signals) {
+        signal.meaning = meaning_of(type, signal.field);
     }
     return signals;
 }

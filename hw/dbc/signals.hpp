@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,7 +15,9 @@
 namespace octoskin::dbc {
 
 struct Signal {
-    std::string name;
+    std::string name;        ///< with the index of a repeated field: "range_2"
+    std::string field = {};  ///< without it: "range"; empty for version and checksum, which all frames have
+    std::optional<unsigned> index = std::nullopt;
     /// Linear bit number of the lowest bit. For a high-byte-first signal: of the lowest bit of its first
     /// byte.
     unsigned start = 0;
@@ -33,6 +36,7 @@ struct Signal {
     std::optional<SelectorRange> only_if =
         std::nullopt;  ///< present only while the selector is in this range
     std::vector<std::pair<unsigned, std::string>> values = {};  ///< raw value -> name
+    std::string_view meaning = {};                              ///< of the field: field_meanings.hpp
 };
 
 /// All signals of a frame type in wire order: version first, checksum last. A field that several layouts of

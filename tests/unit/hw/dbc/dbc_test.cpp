@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/wire/codec.hpp"
+#include "hw/dbc/field_meanings.hpp"
 #include "hw/dbc/signals.hpp"
 #include "tests/support/wire/message_cases.hpp"
 
@@ -116,6 +117,57 @@ TEST(Dbc, units_and_factors_are_those_of_the_protocol) {
         EXPECT_THAT(text, HasSubstr(line));
     }
     EXPECT_THAT(text, Not(HasSubstr("BA_ \"VFrameFormat\" BO_ 513")));
+}
+
+TEST(Dbc, each_field_has_one_meaning_and_each_meaning_a_field) {
+    std::multiset<std::string> meanings;
+    for (const FieldMeaning& meaning : field_meanings()) {
+        meanings.insert(std::string(frame_spec(meaning.type)->name) + " " + std::string(meaning.field));
+    }
+    std::set<std::string> fields;
+    for (const wire::FrameSpec& spec : wire::kFrameSpecs) {
+        for (const Signal& signal : signals_of(spec.type)) {
+            EXPECT_EQ(signal.field.empty(), signal.name == "version" || signal.name.starts_with("crc"))
+                << spec.name << " " << signal.name;
+            EXPECT_EQ(signal.field.empty(), signal.meaning.empty()) << spec.name << " " << signal.name;
+            if (!signal.field.empty()) fields.insert(spec.name + (" " + signal.field));
+        }
+    }
+    EXPECT_EQ(meanings, std::multiset<std::string>(fields.begin(), fields.end()));
+}
+
+TEST(Dbc, each_value_with_a_meaning_is_one_of_its_field) {
+    std::set<std::string> seen;
+    for (const ValueMeaning& meaning : value_meanings()) {
+        const std::string name = std::string(frame_spec(meaning.type)->name) + " " +
+                                 std::string(meaning.field) + " " + std::string(meaning.value);
+        EXPECT_TRUE(seen.insert(name).second) << name;
+        const auto is_of_value = [&meaning](const Signal& signal) {
+            return signal.field == meaning.field &&
+                   std::ranges::any_of(signal.values, [&meaning](const auto& value) {
+                       return value.second == meaning.value;
+                   });
+        };
+        EXPECT_TRUE(std::ranges::any_of(signals_of(meaning.type), is_of_value)) << name;
+        EXPECT_TRUE(meaning.detail.empty() || !detail_field(meaning.type, meaning.field).empty()) << name;
+    }
+}
+
+TEST(Dbc, each_message_has_one_time_of_sending) {
+    std::multiset<std::string> timed;
+    for (const SendingTime& time : sending_times()) timed.insert(frame_spec(time.type)->name);
+    std::multiset<std::string> all;
+    for (const wire::FrameSpec& spec : wire::kFrameSpecs) all.insert(spec.name);
+    EXPECT_EQ(timed, all);
+}
+
+TEST(Dbc, meanings_are_comments_of_the_signals) {
+    const std::string text = dbc_text(shipped_nodes());
+    EXPECT_THAT(text, HasSubstr("CM_ SG_ 513 range \"negative is sent as 0; saturates at 8191\";\n"));
+    EXPECT_THAT(text, HasSubstr("CM_ SG_ 577 sensor_3 \"local index on the node\";\n"));
+    for (const FieldMeaning& meaning : field_meanings()) {
+        EXPECT_THAT(meaning.text, Not(HasSubstr("\""))) << meaning.field;
+    }
 }
 
 TEST(DbcDeathTest, asserts_on_a_type_that_has_no_layout) {
