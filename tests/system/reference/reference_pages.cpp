@@ -11,9 +11,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <functional>
 #include <map>
-#include <regex>
 #include <span>
 #include <sstream>
 #include <string>
@@ -26,6 +24,8 @@
 #include "host/io/mapping/mapping_keys.hpp"
 #include "hw/rigfile/rig_keys.hpp"
 #include "hw/sim/scenario/scenario_keys.hpp"
+#include "tests/system/reference/page_tables.hpp"
+#include "tests/system/reference/protocol_tables.hpp"
 
 namespace octoskin {
 namespace {
@@ -33,18 +33,6 @@ namespace {
 constexpr std::string_view kBegin = "<!-- table: ";
 constexpr std::string_view kBeginEnd = " -->";
 constexpr std::string_view kEnd = "<!-- end of table -->";
-
-/// A cell of a table: identifiers and options as code, no bar and no tag.
-std::string cell(std::string_view text) {
-    static const std::regex code(
-        R"((^|[\s(;:])(--[a-z][a-z-]*|[a-z][a-z0-9]*(?:[._][a-z0-9]+)+|null)(?=$|[\s,;:.)]))");
-    std::string safe;
-    for (const char character : text) {
-        if (character == '|' || character == '<') safe += '\\';
-        safe += character;
-    }
-    return std::regex_replace(safe, code, "$1`$2`");
-}
 
 std::string_view word(Cause cause) {
     switch (cause) {
@@ -58,15 +46,6 @@ std::string_view word(Cause cause) {
             return "mendable";
     }
     return "";
-}
-
-using Tables = std::map<std::string, std::string, std::less<>>;
-
-/// The table with a further row; the first row brings the head.
-void add_row(Tables& tables, const std::string& name, std::string_view head, const std::string& row) {
-    auto [table, is_new] = tables.try_emplace(name);
-    if (is_new) table->second = fmt::format("{}\n", head);
-    table->second += row + '\n';
 }
 
 Tables exit_code_tables() {
@@ -192,6 +171,7 @@ int run(std::string_view mode, const std::string& docs) {
                                      {"status.md", status_tables()},
                                      {"counters.md", counter_tables()},
                                      {"mapping.md", mapping_tables()},
+                                     {"protocol.md", protocol_tables()},
                                      {"rig.md", key_tables(rig::rig_key_tables(), KeyCell::name)},
                                      {"scenario.md", key_tables(sim::scenario_key_tables(), KeyCell::path)}};
     bool is_good = true;
