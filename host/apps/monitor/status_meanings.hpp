@@ -1,4 +1,4 @@
-// The meaning of each key of `octoskin status --json`.
+// The type, the unit and the meaning of each key of `octoskin status --json`.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace octoskin {
 
-/// All keys. The group is the path of the object with the key ("nodes.sensors": each sensor of each node),
+/// All keys. The group is the path of the table with the key ("nodes.sensors": each sensor of each node),
 /// empty at the top level. docs/status.md has the same tables.
 [[nodiscard]] std::span<const Meaning> status_meanings() noexcept;
 

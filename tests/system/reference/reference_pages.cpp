@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <set>
 #include <span>
 #include <sstream>
 #include <string>
@@ -55,15 +56,27 @@ Tables exit_code_tables() {
                 fmt::format("| {} | {} |", meaning.codes, cell(meaning.meaning)));
     return tables;
 }
+
+std::string type_text(ValueType type) {
+    return fmt::format("{}{}", name_of(type.kind), type.may_be_null ? " or null" : "");
+}
 Tables status_tables() {
+    std::set<std::string_view> groups_with_units;
+    for (const Meaning& meaning : status_meanings())
+        if (!meaning.unit.empty()) groups_with_units.insert(meaning.group);
     Tables tables;
     for (const Meaning& meaning : status_meanings()) {
+        const bool has_units = groups_with_units.contains(meaning.group);
         const std::string_view group = meaning.group.empty() ? "top" : meaning.group;
-        add_row(tables, fmt::format("status of {}", group), "| Key | Meaning |\n|---|---|",
-                fmt::format("| `{}` | {} |", meaning.name, cell(meaning.text)));
+        add_row(tables, fmt::format("status of {}", group),
+                has_units ? "| Key | Type | Unit | Meaning |\n|---|---|---|---|"
+                          : "| Key | Type | Meaning |\n|---|---|---|",
+                fmt::format("| `{}` | {} |{} {} |", meaning.name, cell(type_text(meaning.type)),
+                            has_units ? fmt::format(" {} |", meaning.unit) : "", cell(meaning.text)));
     }
     return tables;
 }
+
 Tables counter_tables() {
     Tables tables;
     for (const CounterMeaning& meaning : counter_meanings())

@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "common/wire/codec.hpp"
 #include "common/wire/crc.hpp"
@@ -21,6 +23,7 @@ namespace octoskin::test {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using testing::IsEmpty;
 
 constexpr double kTiny = 1e-9;
 constexpr std::uint8_t kWrappedTarget = 7;  ///< a device status: no range
@@ -442,22 +445,63 @@ TEST_F(StatusTest, has_a_balanced_account_of_every_unit_with_the_reasons_that_oc
     EXPECT_EQ(inputs.size(), 4U);
 }
 
-/// "group name" of each key, as status_meanings() has them; of each unit of the account the same keys.
-void add_keys(const Json& value, const std::string& group, std::set<std::string>& keys) {
+/// The value of each key by "group name", as status_meanings() has them: a list has its items under its own
+/// group, and each unit of the account has the same keys.
+using Values = std::multimap<std::string, Json>;
+void add_values(const Json& value, const std::string& group, Values& values) {
     if (value.is_array()) {
-        for (const Json& item : value) add_keys(item, group, keys);
+        for (const Json& item : value) add_values(item, group, values);
         return;
     }
     if (!value.is_object()) return;
     for (const auto& [name, part] : value.items()) {
-        keys.insert(group + " " + name);
+        values.emplace(group + " " + name, part);
         const std::string path = group.empty() ? name : group + "." + name;
+        const bool has_any_names = path == "inputs.rejected" || path == "links_with_borrowed_body";
         if (path == "inputs") {
-            for (const Json& unit : part) add_keys(unit, path, keys);
-        } else if (path != "inputs.rejected") {
-            add_keys(part, path, keys);
+            for (const Json& unit : part) add_values(unit, path, values);
+        } else if (!has_any_names) {
+            add_values(part, path, values);
         }
     }
+}
+
+bool is_of(const Json& value, ValueType type) {
+    if (value.is_null()) return type.may_be_null;
+    switch (type.kind) {
+        case ValueKind::number:
+            return value.is_number_float();
+        case ValueKind::integer:
+            return value.is_number_integer();
+        case ValueKind::count:
+            return value.is_number_integer() && value >= 0;
+        case ValueKind::flag:
+            return value.is_boolean();
+        case ValueKind::word:
+            return value.is_string() && !value.get<std::string>().empty() &&
+                   value.get<std::string>().find(' ') == std::string::npos;
+        case ValueKind::text:
+            return value.is_string();
+        case ValueKind::list:
+            return value.is_array();
+        case ValueKind::table:
+            return value.is_object();
+    }
+    return false;
+}
+
+/// "group name: value" of each value that is not of its declared type.
+std::vector<std::string> values_of_another_type(const Json& status) {
+    Values values;
+    add_values(status, "", values);
+    std::vector<std::string> others;
+    for (const Meaning& meaning : status_meanings()) {
+        const std::string key = std::string(meaning.group) + " " + std::string(meaning.name);
+        const auto [first, last] = values.equal_range(key);
+        for (auto value = first; value != last; ++value)
+            if (!is_of(value->second, meaning.type)) others.push_back(key + ": " + value->second.dump());
+    }
+    return others;
 }
 
 TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
@@ -475,14 +519,37 @@ TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
                              .where = wire::RegisterReport{3, 0x47, 0x0B, 0x0C}.where()},
              kLeft);
     play_on(bus.frames(), 4.65);
+    Values values;
+    add_values(status(), "", values);
     std::set<std::string> reported;
-    add_keys(status(), "", reported);
+    for (const auto& [key, value] : values) reported.insert(key);
     std::set<std::string> known;
     for (const Meaning& meaning : status_meanings()) {
         EXPECT_FALSE(meaning.text.empty()) << meaning.name;
         known.insert(std::string(meaning.group) + " " + std::string(meaning.name));
     }
     EXPECT_EQ(reported, known);
+    EXPECT_THAT(values_of_another_type(status()), IsEmpty());
+}
+
+TEST_F(StatusTest, has_each_value_of_its_type_and_null_only_where_that_is_declared) {
+    EXPECT_THAT(values_of_another_type(status()), IsEmpty());
+    let_camera_contradict();
+    EXPECT_THAT(values_of_another_type(status()), IsEmpty()) << "with the verdict of the camera";
+    view_.camera.reset();
+    view_.reloads.reading_since = view_.now;
+    view_.maps_silent_since = view_.now;
+    scene_.rig.links_with_borrowed_body = {{"bolt", "upper"}};
+    EXPECT_THAT(values_of_another_type(status()), IsEmpty()) << "without a camera";
+    Scene far = daemon_scene();
+    far.rig.nodes[0].node_id = 44;
+    far.rig.camera.reset();
+    play(far, kAllWell);
+    EXPECT_THAT(values_of_another_type(status()), IsEmpty()) << "of a node that nobody has heard";
+    Scene silent = daemon_scene();
+    silent.bus = ScriptedBus{};
+    play(silent, kAllWell);
+    EXPECT_THAT(values_of_another_type(status()), IsEmpty()) << "without the bus time";
 }
 
 TEST_F(StatusTest, has_no_latency_where_no_reading_came_over_the_bus) {
