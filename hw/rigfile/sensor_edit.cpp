@@ -6,20 +6,32 @@
 #include <vector>
 
 #include "host/io/folder/confined.hpp"
+#include "hw/rigfile/rig_keys.hpp"
 
 namespace octoskin::rig {
 namespace {
 
-bool is_named(const YAML::Node& table, const std::string& name) {
-    return table.IsMap() && table["name"] && table["name"].IsScalar() && table["name"].Scalar() == name;
+/// The value of a declared key.
+YAML::Node value_of(const YAML::Node& table, const DeclaredKey auto& key) {
+    return table[std::string(name_of(key))];
+}
+
+bool is_named(const YAML::Node& table, const TextKey& key, const std::string& name) {
+    if (!table.IsMap()) return false;
+    const YAML::Node found = value_of(table, key);
+    return found && found.IsScalar() && found.Scalar() == name;
 }
 
 std::optional<YAML::Node> find_sensor(const YAML::Node& top, const SensorEdit& edit) {
-    if (!top.IsMap() || !top["nodes"] || !top["nodes"].IsSequence()) return std::nullopt;
-    for (const YAML::Node& node : top["nodes"]) {
-        if (!is_named(node, edit.node) || !node["sensors"] || !node["sensors"].IsSequence()) continue;
-        for (const YAML::Node& sensor : node["sensors"]) {
-            if (is_named(sensor, edit.sensor)) return sensor;
+    if (!top.IsMap()) return std::nullopt;
+    const YAML::Node nodes = value_of(top, keys::kNodes);
+    if (!nodes || !nodes.IsSequence()) return std::nullopt;
+    for (const YAML::Node& node : nodes) {
+        if (!is_named(node, keys::node::kName, edit.node)) continue;
+        const YAML::Node sensors = value_of(node, keys::node::kSensors);
+        if (!sensors || !sensors.IsSequence()) continue;
+        for (const YAML::Node& sensor : sensors) {
+            if (is_named(sensor, keys::sensor::kName, edit.sensor)) return sensor;
         }
     }
     return std::nullopt;
@@ -50,7 +62,7 @@ std::optional<std::string> with_value(const std::string& text, const YAML::Node&
         return text.substr(0, place->begin) + edit.value + text.substr(place->end);
     }
     for (const auto& item : sensor) {
-        if (item.first.Scalar() != "name") continue;
+        if (item.first.Scalar() != name_of(keys::sensor::kName)) continue;
         const auto place = place_of(item.second, text);
         if (!place) return std::nullopt;
         const std::string entry = edit.key + ": " + edit.value;

@@ -23,6 +23,7 @@
 #include "host/apps/monitor/status_meanings.hpp"
 #include "host/core/counters/counter_meanings.hpp"
 #include "host/io/mapping/mapping_keys.hpp"
+#include "hw/rigfile/hardware_keys.hpp"
 #include "hw/rigfile/rig_keys.hpp"
 #include "hw/sim/scenario/scenario_keys.hpp"
 #include "tests/system/reference/page_tables.hpp"
@@ -135,6 +136,13 @@ Tables key_tables(std::span<const rig::KeyTable> declared, KeyCell cell_of_key) 
     return tables;
 }
 
+/// Of the rig file and of the hardware file of a board.
+Tables rig_tables() {
+    Tables tables = key_tables(rig::rig_key_tables(), KeyCell::name);
+    tables.merge(key_tables(rig::hardware_key_tables(), KeyCell::path));
+    return tables;
+}
+
 struct Page {
     std::string file;
     Tables tables;
@@ -185,7 +193,7 @@ int run(std::string_view mode, const std::string& docs) {
                                      {"counters.md", counter_tables()},
                                      {"mapping.md", mapping_tables()},
                                      {"protocol.md", protocol_tables()},
-                                     {"rig.md", key_tables(rig::rig_key_tables(), KeyCell::name)},
+                                     {"rig.md", rig_tables()},
                                      {"scenario.md", key_tables(sim::scenario_key_tables(), KeyCell::path)}};
     bool is_good = true;
     for (const Page& page : pages) {
