@@ -11,10 +11,10 @@ using enum wire::FrameType;
 // Texts that several messages share.
 constexpr std::string_view kSensor = "local index on the node";
 constexpr std::string_view kZone =
-    "index of the region of interest in force when the range began; with an unknown one the reading is not "
+    "index of the region of interest in force when the range began; a reading with an unknown index is not "
     "used";
 constexpr std::string_view kStatus = "the device's own code: bits 4:0 of its register 0x0089";
-constexpr std::string_view kReadings = "counts the readings sent of this sensor, modulo 64";
+constexpr std::string_view kReadings = "counts the readings sent from this sensor, modulo 64";
 constexpr std::string_view kCapture = "middle of the ranging window, on the node's clock";
 constexpr std::string_view kSignal = "signal of the target, the device's 9.7 format";
 constexpr std::string_view kAmbient = "ambient light, the device's 9.7 format";
@@ -103,7 +103,7 @@ constexpr std::array kFieldMeanings = {
     FieldMeaning{node_info, "i2c_errors", "failed transfers since start, also those retried; saturates"},
     FieldMeaning{node_info, "reads_disagreed",
                  "readings since start whose two reads never agreed; saturates"},
-    FieldMeaning{node_info, "sensor_restarts", "initialisations anew since start; saturates"},
+    FieldMeaning{node_info, "sensor_restarts", "repeated initialisations since start; saturates"},
     FieldMeaning{node_info, "tx_dropped",
                  "readings since start that a newer one of the sensor displaced, and frames that "
                  "the controller could not send (not acknowledged for 20 ms, or pending at bus-off), counted "
@@ -113,9 +113,9 @@ constexpr std::array kFieldMeanings = {
     FieldMeaning{node_info, "bus_off_count", "times at bus-off since start; saturates"},
     FieldMeaning{node_info, "rx_rejected", "frames for this node that it refused since start; saturates"},
     FieldMeaning{node_info, "fault_kind",
-                 "the present faults, and the last one, which is kept over a reset, take turns; without a "
-                 "fault the page is zero"},
-    FieldMeaning{node_info, "fault_count", "unordered resets since the last ordered one; saturates"},
+                 "alternates between the present faults and the last one, which is kept over a reset; "
+                 "without a fault the page is zero"},
+    FieldMeaning{node_info, "fault_count", "unexpected resets since the last intended one; saturates"},
     FieldMeaning{node_info, "fault_where", "depends on fault_kind; else 0"},
     FieldMeaning{node_info, "fault_uptime", "length of the run that the fault ended; saturates"},
 
@@ -123,16 +123,13 @@ constexpr std::array kFieldMeanings = {
     FieldMeaning{calibration, "quantity", "what is calibrated"},
     FieldMeaning{calibration, "outcome", "how far the calibration is, or how it ended"},
     FieldMeaning{calibration, "sequence", "of the command"},
-    FieldMeaning{calibration, "offset",
-                 "of done and quantity 0, else 0; added by the device, its 11.2 format"},
-    FieldMeaning{calibration, "crosstalk",
-                 "of done and quantity 1, else 0; per SPAD, the device's 7.9 format"},
+    FieldMeaning{calibration, "offset", "added by the device, its 11.2 format; 0 unless done and quantity 0"},
+    FieldMeaning{calibration, "crosstalk", "per SPAD, the device's 7.9 format; 0 unless done and quantity 1"},
 
     FieldMeaning{black_box, "bus", "index of the I2C bus on the node"},
     FieldMeaning{black_box, "dump", "counts the node's dumps, modulo 4"},
     FieldMeaning{black_box, "index", "number of this piece"},
-    FieldMeaning{black_box, "bytes",
-                 "five bytes of the dump, number 5 times index and following; zero beyond the end"},
+    FieldMeaning{black_box, "bytes", "five bytes of the dump, from byte 5 times index; zero beyond the end"},
 };
 
 constexpr std::string_view kReset = "has reset the node";
@@ -146,7 +143,7 @@ constexpr std::array kValueMeanings = {
     ValueMeaning{heartbeat, "state", "safe", "repeated resets: heartbeat only"},
     ValueMeaning{heartbeat, "state", "bad_config",
                  "configuration block missing, damaged or for another board"},
-    ValueMeaning{heartbeat, "state", "id_conflict", "heard its own node id"},
+    ValueMeaning{heartbeat, "state", "id_conflict", "received its own node id from another sender"},
     ValueMeaning{heartbeat, "state", "bus_fault", "no I2C bus usable"},
     ValueMeaning{heartbeat, "state", "can_fault",
                  "ranges, but was bus-off less than a second ago, or its controller is error-passive"},
@@ -164,39 +161,41 @@ constexpr std::array kValueMeanings = {
                  "from the highest byte down: sensor, register, value written, value read"},
     ValueMeaning{node_info, "fault_kind", "data_ready_ignored", "the data-ready line has only noise", kBus},
     ValueMeaning{node_info, "fault_kind", "register_alike",
-                 "a register differs alike on three or more sensors",
+                 "a register has the same wrong value on three or more sensors",
                  "as for register_fixed, with the number of sensors in place of the sensor"},
     ValueMeaning{node_info, "fault_kind", "boot_late",
                  "a sensor got its address before it reported the end of its boot", "the sensor"},
-    ValueMeaning{node_info, "fault_kind", "commands_refused",
-                 "from within 100 ms until 2 s after the last COMMAND refused because of refuses_commands",
-                 "code of the first one"},
+    ValueMeaning{
+        node_info, "fault_kind", "commands_refused",
+        "a COMMAND was refused because of refuses_commands; from within 100 ms until 2 s after the last",
+        "code of the first one"},
     ValueMeaning{node_info, "fault_kind", "unknown", kReset},
 
     ValueMeaning{sensor_health, "state", "absent", "never answered"},
     ValueMeaning{sensor_health, "state", "starting", "is brought up"},
     ValueMeaning{sensor_health, "state", "stopped", "by command, or while it is calibrated"},
     ValueMeaning{sensor_health, "state", "degraded", "answers, but the node rejects its readings"},
-    ValueMeaning{sensor_health, "state", "lost", "answered before, does not now"},
+    ValueMeaning{sensor_health, "state", "lost", "answered before, but not now"},
 
     ValueMeaning{sensor_health, "fault", "no_answer", "does not acknowledge its address"},
     ValueMeaning{sensor_health, "fault", "wrong_id", "another model, or a damaged reply"},
-    ValueMeaning{sensor_health, "fault", "boot_timeout", "answers, never reports the end of its boot"},
+    ValueMeaning{sensor_health, "fault", "boot_timeout", "answers, but never reports the end of its boot"},
     ValueMeaning{sensor_health, "fault", "config_mismatch", "a register does not read back as written"},
     ValueMeaning{sensor_health, "fault", "no_data_ready", "no new readings"},
-    ValueMeaning{sensor_health, "fault", "stale_stream", "its results do not come as its period has them"},
+    ValueMeaning{sensor_health, "fault", "stale_stream", "its results do not come at its period"},
     ValueMeaning{sensor_health, "fault", "reads_disagree", "the two reads of a result differ"},
     ValueMeaning{sensor_health, "fault", "implausible_block", "the result is inconsistent"},
     ValueMeaning{sensor_health, "fault", "bus_error", "line held, arbitration lost, or no time"},
     ValueMeaning{sensor_health, "fault", "address_conflict", "two sensors answer at one address"},
     ValueMeaning{sensor_health, "fault", "xshut_stuck", "its XSHUT line does not put it in reset"},
-    ValueMeaning{sensor_health, "fault", "hardware_fail", "device status 1, 2, 3 or 17, range after range"},
+    ValueMeaning{sensor_health, "fault", "hardware_fail",
+                 "device status 1, 2, 3 or 17 in consecutive ranges"},
 
     ValueMeaning{command, "code", "start",
-                 "range again; a sensor stopped for more than a minute is brought up anew first, 0.3 s"},
+                 "range again; a sensor stopped for over a minute is first brought up anew, in 0.3 s"},
     ValueMeaning{command, "code", "stop", "stop ranging"},
     ValueMeaning{command, "code", "set_rate",
-                 "another inter-measurement period, until reset; the heartbeat says so",
+                 "another inter-measurement period, until reset; the heartbeat shows it",
                  "period in ms; 0: as configured"},
     ValueMeaning{command, "code", "reinitialise_sensor", "bring it up anew"},
     ValueMeaning{command, "code", "identify", "blink", "seconds"},
@@ -221,10 +220,10 @@ constexpr std::array kValueMeanings = {
 };
 
 constexpr std::array kSendingTimes = {
-    SendingTime{reflex, "within 5 ms of reading out a too close range; over 50 ms late never"},
+    SendingTime{reflex, "within 5 ms of reading out a range that is too close; not sent if over 50 ms late"},
     SendingTime{sync,
-                "once a second, and once more, at least 250 ms later, after a silence of the bus or "
-                "readings of impossible times"},
+                "once a second; after a silence of the bus or readings with impossible times once more, at "
+                "least 250 ms later"},
     SendingTime{follow_up, "after each SYNC"},
     SendingTime{command, "by octoskin command"},
     SendingTime{mark, "by the recorder or the simulator"},
@@ -240,7 +239,7 @@ constexpr std::array kSendingTimes = {
     SendingTime{node_info,
                 "each page at start, once a second, and on send_info, in any order; not required of "
                 "a joint source"},
-    SendingTime{range_aux, "after every n-th RANGE, as the rig's aux_every has it; never without it"},
+    SendingTime{range_aux, "after every n-th RANGE, n being aux_every of the rig; without aux_every never"},
     SendingTime{calibration,
                 "within 100 ms of the command; when it has ended, at once and after each of the "
                 "next two heartbeats"},

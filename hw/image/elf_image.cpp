@@ -52,11 +52,14 @@ bool is_arm_executable(const Elf32_Ehdr& header) {
 
 }  // namespace
 
-Result<ElfImage, ElfError> ElfImage::load(const std::string& path) {
+Result<ElfImage, Error> ElfImage::load(const std::string& path) {
     if (const auto kind = rig::other_than_a_file(path); !kind.empty())
-        return unexpected(ElfError{fmt::format("{}: is {}, not an ordinary file", path, kind)});
+        return unexpected(Error{.code = ErrorCode::wrong_kind_of_file,
+                                .what = fmt::format("is {}, not an ordinary file", kind),
+                                .file = path});
     std::ifstream stream(path, std::ios::binary);
-    if (!stream) return unexpected(ElfError{fmt::format("{}: cannot be read", path)});
+    if (!stream)
+        return unexpected(Error{.code = ErrorCode::system_error, .what = "cannot be read", .file = path});
     std::vector<std::uint8_t> file;
     std::vector<char> piece(kPieceBytes);
     while (file.size() <= kFileBytesMax) {
@@ -65,26 +68,29 @@ Result<ElfImage, ElfError> ElfImage::load(const std::string& path) {
         file.insert(file.end(), piece.begin(), piece.begin() + stream.gcount());
     }
     if (file.size() > kFileBytesMax) {
-        return unexpected(
-            ElfError{fmt::format("{}: over {} bytes, which no image has", path, kFileBytesMax)});
+        return unexpected(Error{.code = ErrorCode::too_large,
+                                .what = fmt::format("over {} bytes, which no image has", kFileBytesMax),
+                                .file = path});
     }
     auto image = parse(file);
-    if (!image) return unexpected(ElfError{fmt::format("{}: {}", path, image.error().what)});
-    return image;
+    if (image) return image;
+    Error error = image.error();
+    error.file = path;
+    return unexpected(std::move(error));
 }
 
-Result<ElfImage, ElfError> ElfImage::parse(Bytes file) {
+Result<ElfImage, Error> ElfImage::parse(Bytes file) {
     const auto header = at<Elf32_Ehdr>(file, 0);
     if (!header || !is_arm_executable(*header)) {
-        return unexpected(ElfError{"not an executable for 32-bit ARM"});
+        return unexpected(Error{ErrorCode::foreign_format, "not an executable for 32-bit ARM"});
     }
     if (header->e_phnum > kSegmentsMax) {
-        return unexpected(
-            ElfError{fmt::format("it has {} segments, over {}", header->e_phnum, kSegmentsMax)});
+        return unexpected(Error{ErrorCode::limit_exceeded,
+                                fmt::format("it has {} segments, over {}", header->e_phnum, kSegmentsMax)});
     }
     ElfImage image;
     image.entry_ = header->e_entry;
-    if (!image.take_segments(file)) return unexpected(ElfError{"truncated"});
+    if (!image.take_segments(file)) return unexpected(Error{ErrorCode::damaged, "truncated"});
     image.take_sections(file);
     return image;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/errors/error.hpp"
 
 namespace octoskin::image {
 
@@ -17,18 +18,14 @@ struct ElfSegment {
     std::vector<std::uint8_t> bytes;
 };
 
-struct ElfError {
-    std::string what;
-};
-
 class ElfImage {
   public:
     /// Loads a little-endian 32-bit ARM executable; segments without file contents are left out. Errors: the
-    /// file cannot be read, or has over 64 MiB, and those of `parse`. The message contains the path.
-    [[nodiscard]] static Result<ElfImage, ElfError> load(const std::string& path);
+    /// file cannot be read, or has over 64 MiB, and those of `parse`. The error has the path.
+    [[nodiscard]] static Result<ElfImage, Error> load(const std::string& path);
     /// `file`: the whole ELF file. Errors: not such an executable; over 64 segments; a header or a segment
     /// extends past the end.
-    [[nodiscard]] static Result<ElfImage, ElfError> parse(std::span<const std::uint8_t> file);
+    [[nodiscard]] static Result<ElfImage, Error> parse(std::span<const std::uint8_t> file);
 
     [[nodiscard]] const std::vector<ElfSegment>& segments() const noexcept { return segments_; }
     /// Entry address, including the Thumb bit.

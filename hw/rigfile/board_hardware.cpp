@@ -18,7 +18,7 @@ MemoryRange read_range(const Table& memory, const TableKey& key) {
                       .size_bytes = table.integer<std::uint32_t>(hardware_keys::memory_range::kSize)};
     if (range.end() > 0x1'0000'0000)
         table.fail(hardware_keys::memory_range::kSize,
-                   "expected a range below 4 GiB, found one that ends above");
+                   {ErrorCode::out_of_range, "expected a range below 4 GiB", "one that ends above"});
     return range;
 }
 
@@ -32,7 +32,7 @@ void read_memory(const Table& top, BoardHardware& board) {
     const MemoryRange& page = board.configuration_page;
     if (!board.flash.contains(page.address, page.size_bytes) || page.end() != board.flash.end()) {
         memory.fail(hardware_keys::memory::kConfigurationPage,
-                    "expected a range at the end of flash, found another place");
+                    {ErrorCode::bad_value, "expected a range at the end of flash", "another place"});
     }
 }
 
@@ -54,7 +54,8 @@ BoardPin read_pin(const Table& table, const TextKey& key) {
     const std::string digits = has_shape ? name.substr(2) : "";
     const bool is_number = has_shape && digits.find_first_not_of("0123456789") == std::string::npos &&
                            (digits.size() == 1 || digits[0] == '1') && std::stoi(digits) < 16;
-    if (!is_number) table.fail(key, fmt::format("expected a pin from PA0 to PG15, found '{}'", name));
+    if (!is_number)
+        table.fail(key, {ErrorCode::bad_name, "expected a pin from PA0 to PG15", fmt::format("'{}'", name)});
     return {.port = name[1], .number = static_cast<std::uint8_t>(std::stoi(digits))};
 }
 
@@ -83,12 +84,13 @@ BoardSignal read_signal(const Table& table) {
     }
     if (table.find(is_input ? hardware_keys::signal::kDrive : hardware_keys::signal::kPull))
         table.fail(hardware_keys::signal::kFunction,
-                   "expected `pull` with `input`, `drive` with every other function");
+                   {ErrorCode::conflict, "expected `pull` with `input`, `drive` with every other function"});
     if (table.find(hardware_keys::signal::kAlternate))
         signal.alternate = table.integer<std::uint8_t>(hardware_keys::signal::kAlternate);
     if (signal.alternate.has_value() == (is_input || signal.function == "output")) {
         table.fail(hardware_keys::signal::kFunction,
-                   "expected `input` or `output` without `alternate`, or another function with it");
+                   {ErrorCode::conflict,
+                    "expected `input` or `output` without `alternate`, or another function with it"});
     }
     return signal;
 }
@@ -104,15 +106,16 @@ void read_signals(const Table& top, BoardHardware& board) {
         BoardSignal signal = read_signal(table);
         if (const auto found = reserved.find(signal.pin); found != reserved.end()) {
             table.fail(hardware_keys::signal::kPin,
-                       fmt::format("expected a free pin, found {}: {}", text(signal.pin), found->second));
+                       {ErrorCode::conflict, "expected a free pin", text(signal.pin), found->second});
         }
         if (const auto [first, is_new] = taken.try_emplace(signal.pin, signal.signal); !is_new) {
-            table.fail(hardware_keys::signal::kPin, fmt::format("expected a free pin, found {}: {} has it",
-                                                                text(signal.pin), first->second));
+            table.fail(hardware_keys::signal::kPin,
+                       {ErrorCode::duplicate, "expected a free pin", text(signal.pin),
+                        fmt::format("{} has it", first->second)});
         }
         if (!names.insert(signal.signal).second) {
             table.fail(hardware_keys::signal::kSignal,
-                       fmt::format("expected each signal once, found {} again", signal.signal));
+                       {ErrorCode::duplicate, "expected each signal once", signal.signal + " again"});
         }
         board.signals.push_back(std::move(signal));
     }
@@ -124,7 +127,7 @@ std::string text(const BoardPin& pin) {
     return fmt::format("P{}{}", pin.port, pin.number);
 }
 
-Result<BoardHardware, RigError> read_board_hardware(const std::filesystem::path& file) {
+Result<BoardHardware, Error> read_board_hardware(const std::filesystem::path& file) {
     try {
         const Value document = load_document(file);
         const Table top(document, "", hardware_keys::kTop);
@@ -136,8 +139,8 @@ Result<BoardHardware, RigError> read_board_hardware(const std::filesystem::path&
         read_clocks(top, board);
         read_signals(top, board);
         return board;
-    } catch (const Fault& fault) {
-        return unexpected(fault.error);
+    } catch (const Error& error) {
+        return unexpected(error);
     }
 }
 

@@ -60,6 +60,6 @@ struct BoardHardware {
 
 /// Reads `hw/boards/<name>.hardware.yaml`. Refused, with file, line and key: unknown keys, values out of
 /// range, memory that does not nest, a pin or a signal that occurs twice, a signal on a reserved pin.
-[[nodiscard]] Result<BoardHardware, RigError> read_board_hardware(const std::filesystem::path& file);
+[[nodiscard]] Result<BoardHardware, Error> read_board_hardware(const std::filesystem::path& file);
 
 }  // namespace octoskin::rig

@@ -51,10 +51,12 @@ void read_lens(const Table& table, Camera& camera) {
     if (!lost) return;
     table.fail(
         keys::camera::kDistortion,
-        fmt::format("expected coefficients that give each pixel one ray, found {}: pixel ({}, {}) has "
-                    "none before the polynomial turns back, {:.3f} from the axis: calibrate again "
-                    "with views that reach the corners, or without k3",
-                    octoskin::describe(camera.lens), lost->u, lost->v, LensInverse(camera.lens).radius()));
+        {ErrorCode::bad_value,
+         fmt::format("expected coefficients that give each pixel one ray; pixel ({}, {}) has none before the "
+                     "polynomial turns back, {:.3f} from the axis",
+                     lost->u, lost->v, LensInverse(camera.lens).radius()),
+         octoskin::describe(camera.lens),
+         "calibrate again with views that reach the corners, or without k3"});
 }
 
 DataSetKeys read_data_set(const Value& value, const std::string& path) {
@@ -86,7 +88,8 @@ Camera read_camera(const Value& value) {
     camera.depth_min_m = table.number(keys::camera::kDepthMin);
     camera.depth_max_m = table.number(keys::camera::kDepthMax);
     if (!(camera.depth_min_m < camera.depth_max_m))
-        table.fail(keys::camera::kDepthMax, "expected more than depth_min_m");
+        table.fail(keys::camera::kDepthMax, {ErrorCode::out_of_range, "expected more than depth_min_m",
+                                             fmt::format("{}", camera.depth_max_m)});
     if (const Value* data_set = table.find(keys::camera::kDataSet))
         camera.data_set = read_data_set(*data_set, table.path_of(keys::camera::kDataSet));
     camera.T_base_camera = read_pose(table.require(keys::camera::kPose), table.path_of(keys::camera::kPose),

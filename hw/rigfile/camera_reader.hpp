@@ -6,7 +6,7 @@
 
 namespace octoskin::rig {
 
-/// `camera` of a rig. Throws Fault: a key, a type, a range, or a lens for which a pixel has no ray or two
+/// `camera` of a rig. Throws Error: a key, a type, a range, or a lens for which a pixel has no ray or two
 /// rays.
 [[nodiscard]] Camera read_camera(const Value& value);
 

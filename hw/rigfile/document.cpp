@@ -41,27 +41,33 @@ std::string_view xml_kind(std::string_view text) {
     return "XML";
 }
 
-std::string reason_of(const FolderError& error) {
-    if (error.fault == FolderFault::not_a_file)
-        return fmt::format("is {}: give the path of an ordinary YAML file", error.what);
-    if (error.fault == FolderFault::link || error.fault == FolderFault::outside) return error.reason();
-    return "cannot be opened: give the path of an existing, readable YAML file";
+Error error_of(const FolderError& error) {
+    Error refused = to_error(error);
+    if (error.fault == FolderFault::not_a_file) {
+        refused.remedy = "give the path of an ordinary YAML file";
+    } else if (error.fault != FolderFault::link && error.fault != FolderFault::outside) {
+        refused.what = "cannot be opened";
+        refused.remedy = "give the path of an existing, readable YAML file";
+    }
+    return refused;
 }
 
 std::string read_text(const FilePlace& place) {
     const std::filesystem::path file = place.shown();
     const auto opened = place.open();
-    if (!opened) throw Fault{{opened.error().path, 0, "", reason_of(opened.error())}};
+    if (!opened) throw error_of(opened.error());
     auto bytes = opened->read(kFileBytesMax);
-    if (!bytes) throw Fault{{file, 0, "", "cannot be read: " + bytes.error().reason()}};
+    if (!bytes) throw to_error(bytes.error(), "cannot be read: ");
     std::string text = std::move(*bytes);
     if (const std::string_view what = xml_kind(text); !what.empty()) {
-        throw Fault{
-            {file, 0, "", fmt::format("expected YAML, found {}: is the path that of another file?", what)}};
+        throw Error{ErrorCode::foreign_format, "expected YAML", std::string(what),
+                    "is it the path of another file?", file};
     }
     if (text.size() > kFileBytesMax) {
-        throw Fault{
-            {file, 0, "", fmt::format("expected a file of at most {} bytes, found more", kFileBytesMax)}};
+        throw Error{.code = ErrorCode::too_large,
+                    .what = fmt::format("expected a file of at most {} bytes", kFileBytesMax),
+                    .value = "more",
+                    .file = file};
     }
     return text;
 }
@@ -79,11 +85,13 @@ class TreeBuilder final : public YAML::EventHandler {
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
         refuse_anchor(mark, anchor);
-        if (is_key_next()) fail(mark, "expected a key, found nothing");
+        if (is_key_next()) fail(mark, {ErrorCode::bad_syntax, "expected a key", "nothing"});
         add(make(mark, Value::Kind::null));
     }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-        fail(mark, "aliases (*name) are not used here: write the value out, or use sensor_defaults");
+        fail(mark, {.code = ErrorCode::unsupported,
+                    .what = "aliases (*name) are not supported",
+                    .remedy = "write the value out, or use sensor_defaults"});
     }
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   const std::string& text) override {
@@ -107,17 +115,24 @@ class TreeBuilder final : public YAML::EventHandler {
     void OnMapEnd() override { close(); }
 
   private:
-    [[noreturn]] void fail(const YAML::Mark& mark, std::string what) const {
-        throw Fault{{file_->shown(), mark.line + 1, "", std::move(what)}};
+    [[noreturn]] void fail(const YAML::Mark& mark, Error error) const {
+        error.file = file_->shown();
+        error.line = mark.line + 1;
+        throw error;
     }
     void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
-        if (anchor != YAML::NullAnchor) fail(mark, "anchors (&name) are not used here: remove it");
+        if (anchor == YAML::NullAnchor) return;
+        fail(mark, {.code = ErrorCode::unsupported,
+                    .what = "anchors (&name) are not supported",
+                    .remedy = "remove it"});
     }
     void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
         // yaml-cpp's own marks: "?" for a plain value, "!" for a quoted one.
         if (!tag.empty() && tag != "?" && tag != "!") {
-            fail(mark, quotes_ == Quotes::shown ? fmt::format("tags are not used here: remove '{}'", tag)
-                                                : std::string("tags are not used here: remove it"));
+            fail(mark, {.code = ErrorCode::unsupported,
+                        .what = "tags are not supported",
+                        .remedy = quotes_ == Quotes::shown ? fmt::format("remove '{}'", tag)
+                                                           : std::string("remove it")});
         }
     }
     [[nodiscard]] Value make(const YAML::Mark& mark, Value::Kind kind) const {
@@ -134,12 +149,17 @@ class TreeBuilder final : public YAML::EventHandler {
     void start_entry(const YAML::Mark& mark, const std::string& key) {
         const auto [first, is_new] = keys_.back().try_emplace(key, mark.line + 1);
         if (!is_new) {
-            throw Fault{{file_->shown(), mark.line + 1, quotes_ == Quotes::shown ? key : std::string(),
-                         fmt::format("expected each key once, found it again (first at line {}): remove one",
-                                     first->second)}};
+            throw Error{.code = ErrorCode::duplicate,
+                        .what = "expected each key once",
+                        .value = fmt::format("it again (first at line {})", first->second),
+                        .remedy = "remove one",
+                        .file = file_->shown(),
+                        .line = mark.line + 1,
+                        .key = quotes_ == Quotes::shown ? key : std::string()};
         }
         if (keys_.back().size() > kKeysMax)
-            fail(mark, fmt::format("expected at most {} keys in a table, found more", kKeysMax));
+            fail(mark, {ErrorCode::limit_exceeded,
+                        fmt::format("expected at most {} keys in a table", kKeysMax), "more"});
         pending_key_ = key;
         pending_key_line_ = mark.line + 1;
         has_key_ = true;
@@ -147,8 +167,10 @@ class TreeBuilder final : public YAML::EventHandler {
     void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Value::Kind kind) {
         refuse_anchor(mark, anchor);
         refuse_tag(mark, tag);
-        if (is_key_next()) fail(mark, "expected a key, found a list or table");
-        if (open_.size() >= kDepthMax) fail(mark, fmt::format("nested deeper than {}", kDepthMax));
+        if (is_key_next()) fail(mark, {ErrorCode::bad_syntax, "expected a key", "a list or table"});
+        if (open_.size() >= kDepthMax)
+            fail(mark, {ErrorCode::limit_exceeded,
+                        fmt::format("expected at most {} levels of lists and tables", kDepthMax)});
         Value value = make(mark, kind);
         take_key(value);
         open_.push_back(std::move(value));
@@ -261,7 +283,10 @@ const Value* Value::find(std::string_view wanted) const noexcept {
 Value load_document(const FilePlace& place, Quotes quotes) {
     const std::string text = read_text(place);
     const std::filesystem::path file = place.shown();
-    if (auto fault = deep_brackets(text)) throw Fault{{file, fault->line, "", std::move(fault->what)}};
+    if (auto error = deep_brackets(text)) {
+        error->file = file;
+        throw *std::move(error);
+    }
     std::istringstream stream(text);
     TreeBuilder builder(std::make_shared<const FilePlace>(place), quotes);
     try {
@@ -269,17 +294,26 @@ Value load_document(const FilePlace& place, Quotes quotes) {
         parser.HandleNextDocument(builder);
         Value root = builder.take_root();
         if (root.kind != Value::Kind::table) {
-            throw Fault{
-                {file, std::max(root.line, 1), "", "expected a table of keys at the top, found none"}};
+            throw Error{.code = ErrorCode::wrong_type,
+                        .what = "expected a table of keys at the top, found none",
+                        .file = file,
+                        .line = std::max(root.line, 1)};
         }
         if (parser.HandleNextDocument(builder)) {
-            throw Fault{{file, builder.take_root().line, "", "expected one YAML document, found a second"}};
+            throw Error{.code = ErrorCode::unsupported,
+                        .what = "expected one YAML document",
+                        .value = "a second",
+                        .file = file,
+                        .line = builder.take_root().line};
         }
         return root;
     } catch (const YAML::Exception& exception) {
         const int line = exception.mark.line + 1;
-        throw Fault{{file, line, "", "not YAML: " + yaml_syntax_hint(exception.msg, text, line),
-                     exception.mark.column + 1}};
+        throw Error{.code = ErrorCode::bad_syntax,
+                    .what = "not YAML: " + yaml_syntax_hint(exception.msg, text, line),
+                    .file = file,
+                    .line = line,
+                    .column = exception.mark.column + 1};
     }
 }
 
@@ -290,19 +324,26 @@ FilePlace existing_file(const Value& value, const std::string& key_path) {
     const auto opened = place.open();
     const bool is_scalar = value.kind == Value::Kind::scalar;
     if (opened && is_scalar) return place;
-    const auto refused = [&](std::string what) {
-        return Fault{{value.file->shown(), value.line, key_path, std::move(what)}};
-    };
-    if (!opened && opened.error().fault == FolderFault::not_permitted)
-        throw Fault{{place.shown(), 0, "", "cannot be opened (Permission denied)"}};
+    if (!opened && opened.error().fault == FolderFault::not_permitted) {
+        throw Error{.code = ErrorCode::no_permission,
+                    .what = "cannot be opened (Permission denied)",
+                    .file = place.shown()};
+    }
+    Error refused{.file = value.file->shown(), .line = value.line, .key = key_path};
     const NamedFolder* const folder = value.file->folder();
     if (folder != nullptr && !opened && is_scalar && opened.error().fault != FolderFault::absent) {
-        throw refused(fmt::format("expected a file of {}, found '{}', which {}: put the file itself there",
-                                  folder->shown().string(), value.text, opened.error().reason()));
+        refused.code = code_of(opened.error().fault);
+        refused.what = fmt::format("expected a file in {}", folder->shown().string());
+        refused.value = fmt::format("'{}', which {}", value.text, opened.error().reason());
+        refused.remedy = "put the file itself there";
+        throw refused;
     }
     std::error_code error;
-    throw refused(fmt::format("expected the path of a file, relative to this one, found none at '{}'",
-                              std::filesystem::absolute(place.shown(), error).lexically_normal().string()));
+    refused.code = ErrorCode::not_found;
+    refused.what = "expected the path of a file, relative to this one";
+    refused.value = fmt::format("none at '{}'",
+                                std::filesystem::absolute(place.shown(), error).lexically_normal().string());
+    throw refused;
 }
 
 Value merge(Value base, const Value& overlay) {
@@ -319,11 +360,12 @@ Value load_with_extends(const FilePlace& file, std::vector<FilePlace>* extended)
     for (auto next = take_extends(layers.back()); !next.empty(); next = take_extends(layers.back())) {
         if (extended != nullptr) extended->push_back(next);
         if (layers.size() == kExtendsMax) {
-            throw Fault{
-                {file.shown(), 0, std::string(name_of(keys::kExtends)),
-                 fmt::format(
-                     "expected at most {} files that extend each other, found more: is there a circle?",
-                     kExtendsMax)}};
+            throw Error{.code = ErrorCode::limit_exceeded,
+                        .what = fmt::format("expected at most {} files that extend each other", kExtendsMax),
+                        .value = "more",
+                        .remedy = "is there a circle?",
+                        .file = file.shown(),
+                        .key = std::string(name_of(keys::kExtends))};
         }
         layers.push_back(load_document(next, Quotes::withheld));
     }

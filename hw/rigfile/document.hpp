@@ -18,11 +18,6 @@ class Emitter;
 
 namespace octoskin::rig {
 
-/// Thrown inside hw/rigfile only; the public functions catch it and return its error.
-struct Fault {
-    RigError error;
-};
-
 /// One value with its file and line. An item of a table has its key.
 struct Value {
     enum class Kind { null, scalar, list, table };
@@ -44,11 +39,11 @@ struct Value {
 /// names: it may be any file of this machine.
 enum class Quotes : std::uint8_t { shown, withheld };
 
-/// Reads one YAML file whose top is a table. Throws Fault: unreadable, over 256 KiB, not YAML, a key twice in
+/// Reads one YAML file whose top is a table. Throws Error: unreadable, over 256 KiB, not YAML, a key twice in
 /// one table, over 1000 keys in one, an anchor, alias or tag, more than one document, nested deeper than 16.
 [[nodiscard]] Value load_document(const FilePlace& file, Quotes quotes = Quotes::shown);
 
-/// The file that a scalar names, relative to the file that contains the scalar. Throws Fault at the scalar if
+/// The file that a scalar names, relative to the file that contains the scalar. Throws Error at the scalar if
 /// it does not exist. If the containing file is below a named folder (a recording), the file must also be an
 /// ordinary file of this folder, reached without a link.
 [[nodiscard]] FilePlace existing_file(const Value& value, const std::string& key_path);
@@ -58,7 +53,7 @@ enum class Quotes : std::uint8_t { shown, withheld };
 [[nodiscard]] Value merge(Value base, const Value& overlay);
 
 /// load_document(), then every file that `extends:` names, each relative to the file that names it, laid one
-/// over the other. Throws Fault also for a circle and for more than 8 files. `extended` receives those files,
+/// over the other. Throws Error also for a circle and for more than 8 files. `extended` receives those files,
 /// the nearest first.
 [[nodiscard]] Value load_with_extends(const FilePlace& file, std::vector<FilePlace>* extended = nullptr);
 

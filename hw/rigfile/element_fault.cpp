@@ -10,22 +10,22 @@
 
 namespace octoskin::rig {
 
-RigError one_error_of(std::vector<ElementFault> faults) {
+Error one_error_of(std::vector<ElementFault> faults) {
     assert(!faults.empty());
     std::ranges::stable_sort(faults, {}, [](const ElementFault& fault) { return fault.error.line; });
-    RigError error = std::move(faults[0].error);
+    Error error = std::move(faults[0].error);
     if (faults.size() == 1) return error;
-    error.what += fmt::format(". {} more refused: ", faults.size() - 1);
+    error.others = fmt::format("{} more refused: ", faults.size() - 1);
     // A file may have thousands of them, with names of kilobytes.
     constexpr std::size_t kNamed = 20;
     constexpr std::size_t kKeyMax = 100;
     const std::size_t end = std::min(faults.size(), 1 + kNamed);
     for (std::size_t i = 1; i < end; ++i) {
-        error.what +=
+        error.others +=
             fmt::format("{}{} (line {}, {})", i == 1 ? "" : ", ", cut_text(faults[i].error.key, kKeyMax),
                         faults[i].error.line, faults[i].kind);
     }
-    if (end < faults.size()) error.what += fmt::format(", and {} further ones", faults.size() - end);
+    if (end < faults.size()) error.others += fmt::format(", and {} further ones", faults.size() - end);
     return error;
 }
 

@@ -10,12 +10,12 @@ namespace octoskin::rig {
 
 /// A link or joint that is refused.
 struct ElementFault {
-    RigError error;
+    Error error;
     std::string kind;  ///< in a word or two: "mesh", "planar"
 };
 
 /// The error of the first element in the file, with the remedy, then the places of the first twenty others
 /// and the number of the rest. `faults` must not be empty (asserted).
-[[nodiscard]] RigError one_error_of(std::vector<ElementFault> faults);
+[[nodiscard]] Error one_error_of(std::vector<ElementFault> faults);
 
 }  // namespace octoskin::rig

@@ -16,7 +16,7 @@ constexpr auto kSignalKeys =
                            &signal::kAlternate, &signal::kDrive, &signal::kPull});
 constexpr auto kReservedPinKeys = std::to_array<AnyKey>({&reserved_pin::kPin, &reserved_pin::kWhy});
 
-/// Of the one table on the reference page.
+/// The reference page has all these keys in one table.
 constexpr std::string_view kTitle = "hardware keys of a board";
 
 }  // namespace

@@ -176,13 +176,14 @@ void add_bodyless(const Group& group, BodylessLinks& found) {
 
 }  // namespace
 
-Result<BodylessLinks, RigError> bodyless_links(const Rig& rig, std::span<const Capsule> body) {
+Result<BodylessLinks, Error> bodyless_links(const Rig& rig, std::span<const Capsule> body) {
     const auto document = UrdfDocument::read(rig.urdf);
     if (!document) return unexpected(document.error());
     const auto base = document->model().getLink(rig.base_link);
     if (!base)
-        return unexpected(
-            document->error("link", rig.base_link, "expected this base link, found no link of this name"));
+        return unexpected(document->error(
+            "link", rig.base_link,
+            {ErrorCode::unknown_name, "expected this base link, found no link of this name"}));
     BodyOfLink bodies;
     for (const Capsule& capsule : body) bodies.emplace(capsule.link, &capsule);
     BodylessLinks found;

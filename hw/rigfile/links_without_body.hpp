@@ -39,6 +39,6 @@ struct BodylessLinks {
 /// whose <visual>s all have a known size and are half covered by the link's own capsules. A link with neither
 /// <visual> nor body is treated as a frame. Meshes are not read. Errors: those of the URDF. O(links log links
 /// + capsules log capsules), a hundred times that at worst.
-[[nodiscard]] Result<BodylessLinks, RigError> bodyless_links(const Rig& rig, std::span<const Capsule> body);
+[[nodiscard]] Result<BodylessLinks, Error> bodyless_links(const Rig& rig, std::span<const Capsule> body);
 
 }  // namespace octoskin::rig

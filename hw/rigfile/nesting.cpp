@@ -47,21 +47,22 @@ std::size_t behind_tag(std::string_view text, std::size_t at, int& attributes) {
 
 }  // namespace
 
-std::optional<TextFault> deep_brackets(std::string_view yaml) {
+std::optional<Error> deep_brackets(std::string_view yaml) {
     int open = 0;
     for (std::size_t at = 0; at < yaml.size(); ++at) {
         const char c = yaml[at];
         if (c == '[' || c == '{') ++open;
         if (c == ']' || c == '}') open = std::max(0, open - 1);
         if (open > kBracketsMax)
-            return TextFault{
-                line_of(yaml, at),
-                fmt::format("expected at most {} brackets within each other, found more", kBracketsMax)};
+            return Error{.code = ErrorCode::limit_exceeded,
+                         .what = fmt::format("expected at most {} brackets within each other", kBracketsMax),
+                         .value = "more",
+                         .line = line_of(yaml, at)};
     }
     return std::nullopt;
 }
 
-std::optional<TextFault> crowded_element(std::string_view xml) {
+std::optional<Error> crowded_element(std::string_view xml) {
     for (std::size_t at = xml.find('<'); at < xml.size(); at = xml.find('<', at)) {
         const std::size_t next = behind_no_element(xml, at);
         if (next != std::string_view::npos) {
@@ -72,9 +73,10 @@ std::optional<TextFault> crowded_element(std::string_view xml) {
         int attributes = 0;
         at = behind_tag(xml, at + 1, attributes);
         if (attributes > kAttributesMax)
-            return TextFault{line_of(xml, begin),
-                             fmt::format("expected at most {} attributes in an element, found {}",
-                                         kAttributesMax, attributes)};
+            return Error{.code = ErrorCode::limit_exceeded,
+                         .what = fmt::format("expected at most {} attributes in an element", kAttributesMax),
+                         .value = std::to_string(attributes),
+                         .line = line_of(xml, begin)};
     }
     return std::nullopt;
 }

@@ -3,21 +3,17 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <string_view>
+
+#include "host/errors/error.hpp"
 
 namespace octoskin::rig {
 
-struct TextFault {
-    int line = 0;  ///< 1-based
-    std::string what;
-};
-
 /// The first place where more than 64 brackets are open at once; no octoskin file has that many. Brackets in
-/// quotes and comments are counted, too. O(text).
-[[nodiscard]] std::optional<TextFault> deep_brackets(std::string_view yaml);
+/// quotes and comments are counted, too. The error has no file. O(text).
+[[nodiscard]] std::optional<Error> deep_brackets(std::string_view yaml);
 
 /// The first element with more than 100 attributes. O(text).
-[[nodiscard]] std::optional<TextFault> crowded_element(std::string_view xml);
+[[nodiscard]] std::optional<Error> crowded_element(std::string_view xml);
 
 }  // namespace octoskin::rig

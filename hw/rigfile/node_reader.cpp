@@ -24,8 +24,8 @@ class Taken {
     void take(const Table& table, const DeclaredKey auto& key, const std::string& thing) {
         const auto [first, is_new] = first_.try_emplace(thing, table.path_of(key));
         if (!is_new)
-            table.fail(
-                key, fmt::format("expected a unique value, found {} again: {} has it", thing, first->second));
+            table.fail(key, {ErrorCode::duplicate, "expected a unique value", thing + " again",
+                             fmt::format("{} has it", first->second)});
     }
 
   private:
@@ -47,15 +47,17 @@ void read_verification(const Table& node, NodeConfig& config) {
             static_cast<std::uint8_t>(read_integer(item, path, keys::verification::kLeaveOut.range));
         if (!is_verified(index)) {
             fail(item, path,
-                 fmt::format("expected a register that is read back, found 0x{:02X}: it is not", index));
+                 {ErrorCode::bad_value, "expected a register that is read back",
+                  fmt::format("0x{:02X}, which is not", index)});
         }
         if (!left_out.insert(index).second)
-            fail(item, path, fmt::format("expected each register once, found 0x{:02X} again", index));
+            fail(item, path,
+                 {ErrorCode::duplicate, "expected each register once", fmt::format("0x{:02X} again", index)});
     }
     if (left_out.size() > kRegistersLeftOutMax) {
         fail(*list, path,
-             fmt::format("expected at most {} registers, found {}: `enabled: false` leaves all of them out",
-                         kRegistersLeftOutMax, left_out.size()));
+             {ErrorCode::limit_exceeded, fmt::format("expected at most {} registers", kRegistersLeftOutMax),
+              std::to_string(left_out.size()), "`enabled: false` leaves all of them out"});
     }
     config.left_out_count = static_cast<std::uint8_t>(left_out.size());
     std::ranges::copy(left_out, config.left_out.begin());
@@ -64,10 +66,13 @@ void read_verification(const Table& node, NodeConfig& config) {
 void read_ready_jitter(const Table& table, NodeConfig& config) {
     config.ready_jitter_us = table.integer<std::uint16_t>(keys::node::kReadyJitter);
     if (!config.holds_phases || config.ready_jitter_us <= kReadyJitterOfPhasesMaxUs) return;
-    table.fail(keys::node::kReadyJitter,
-               fmt::format("expected at most {} with holds_phases, found {}: where ranges differ more in "
-                           "length a sensor's phase cannot be measured; use one of the two",
-                           kReadyJitterOfPhasesMaxUs, config.ready_jitter_us));
+    table.fail(
+        keys::node::kReadyJitter,
+        {ErrorCode::conflict,
+         fmt::format("expected at most {} with holds_phases, because a sensor's phase cannot be measured "
+                     "where ranges differ more in length",
+                     kReadyJitterOfPhasesMaxUs),
+         std::to_string(config.ready_jitter_us), "use one of the two"});
 }
 
 NodeConfig read_node_settings(const Table& table, const NodeContext& context, const Board& board) {
@@ -89,8 +94,8 @@ NodeConfig read_node_settings(const Table& table, const NodeContext& context, co
     read_verification(table, config);
     if (config.uses_can_fd && !board.supports_can_fd) {
         table.fail(keys::node::kBoard,
-                   fmt::format("expected a board with CAN FD, as `bus` asks for; {} has classical CAN only",
-                               board.name));
+                   {ErrorCode::conflict, "expected a board with CAN FD, which `bus` requires",
+                    board.name + ", which has classical CAN only"});
     }
     return config;
 }
@@ -109,11 +114,12 @@ void refuse_zones_without_a_pause(const Table& sensor, const NodeConfig& node, c
     if (config.inter_measurement_ms >= config.timing_budget_ms + pause_ms) return;
     sensor.fail(
         keys::sensor::kInterMeasurement,
-        fmt::format(
-            "expected at least timing_budget_ms + {} = {} with {} zones, found {}: a zone must be written "
-            "before the next range can begin; use a longer inter_measurement_ms, a shorter "
-            "timing_budget_ms, or one zone",
-            pause_ms, config.timing_budget_ms + pause_ms, config.zone_count, config.inter_measurement_ms));
+        {ErrorCode::conflict,
+         fmt::format("expected at least timing_budget_ms + {} = {} with {} zones, because a zone must be "
+                     "written before the next range can begin",
+                     pause_ms, config.timing_budget_ms + pause_ms, config.zone_count),
+         std::to_string(config.inter_measurement_ms),
+         "use a longer inter_measurement_ms, a shorter timing_budget_ms, or one zone"});
 }
 
 void read_sensors(const Table& node_table, const NodeContext& context, Node& node) {
@@ -124,8 +130,10 @@ void read_sensors(const Table& node_table, const NodeContext& context, Node& nod
         std::min<std::size_t>(node.board.sensors_max, keys::node::kSensors.count.max);
     if (items.size() < keys::node::kSensors.count.min || items.size() > sensors_max) {
         fail(list, path,
-             fmt::format("expected {} to {} sensors on a {}, found {}", keys::node::kSensors.count.min,
-                         sensors_max, node.board.name, items.size()));
+             {ErrorCode::limit_exceeded,
+              fmt::format("expected {} to {} sensors on a {}", keys::node::kSensors.count.min, sensors_max,
+                          node.board.name),
+              std::to_string(items.size())});
     }
     Taken taken;
     std::array<std::size_t, 256> sensors_on_bus{};
@@ -140,9 +148,10 @@ void read_sensors(const Table& node_table, const NodeContext& context, Node& nod
         refuse_shared_wiring(table, entry.config, taken);
         refuse_zones_without_a_pause(table, node.config, entry.config);
         if (++sensors_on_bus[entry.config.bus] > node.board.sensors_per_bus_max) {
-            table.fail(keys::sensor::kBus,
-                       fmt::format("expected at most {} sensors on a bus of a {}, found more on bus {}",
-                                   node.board.sensors_per_bus_max, node.board.name, entry.config.bus));
+            table.fail(keys::sensor::kBus, {ErrorCode::limit_exceeded,
+                                            fmt::format("expected at most {} sensors on a bus of a {}",
+                                                        node.board.sensors_per_bus_max, node.board.name),
+                                            fmt::format("more on bus {}", entry.config.bus)});
         }
         node.config.sensors[i] = entry.config;
         node.config.sensor_count = static_cast<std::uint8_t>(i + 1);
@@ -157,7 +166,8 @@ void read_data_ready_buses(const Table& table, Node& node) {
     const std::string path = table.path_of(keys::node::kDataReadyBuses);
     if (!node.board.has_data_ready_lines) {
         fail(*list, path,
-             fmt::format("expected a board with data-ready lines; {} has none", node.board.name));
+             {ErrorCode::conflict, "expected a board with data-ready lines",
+              node.board.name + ", which has none"});
     }
     const auto sensors = std::span(node.config.sensors).first(node.config.sensor_count);
     for (const Value& item : read_list(*list, path)) {
@@ -165,10 +175,12 @@ void read_data_ready_buses(const Table& table, Node& node) {
             read_integer(item, path, {keys::node::kDataReadyBuses.range.min, node.board.i2c_bus_count - 1}));
         const auto bit = static_cast<std::uint8_t>(1U << bus);
         if ((node.config.data_ready_buses & bit) != 0) {
-            fail(item, path, fmt::format("expected each bus once, found {} again", bus));
+            fail(item, path, {ErrorCode::duplicate, "expected each bus once", fmt::format("{} again", bus)});
         }
         if (std::ranges::none_of(sensors, [bus](const SensorConfig& sensor) { return sensor.bus == bus; })) {
-            fail(item, path, fmt::format("expected a bus with sensors, found {}, which has none", bus));
+            fail(item, path,
+                 {ErrorCode::bad_value, "expected a bus with sensors",
+                  fmt::format("{}, which has none", bus)});
         }
         node.config.data_ready_buses |= bit;
     }
@@ -180,9 +192,11 @@ void refuse_jitter_of_whole_periods(const Table& table, const Node& node) {
     const std::uint32_t most_us = 1000U * shortest->inter_measurement_ms / kReadyJittersPerPeriodMin;
     if (node.config.ready_jitter_us == kReadyJitterMinUs || node.config.ready_jitter_us <= most_us) return;
     table.fail(keys::node::kReadyJitter,
-               fmt::format("expected at most {} with an inter_measurement_ms of {}, found {}: the "
-                           "sensor's period could not be measured; use a longer one",
-                           most_us, shortest->inter_measurement_ms, node.config.ready_jitter_us));
+               {ErrorCode::conflict,
+                fmt::format("expected at most {} with an inter_measurement_ms of {}, because the sensor's "
+                            "period could not be measured",
+                            most_us, shortest->inter_measurement_ms),
+                std::to_string(node.config.ready_jitter_us), "use a longer inter_measurement_ms"});
 }
 
 void refuse_overloaded_i2c(const Table& table, const Node& node) {
@@ -190,12 +204,12 @@ void refuse_overloaded_i2c(const Table& table, const Node& node) {
     for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {
         const double load = i2c_load(node.config, bus);
         if (load <= kI2cLoadMax) continue;
-        table.fail(
-            keys::node::kSensors,
-            fmt::format("expected an I2C load of at most {:.0f} %, found {:.0f} % on bus {}: use a longer "
-                        "inter_measurement_ms{} fewer sensors on this bus{}",
-                        100.0 * kI2cLoadMax, 100.0 * load, bus, can_be_faster ? "," : " or",
-                        can_be_faster ? ", or a faster i2c_hz" : ""));
+        table.fail(keys::node::kSensors,
+                   {ErrorCode::overload,
+                    fmt::format("expected an I2C load of at most {:.0f} %", 100.0 * kI2cLoadMax),
+                    fmt::format("{:.0f} % on bus {}", 100.0 * load, bus),
+                    fmt::format("use a longer inter_measurement_ms{} fewer sensors on this bus{}",
+                                can_be_faster ? "," : " or", can_be_faster ? ", or a faster i2c_hz" : "")});
     }
 }
 
@@ -237,7 +251,8 @@ std::vector<Node> read_nodes(const Value& value, const std::string& path, const 
     constexpr Range<std::size_t> kCount = keys::kNodes.count;
     if (items.size() < kCount.min || items.size() > kCount.max) {
         fail(value, path,
-             fmt::format("expected {} to {} nodes, found {}", kCount.min, kCount.max, items.size()));
+             {ErrorCode::limit_exceeded, fmt::format("expected {} to {} nodes", kCount.min, kCount.max),
+              std::to_string(items.size())});
     }
     std::vector<Node> nodes;
     Taken taken;

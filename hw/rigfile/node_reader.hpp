@@ -17,7 +17,7 @@ struct NodeContext {
     const Value* sensor_defaults;  ///< defaults of every sensor; nullptr if the rig has none
 };
 
-/// Every node with its sensors and its complete configuration. Throws Fault for an error in a node, for names
+/// Every node with its sensors and its complete configuration. Throws Error for an error in a node, for names
 /// and addresses used twice, and for an I2C bus loaded above 70 %.
 [[nodiscard]] std::vector<Node> read_nodes(const Value& value, const std::string& path,
                                            const NodeContext& context);

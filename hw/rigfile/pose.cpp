@@ -12,7 +12,8 @@ namespace {
 std::vector<double> read_numbers(const Value& value, const std::string& path, std::size_t count,
                                  double limit) {
     if (value.kind != Value::Kind::list || value.items.size() != count) {
-        fail(value, path, fmt::format("expected a list of {} numbers, found {}", count, describe(value)));
+        fail(value, path,
+             {ErrorCode::wrong_type, fmt::format("expected a list of {} numbers", count), describe(value)});
     }
     std::vector<double> numbers;
     for (const Value& item : value.items) numbers.push_back(read_number(item, path, {-limit, limit}));
@@ -35,14 +36,15 @@ Eigen::Matrix3d read_quaternion(const Value& value, const std::string& path) {
     const Eigen::Quaterniond q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
     if (std::abs(q.norm() - 1.0) > keys::pose::kQuaternionTolerance) {
         fail(value, path,
-             fmt::format("expected a quaternion of length 1, found length {}: divide by it", q.norm()));
+             {ErrorCode::bad_value, "expected a quaternion of length 1", fmt::format("length {}", q.norm()),
+              "divide by it"});
     }
     return q.normalized().toRotationMatrix();
 }
 
 Eigen::Matrix3d read_rows(const Value& value, const std::string& path) {
     if (value.kind != Value::Kind::list || value.items.size() != 3) {
-        fail(value, path, fmt::format("expected a list of 3 rows, found {}", describe(value)));
+        fail(value, path, {ErrorCode::wrong_type, "expected a list of 3 rows", describe(value)});
     }
     Eigen::Matrix3d rotation;
     for (int row = 0; row < 3; ++row) {
@@ -52,7 +54,9 @@ Eigen::Matrix3d read_rows(const Value& value, const std::string& path) {
     }
     const double skew = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (skew > keys::pose::kMatrixTolerance || rotation.determinant() < 0.0) {
-        fail(value, path, "expected a rotation: rows of length 1, at right angles, right-handed");
+        fail(value, path,
+             {ErrorCode::bad_value,
+              "expected a rotation, with rows of length 1, at right angles, right-handed"});
     }
     return rotation;
 }
@@ -62,7 +66,10 @@ Eigen::Matrix3d read_looking_at(const Value& value, const std::string& path, con
     const Eigen::Vector3d forward = read_position(value, path, reach_m) - p_camera;
     const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ());
     if (!(right.norm() > 1e-3 * forward.norm())) {
-        fail(value, path, "expected a point that is not straight above or below: give rpy_deg instead");
+        fail(value, path,
+             {.code = ErrorCode::bad_value,
+              .what = "expected a point that is not straight above or below",
+              .remedy = "give rpy_deg instead"});
     }
     Eigen::Matrix3d rotation;
     rotation.col(2) = forward.normalized();
@@ -78,8 +85,8 @@ Eigen::Vector3d read_position(const Value& value, const std::string& path, doubl
     Eigen::Vector3d position(xyz[0], xyz[1], xyz[2]);
     if (position.cwiseAbs().maxCoeff() > reach_m) {
         fail(value, path,
-             fmt::format("expected metres from {} to {}, found ({}, {}, {}): is it written in millimetres?",
-                         -reach_m, reach_m, xyz[0], xyz[1], xyz[2]));
+             {ErrorCode::out_of_range, fmt::format("expected metres from {} to {}", -reach_m, reach_m),
+              fmt::format("({}, {}, {})", xyz[0], xyz[1], xyz[2]), "is it written in millimetres?"});
     }
     return position;
 }
@@ -109,8 +116,10 @@ Eigen::Isometry3d read_pose(const Value& value, const std::string& path, const P
     });
     if (orientations != 1) {
         fail(value, path,
-             fmt::format("expected one orientation, found {}: give rpy_deg or quaternion_wxyz{}",
-                         orientations, rules.may_look_at_point ? " or looking_at_m" : ""));
+             {orientations == 0 ? ErrorCode::missing_key : ErrorCode::conflict, "expected one orientation",
+              std::to_string(orientations),
+              fmt::format("give rpy_deg or quaternion_wxyz{}",
+                          rules.may_look_at_point ? " or looking_at_m" : "")});
     }
     return T_parent_child;
 }

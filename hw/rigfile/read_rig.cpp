@@ -32,7 +32,7 @@ UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_in
     if (rig.urdf.folder() == nullptr)
         rig.urdf = FilePlace(std::filesystem::absolute(rig.urdf.name()).lexically_normal());
     auto document = UrdfDocument::read(rig.urdf);
-    if (!document) throw Fault{document.error()};
+    if (!document) throw document.error();
     return std::move(document).value();
 }
 
@@ -40,8 +40,8 @@ void require_link(const Value& value, const std::string& path, const std::string
                   const UrdfDocument& robot) {
     if (robot.model().links_.contains(link)) return;
     fail(value, path,
-         fmt::format("expected a link of {}, found '{}'; it has {}", robot.file().filename().string(), link,
-                     joined(robot.link_names())));
+         {ErrorCode::unknown_name, fmt::format("expected a link of {}", robot.file().filename().string()),
+          fmt::format("'{}'", link), "it has " + joined(robot.link_names())});
 }
 
 void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig) {
@@ -53,7 +53,8 @@ void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig
     if (const Value* paddings = robot.find(keys::robot::kLinkPadding)) {
         const std::string path = robot.path_of(keys::robot::kLinkPadding);
         if (paddings->kind != Value::Kind::table)
-            fail(*paddings, path, "expected a table of link names and metres");
+            fail(*paddings, path,
+                 {ErrorCode::wrong_type, "expected a table of link names and metres", describe(*paddings)});
         for (const Value& padding : paddings->items) {
             const std::string entry = path + "." + padding.key;
             require_link(padding, entry, padding.key, document);
@@ -80,7 +81,8 @@ AttachedCapsule read_attached(const Value& value, const std::string& path, const
                  robot);
     if (!robot.is_below(rig.base_link, capsule.link)) {
         table.fail(keys::capsule::kLink,
-                   fmt::format("expected a link at or below {}, found '{}'", rig.base_link, capsule.link));
+                   {ErrorCode::unknown_name, fmt::format("expected a link at or below {}", rig.base_link),
+                    fmt::format("'{}'", capsule.link)});
     }
     capsule.p_link_a = read_position(table, keys::capsule::kFrom);
     capsule.p_link_b = table.find(keys::capsule::kTo) == nullptr ? capsule.p_link_a
@@ -89,8 +91,8 @@ AttachedCapsule read_attached(const Value& value, const std::string& path, const
     capsule.padding_m = table.number(keys::capsule::kPadding);
     for (const AttachedCapsule& other : rig.attached_capsules) {
         if (other.name == capsule.name)
-            table.fail(keys::capsule::kName,
-                       fmt::format("expected each name once, found '{}' again", capsule.name));
+            table.fail(keys::capsule::kName, {ErrorCode::duplicate, "expected each name once",
+                                              fmt::format("'{}' again", capsule.name)});
     }
     return capsule;
 }
@@ -102,7 +104,9 @@ void read_attached_capsules(const Table& robot, const UrdfDocument& document, Ri
     const std::string path = robot.path_of(keys::robot::kAttachedCapsules);
     for (const Value& item : read_list(*list, path)) {
         if (rig.attached_capsules.size() == kAttachedMax)
-            fail(item, path, fmt::format("expected at most {} capsules, found more", kAttachedMax));
+            fail(item, path,
+                 {ErrorCode::limit_exceeded, fmt::format("expected at most {} capsules", kAttachedMax),
+                  "more"});
         rig.attached_capsules.push_back(
             read_attached(item, fmt::format("{}[{}]", path, rig.attached_capsules.size()), document, rig));
     }
@@ -111,9 +115,9 @@ void read_attached_capsules(const Table& robot, const UrdfDocument& document, Ri
 /// Whether the link's capsules are too few or too small for a body.
 bool is_without_body(const std::string& link, const Rig& rig) {
     const auto body = padded_body(rig);
-    if (!body) throw Fault{body.error()};
+    if (!body) throw body.error();
     const auto found = bodyless_links(rig, *body);
-    if (!found) throw Fault{found.error()};
+    if (!found) throw found.error();
     return std::ranges::find(found->without_body, link) != found->without_body.end();
 }
 
@@ -136,15 +140,18 @@ void read_links_without_body(const Table& robot, const UrdfDocument& document, R
         auto link = read_element_name(item, path);
         require_link(item, path, link, document);
         if (!document.is_below(rig.base_link, link))
-            fail(item, path, fmt::format("expected a link at or below {}, found '{}'", rig.base_link, link));
+            fail(item, path,
+                 {ErrorCode::unknown_name, fmt::format("expected a link at or below {}", rig.base_link),
+                  fmt::format("'{}'", link)});
         if (const std::string body = body_of(link, document, rig);
             !body.empty() && !is_without_body(link, rig)) {
             fail(item, path,
-                 fmt::format("expected a link without a body, found '{}', which has {}: remove it here", link,
-                             body));
+                 {ErrorCode::conflict, "expected a link without a body",
+                  fmt::format("'{}', which has {}", link, body), "remove it here"});
         }
         if (std::ranges::find(rig.links_without_body, link) != rig.links_without_body.end())
-            fail(item, path, fmt::format("expected each link once, found '{}' again", link));
+            fail(item, path,
+                 {ErrorCode::duplicate, "expected each link once", fmt::format("'{}' again", link)});
         rig.links_without_body.push_back(std::move(link));
     }
 }
@@ -152,7 +159,8 @@ void read_links_without_body(const Table& robot, const UrdfDocument& document, R
 std::uint32_t read_bitrate(const Table& bus, const IntegerKey& key) {
     const auto bitrate = bus.integer<std::int64_t>(key);
     if (std::ranges::find(key.values, bitrate) == key.values.end()) {
-        bus.fail(key, fmt::format("expected one of {}, found {}", joined(key.values), bitrate));
+        bus.fail(key, {ErrorCode::out_of_range, fmt::format("expected one of {}", joined(key.values)),
+                       std::to_string(bitrate)});
     }
     return static_cast<std::uint32_t>(bitrate);
 }
@@ -165,8 +173,9 @@ Bus read_bus(const Value& value) {
     if (bus.uses_can_fd) {
         bus.data_bitrate = read_bitrate(table, keys::bus::kDataBitrate);
     } else if (table.find(keys::bus::kDataBitrate)) {
-        table.fail(keys::bus::kDataBitrate,
-                   "expected none with protocol can: remove it (`~` removes an inherited key)");
+        table.fail(keys::bus::kDataBitrate, {.code = ErrorCode::conflict,
+                                             .what = "expected none with protocol can",
+                                             .remedy = "remove it (`~` removes an inherited key)"});
     }
     return bus;
 }
@@ -180,13 +189,16 @@ Bus read_bus(const Value& value) {
     const std::string fix = "make each joint that does not move type=\"fixed\" in " + file;
     if (moving.size() > wire::kJointsPerSample) {
         fail(list, path,
-             fmt::format("expected at most {} moving joints, found {} in {}; not named are {}: {}",
-                         wire::kJointsPerSample, moving.size(), file, joined(unnamed), fix));
+             {ErrorCode::limit_exceeded,
+              fmt::format("expected at most {} moving joints", wire::kJointsPerSample),
+              fmt::format("{} in {}; not named are {}", moving.size(), file, joined(unnamed)), fix});
     }
     fail(list, path,
-         fmt::format("expected every moving joint of {}, found none named {}: its position would be unknown. "
-                     "Name it, or {}",
-                     file, joined(unnamed), fix));
+         {ErrorCode::missing_key,
+          fmt::format("expected every moving joint of {}, because the position of a joint without a name is "
+                      "unknown",
+                      file),
+          "none named " + joined(unnamed), "name it, or " + fix});
 }
 
 std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument& robot,
@@ -199,11 +211,13 @@ std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument
         auto name = read_element_name(item, path);
         if (std::find(moving.begin(), moving.end(), name) == moving.end()) {
             fail(item, path,
-                 fmt::format("expected a moving joint of {}, found '{}'; it has {}",
-                             robot.file().filename().string(), name, joined(moving)));
+                 {ErrorCode::unknown_name,
+                  fmt::format("expected a moving joint of {}", robot.file().filename().string()),
+                  fmt::format("'{}'", name), "it has " + joined(moving)});
         }
         if (std::find(names.begin(), names.end(), name) != names.end()) {
-            fail(item, path, fmt::format("expected each joint once, found '{}' again", name));
+            fail(item, path,
+                 {ErrorCode::duplicate, "expected each joint once", fmt::format("'{}' again", name)});
         }
         names.push_back(std::move(name));
     }
@@ -214,9 +228,9 @@ std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument
     if (!unnamed.empty()) fail_unnamed(list, path, robot, moving, unnamed);
     if (names.empty() || names.size() > wire::kJointsPerSample) {
         fail(list, path,
-             fmt::format("expected 1 to {} joints, found {} in {}{}", wire::kJointsPerSample, names.size(),
-                         robot.file().filename().string(),
-                         names.empty() ? "" : ": make those that stay as they are type=\"fixed\" there"));
+             {ErrorCode::limit_exceeded, fmt::format("expected 1 to {} joints", wire::kJointsPerSample),
+              fmt::format("{} in {}", names.size(), robot.file().filename().string()),
+              names.empty() ? "" : "make those that stay as they are type=\"fixed\" there"});
     }
     return names;
 }
@@ -227,8 +241,9 @@ JointSource read_joints(const Value& value, const UrdfDocument& robot, const Rig
     joints.node_id = table.integer<std::uint8_t>(keys::joints::kNodeId);
     for (const Node& node : rig.nodes) {
         if (node.config.node_id != joints.node_id) continue;
-        table.fail(keys::joints::kNodeId, fmt::format("expected a unique id, found {}: node '{}' has it",
-                                                      joints.node_id, node.name));
+        table.fail(keys::joints::kNodeId,
+                   {ErrorCode::duplicate, "expected a unique id", std::to_string(joints.node_id),
+                    fmt::format("node '{}' has it", node.name)});
     }
     joints.joints = read_joint_names(table, robot, rig.base_link);
     joints.rate_hz = table.number(keys::joints::kRate);
@@ -242,18 +257,21 @@ RangeLimits read_range_limits(const Value& value) {
         .max_m = table.number(keys::range_limits::kMax),
         .sigma_max_m = table.number(keys::range_limits::kSigmaMax),
         .time_uncertainty_max_ms = table.number(keys::range_limits::kTimeUncertaintyMax)};
-    if (!(limits.min_m < limits.max_m)) table.fail(keys::range_limits::kMax, "expected more than min_m");
+    if (!(limits.min_m < limits.max_m)) {
+        table.fail(keys::range_limits::kMax,
+                   {ErrorCode::out_of_range, "expected more than min_m", fmt::format("{}", limits.max_m)});
+    }
     return limits;
 }
 
 void refuse_overloaded_bus(const Table& top, const Rig& rig) {
     const double load = can_load(rig);
     if (load <= wire::kBusLoadLimit) return;
-    top.fail(
-        keys::kBusTable,
-        fmt::format("expected a CAN load of at most {:.0f} %, found {:.1f} % in the worst case: use a longer "
-                    "inter_measurement_ms, a higher bitrate, can_fd, or fewer sensors",
-                    100.0 * wire::kBusLoadLimit, 100.0 * load));
+    top.fail(keys::kBusTable,
+             {ErrorCode::overload,
+              fmt::format("expected a CAN load of at most {:.0f} %", 100.0 * wire::kBusLoadLimit),
+              fmt::format("{:.1f} % in the worst case", 100.0 * load),
+              "use a longer inter_measurement_ms, a higher bitrate, can_fd, or fewer sensors"});
 }
 
 Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instead) {
@@ -282,18 +300,11 @@ Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instea
 
 }  // namespace
 
-std::string RigError::message() const {
-    std::string place = file.string();
-    if (line > 0) place += fmt::format(":{}", line);
-    if (line > 0 && column > 0) place += fmt::format(":{}", column);
-    return key.empty() ? fmt::format("{}: {}", place, what) : fmt::format("{}: {}: {}", place, key, what);
-}
-
-Result<Rig, RigError> read_rig(const FilePlace& file, const std::filesystem::path& urdf_instead) {
+Result<Rig, Error> read_rig(const FilePlace& file, const std::filesystem::path& urdf_instead) {
     try {
         return read_checked(confined_to_recording(file), urdf_instead);
-    } catch (const Fault& fault) {
-        return unexpected(fault.error);
+    } catch (const Error& error) {
+        return unexpected(error);
     }
 }
 

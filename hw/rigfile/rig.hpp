@@ -13,6 +13,7 @@
 #include "common/config/node_config.hpp"
 #include "common/lens/lens_distortion.hpp"
 #include "common/result.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/data_set_depth.hpp"
 
@@ -135,24 +136,14 @@ struct Rig {
     RangeLimits range_limits;
 };
 
-/// An error with its place: "rig.yaml:12: nodes[0].sensors[3].pose.xyz_m: expected 3 numbers, found 'left'".
-struct RigError {
-    std::filesystem::path file;
-    int line = 0;  ///< 1-based; 0 if it concerns the whole file
-    std::string key;
-    std::string what;
-    int column = 0;  ///< 1-based; 0 unless the parser stopped there
-    [[nodiscard]] std::string message() const;
-};
-
 /// Reads and checks a rig: unknown keys, types, units, ranges, references, unique ids and addresses, I2C
 /// capacity, and the computed CAN load (refused above 70 %). Paths in it are relative to the file. A
 /// top-level `extends: other.yaml` reads that file first and overrides it with this file's keys.
 /// `urdf_instead`: a robot to use in place of the one the rig names. A rig below a named folder, or in a
 /// recording however it was named (confined_to_recording()), may refer only to files of that folder, without
 /// links. Not to be called from two threads at once (urdfdom's log is global).
-[[nodiscard]] Result<Rig, RigError> read_rig(const FilePlace& file,
-                                             const std::filesystem::path& urdf_instead = {});
+[[nodiscard]] Result<Rig, Error> read_rig(const FilePlace& file,
+                                          const std::filesystem::path& urdf_instead = {});
 
 /// The canonical YAML text of a rig: reading it gives an equal rig, and equal rigs give equal text. `urdf` is
 /// written as given.

@@ -15,8 +15,7 @@
 namespace octoskin::rig {
 namespace {
 
-constexpr double kSameM =
-    1e-4;  ///< a sphere this close to a cylinder's end, and this close in radius, is its end
+constexpr double kSameM = 1e-4;  ///< a sphere is a cylinder's end if place and radius differ by at most this
 constexpr double kRadiusMaxM = 5.0;
 constexpr std::size_t kCollisionsMax = 1000;  ///< of one link: each sphere is compared with each cylinder
 
@@ -78,7 +77,8 @@ Capsule within_cylinder(const Cylinder& cylinder) {
     const Eigen::Vector3d axis = within.p_link_b - within.p_link_a;
     const double length_m = axis.norm();
     const double flat_ends = (cylinder.is_round_a ? 0.0 : 1.0) + (cylinder.is_round_b ? 0.0 : 1.0);
-    // For a flat disc: a ball that touches both ends, round or flat.
+    // At most half the length with the round ends: the capsule of a flat disc is a ball that touches both
+    // ends.
     within.radius_m =
         std::min(within.radius_m, 0.5 * (length_m + (2.0 - flat_ends) * cylinder.capsule.radius_m));
     if (length_m == 0.0) return within;
@@ -91,10 +91,11 @@ Capsule within_cylinder(const Cylinder& cylinder) {
     return within;
 }
 
-/// Adds one collision element to `bodies`. Returns a message if it is refused.
-std::string add_body(const urdf::Collision& collision, const std::string& link, BoxRule boxes,
-                     Bodies& bodies) {
-    if (!collision.geometry) return fmt::format("{} has no geometry", name_of(collision));
+/// Adds one collision element to `bodies`. Returns an error if it is refused.
+std::optional<Error> add_body(const urdf::Collision& collision, const std::string& link, BoxRule boxes,
+                              Bodies& bodies) {
+    if (!collision.geometry)
+        return Error{ErrorCode::missing_key, fmt::format("{} has no geometry", name_of(collision))};
     const Eigen::Isometry3d T_link_body = urdf_isometry(collision.origin);
     Capsule body{link, T_link_body.translation(), T_link_body.translation(), 0.0};
     double length_m = 0.0;
@@ -113,18 +114,23 @@ std::string add_body(const urdf::Collision& collision, const std::string& link, 
         bodies.boxes.push_back(fit_box(box->dim, link, T_link_body));
         body = bodies.boxes.back().around;
     } else {
-        return fmt::format(
-            "{} is a {}: expected a cylinder or a sphere (two spheres and a cylinder are a capsule); put one "
-            "around it in its place, or remove it{}",
-            name_of(collision), shape_name(*collision.geometry),
-            collision.geometry->type == urdf::Geometry::BOX ? "; or let the rig have `fits_capsules: true`"
-                                                            : "");
+        return Error{
+            ErrorCode::unsupported,
+            fmt::format("expected a cylinder or a sphere (two spheres and a cylinder are a capsule) as {}",
+                        name_of(collision)),
+            fmt::format("a {}", shape_name(*collision.geometry)),
+            fmt::format("replace it by one that encloses it, or remove it{}",
+                        collision.geometry->type == urdf::Geometry::BOX
+                            ? "; or set `fits_capsules: true` in the rig"
+                            : "")};
     }
     const bool is_sound = T_link_body.matrix().allFinite() && body.radius_m > 0.0 &&
                           body.radius_m <= kRadiusMaxM && length_m >= 0.0 && length_m <= kRadiusMaxM;
-    return is_sound ? ""
-                    : fmt::format("{} has a size or place that is not finite and within {} m: metres?",
-                                  name_of(collision), kRadiusMaxM);
+    if (is_sound) return std::nullopt;
+    return Error{.code = ErrorCode::out_of_range,
+                 .what = fmt::format("{} has a place that is not finite, or a size that is not within {} m",
+                                     name_of(collision), kRadiusMaxM),
+                 .remedy = "is it written in metres?"};
 }
 
 /// The end of a cylinder is set to the centre of the sphere at that end, which has no rounding from a
@@ -161,17 +167,18 @@ BoxRule box_rule(const Rig& rig) {
     return rig.fits_capsules ? BoxRule::fitted : BoxRule::refused;
 }
 
-/// Of every link.
-Result<std::vector<Fitted>, RigError> read_fitted(const FilePlace& urdf,
-                                                  const std::map<std::string, double>& link_padding_m,
-                                                  BoxRule boxes) {
+/// The collision elements of every link.
+Result<std::vector<Fitted>, Error> read_fitted(const FilePlace& urdf,
+                                               const std::map<std::string, double>& link_padding_m,
+                                               BoxRule boxes) {
     auto document = UrdfDocument::read(urdf);
     if (!document) return unexpected(document.error());
     const auto& links = document->model().links_;
     for (const auto& [link, padding_m] : link_padding_m) {
         if (!links.contains(link)) {
-            return unexpected(
-                document->error("link", link, "padded in the rig, but the robot has no such link"));
+            return unexpected(document->error(
+                "link", link,
+                {ErrorCode::unknown_name, "padded in the rig, but the robot has no such link"}));
         }
     }
     std::vector<Fitted> all;
@@ -179,15 +186,16 @@ Result<std::vector<Fitted>, RigError> read_fitted(const FilePlace& urdf,
     for (const auto& [name, link] : links) {
         Bodies bodies;
         if (link->collision_array.size() > kCollisionsMax) {
-            return unexpected(document->error(
-                "link", name,
-                fmt::format("expected at most {} <collision> elements, found {}: use fewer, larger shapes",
-                            kCollisionsMax, link->collision_array.size())));
+            return unexpected(
+                document->error("link", name,
+                                {ErrorCode::limit_exceeded,
+                                 fmt::format("expected at most {} <collision> elements", kCollisionsMax),
+                                 std::to_string(link->collision_array.size()), "use fewer, larger shapes"}));
         }
         for (const auto& collision : link->collision_array) {
             auto fault = add_body(*collision, name, boxes, bodies);
-            if (fault.empty()) continue;
-            faults.push_back({document->error("link", name, std::move(fault)),
+            if (!fault) continue;
+            faults.push_back({document->error("link", name, *std::move(fault)),
                               collision->geometry ? shape_name(*collision->geometry) : "no geometry"});
             break;
         }
@@ -201,8 +209,8 @@ Result<std::vector<Fitted>, RigError> read_fitted(const FilePlace& urdf,
     return all;
 }
 
-Result<std::vector<Capsule>, RigError> all_of(const Result<std::vector<Fitted>, RigError>& elements,
-                                              Capsule Fitted::*which) {
+Result<std::vector<Capsule>, Error> all_of(const Result<std::vector<Fitted>, Error>& elements,
+                                           Capsule Fitted::*which) {
     if (!elements) return unexpected(elements.error());
     std::vector<Capsule> capsules;
     for (const Fitted& element : *elements) capsules.push_back(element.*which);
@@ -210,8 +218,7 @@ Result<std::vector<Capsule>, RigError> all_of(const Result<std::vector<Fitted>, 
 }
 
 /// With the capsules that the rig attaches, without padding.
-Result<std::vector<Capsule>, RigError> with_attached(Result<std::vector<Capsule>, RigError> body,
-                                                     const Rig& rig) {
+Result<std::vector<Capsule>, Error> with_attached(Result<std::vector<Capsule>, Error> body, const Rig& rig) {
     if (!body) return body;
     for (const AttachedCapsule& capsule : rig.attached_capsules)
         body->push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
@@ -220,15 +227,15 @@ Result<std::vector<Capsule>, RigError> with_attached(Result<std::vector<Capsule>
 
 }  // namespace
 
-Result<std::vector<Capsule>, RigError> real_body(const Rig& rig) {
+Result<std::vector<Capsule>, Error> real_body(const Rig& rig) {
     return with_attached(read_capsules(rig.urdf, {}, box_rule(rig)), rig);
 }
 
-Result<std::vector<Capsule>, RigError> certain_body(const Rig& rig) {
+Result<std::vector<Capsule>, Error> certain_body(const Rig& rig) {
     return with_attached(read_inner_capsules(rig.urdf, box_rule(rig)), rig);
 }
 
-Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig) {
+Result<std::vector<Capsule>, Error> padded_body(const Rig& rig) {
     auto body = read_capsules(rig.urdf, rig.link_padding_m, box_rule(rig));
     if (!body) return body;
     for (const AttachedCapsule& capsule : rig.attached_capsules) {
@@ -240,13 +247,13 @@ Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig) {
     return body;
 }
 
-Result<std::vector<Capsule>, RigError> read_capsules(const FilePlace& urdf,
-                                                     const std::map<std::string, double>& link_padding_m,
-                                                     BoxRule boxes) {
+Result<std::vector<Capsule>, Error> read_capsules(const FilePlace& urdf,
+                                                  const std::map<std::string, double>& link_padding_m,
+                                                  BoxRule boxes) {
     return all_of(read_fitted(urdf, link_padding_m, boxes), &Fitted::around);
 }
 
-Result<std::vector<Capsule>, RigError> read_inner_capsules(const FilePlace& urdf, BoxRule boxes) {
+Result<std::vector<Capsule>, Error> read_inner_capsules(const FilePlace& urdf, BoxRule boxes) {
     return all_of(read_fitted(urdf, {}, boxes), &Fitted::within);
 }
 

@@ -32,22 +32,22 @@ enum class BoxRule : std::uint8_t {
 /// Every link's collision geometry as capsules, padding added. URDF has no capsule: a cylinder with a sphere
 /// of its radius at each end on one link is one; a single cylinder gets round ends, a single sphere is a
 /// point with a radius. Errors name file and link.
-[[nodiscard]] Result<std::vector<Capsule>, RigError> read_capsules(
+[[nodiscard]] Result<std::vector<Capsule>, Error> read_capsules(
     const FilePlace& urdf, const std::map<std::string, double>& link_padding_m,
     BoxRule boxes = BoxRule::refused);
 
 /// A capsule that lies wholly within each collision element: for a box or a single cylinder one that touches
 /// its faces, for a capsule or a sphere the element itself. Errors as read_capsules.
-[[nodiscard]] Result<std::vector<Capsule>, RigError> read_inner_capsules(const FilePlace& urdf,
-                                                                         BoxRule boxes = BoxRule::refused);
+[[nodiscard]] Result<std::vector<Capsule>, Error> read_inner_capsules(const FilePlace& urdf,
+                                                                      BoxRule boxes = BoxRule::refused);
 
 /// The true body for a simulation: the URDF and the rig's attached capsules, without padding.
-[[nodiscard]] Result<std::vector<Capsule>, RigError> real_body(const Rig& rig);
+[[nodiscard]] Result<std::vector<Capsule>, Error> real_body(const Rig& rig);
 /// The same with the rig's padding, for the self-filter.
-[[nodiscard]] Result<std::vector<Capsule>, RigError> padded_body(const Rig& rig);
+[[nodiscard]] Result<std::vector<Capsule>, Error> padded_body(const Rig& rig);
 
 /// Space that only the robot can occupy: without padding, and without the part of a capsule outside its
 /// element.
-[[nodiscard]] Result<std::vector<Capsule>, RigError> certain_body(const Rig& rig);
+[[nodiscard]] Result<std::vector<Capsule>, Error> certain_body(const Rig& rig);
 
 }  // namespace octoskin::rig

@@ -25,12 +25,11 @@ inline constexpr NumberKey kLinkPadding{
     .range = kPadding_m,
     .fallback = {.text = "none"},
     .meaning = "by the name of a link: added to the radius of that link's capsules"};
-inline constexpr FlagKey kFitsCapsules{
-    .path = "robot.fits_capsules",
-    .fallback = {false},
-    .meaning =
-        "a `<collision>` box becomes the capsule about its longest side through its corners; else it "
-        "is refused"};
+inline constexpr FlagKey kFitsCapsules{.path = "robot.fits_capsules",
+                                       .fallback = {false},
+                                       .meaning =
+                                           "a `<collision>` box becomes the capsule along its longest side, "
+                                           "through its corners; else it is refused"};
 inline constexpr ListKey kAttachedCapsules{
     .path = "robot.attached_capsules",
     .items = "capsules",
@@ -48,7 +47,7 @@ inline constexpr ListKey kLinksIgnoredBySensors{
     .path = "robot.links_ignored_by_sensors",
     .items = "links",
     .fallback = {.text = "none"},
-    .meaning = "links left out of the prediction that a beam meets the robot: the sensor's mount"};
+    .meaning = "links left out when the host predicts where a beam meets the robot: the sensor's mount"};
 inline constexpr NumberKey kDepthSelfMargin{
     .path = "robot.depth_self_margin_m",
     .unit = "m",
@@ -60,7 +59,7 @@ inline constexpr NumberKey kRangeSelfMargin{
     .unit = "m",
     .range = kSelfMargin_m,
     .fallback = {kRangeSelfMarginDefault_m},
-    .meaning = "ranges longer than the predicted distance to the robot less this are dropped"};
+    .meaning = "a range is dropped if it exceeds the predicted distance to the robot minus this margin"};
 }  // namespace robot
 
 namespace capsule {
@@ -91,12 +90,12 @@ inline constexpr NumberKey kPadding{
     .unit = "m",
     .range = kPadding_m,
     .fallback = {0.0},
-    .meaning = "added by the host, beside the link's padding; the simulator uses the real radius"};
+    .meaning = "added by the host, as is the link's padding; the simulator uses the real radius"};
 }  // namespace capsule
 
 /// Of `T_map_base`, `camera.pose` and `nodes[].sensors[].pose`.
 namespace pose {
-/// Of a sensor in its link. A larger coordinate is probably in millimetres.
+/// Of a sensor's position in its link. A larger coordinate is probably in millimetres.
 inline constexpr double kSensorReach_m = 2.0;
 inline constexpr double kQuaternionTolerance = 1e-6;
 inline constexpr double kMatrixTolerance = 1e-9;

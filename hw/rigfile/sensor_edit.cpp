@@ -75,8 +75,10 @@ std::optional<std::string> with_value(const std::string& text, const YAML::Node&
     return std::nullopt;
 }
 
-Unexpected<RigError> failed(const std::filesystem::path& file, std::string what) {
-    return unexpected(RigError{.file = file, .line = 0, .key = {}, .what = std::move(what)});
+Unexpected<Error> failed(const std::filesystem::path& file, ErrorCode code, std::string what,
+                         std::string remedy = {}) {
+    return unexpected(
+        Error{.code = code, .what = std::move(what), .remedy = std::move(remedy), .file = file});
 }
 
 /// Empty if the file cannot be read.
@@ -120,30 +122,35 @@ std::optional<std::string> edited(const std::string& text, const SensorEdit& edi
     }
 }
 
-Result<std::filesystem::path, RigError> edit_sensor(const std::filesystem::path& file, const SensorEdit& edit,
-                                                    const SaveText& save) {
+Result<std::filesystem::path, Error> edit_sensor(const std::filesystem::path& file, const SensorEdit& edit,
+                                                 const SaveText& save) {
     const auto before = read_rig(file);
     if (!before) return unexpected(before.error());
     if (!has_sensor(*before, edit))
-        return failed(file, "has no sensor '" + edit.sensor + "' of a node '" + edit.node + "'");
+        return failed(file, ErrorCode::unknown_name,
+                      "has no sensor '" + edit.sensor + "' of a node '" + edit.node + "'");
     std::vector<FilePlace> files{confined_to_recording(file)};
     files.insert(files.end(), before->extended_files.begin(), before->extended_files.end());
     for (const auto& candidate : files) {
         const std::string text = content_of(candidate);
         const auto changed = edited(text, edit);
         if (!changed) continue;
-        if (const auto why = save(candidate, *changed)) return failed(candidate.shown(), *why);
+        if (const auto why = save(candidate, *changed))
+            return failed(candidate.shown(), ErrorCode::system_error, *why);
         const auto after = read_rig(file);
         const bool is_as_meant =
             after && rig_hash(with_sensor_of(*after, *before, edit)) == rig_hash(*before);
         if (is_as_meant) return candidate.shown();
         if (const auto why = save(candidate, text))
-            return failed(candidate.shown(), "was changed and cannot be put back: " + *why);
-        return after ? failed(candidate.shown(), "its sensor cannot be changed by a program: set " +
-                                                     edit.key + ": " + edit.value + " by hand")
+            return failed(candidate.shown(), ErrorCode::system_error,
+                          "was changed and cannot be put back: " + *why);
+        return after ? failed(candidate.shown(), ErrorCode::unsupported,
+                              "its sensor cannot be changed by a program",
+                              "set " + edit.key + ": " + edit.value + " by hand")
                      : unexpected(after.error());
     }
-    return failed(file, "no sensor '" + edit.sensor + "' of node '" + edit.node + "' is written in it");
+    return failed(file, ErrorCode::unknown_name,
+                  "no sensor '" + edit.sensor + "' of node '" + edit.node + "' is written in it");
 }
 
 }  // namespace octoskin::rig

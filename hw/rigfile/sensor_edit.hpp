@@ -26,8 +26,7 @@ using SaveText = std::function<std::optional<std::string>(const FilePlace& file,
 /// Edits the rig's file, or the extended file that contains the sensor; returns its path. Reads the rig again
 /// afterwards: it must differ in that one value only, else the file is restored. Errors: no file has the
 /// sensor, `save` fails, or the edited rig is not valid.
-[[nodiscard]] Result<std::filesystem::path, RigError> edit_sensor(const std::filesystem::path& file,
-                                                                  const SensorEdit& edit,
-                                                                  const SaveText& save);
+[[nodiscard]] Result<std::filesystem::path, Error> edit_sensor(const std::filesystem::path& file,
+                                                               const SensorEdit& edit, const SaveText& save);
 
 }  // namespace octoskin::rig

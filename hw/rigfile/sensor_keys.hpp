@@ -18,12 +18,12 @@ inline constexpr std::array<std::pair<std::string_view, DistanceMode>, 3> kDista
     {{"short", DistanceMode::short_range},
      {"medium", DistanceMode::medium_range},
      {"long", DistanceMode::long_range}}};
-/// ST ULD 3.5.2, VL53L1X_SetTimingBudgetInMs; medium mode, which it does not have, needs 33 ms (datasheet
-/// DS12385 rev 7, 2.5.2). ST has 500 ms as well, which the wire's time field, of 262 ms, cannot carry.
+/// ST ULD 3.5.2, VL53L1X_SetTimingBudgetInMs. It has no medium mode, which needs 33 ms (datasheet DS12385
+/// rev 7, 2.5.2). Its 500 ms are left out: the wire's time field covers 262 ms.
 inline constexpr std::array<std::int64_t, 6> kShortBudgets_ms{15, 20, 33, 50, 100, 200};
 inline constexpr std::array<std::int64_t, 4> kMediumBudgets_ms{33, 50, 100, 200};
 inline constexpr std::array<std::int64_t, 5> kLongBudgets_ms{20, 33, 50, 100, 200};
-/// The device's fixed point.
+/// Steps of the device's fixed-point registers.
 inline constexpr double kQuartersPer_mm = 4.0;
 inline constexpr double kCrosstalkStepsPer_kcps = 512.0;
 inline constexpr double kSignalStepsPer_mcps = 128.0;
@@ -66,7 +66,7 @@ inline constexpr IntegerKey kInterMeasurement{
     .path = "nodes[].sensors[].inter_measurement_ms",
     .unit = "ms",
     .range = {1, 10'000},
-    .meaning = "from start to start; at least the budget and 5 ms, or the device halves the rate",
+    .meaning = "from start to start; at least the budget plus 5 ms, or the device halves the rate",
     .is_in_node_block = true};
 inline constexpr IntegerKey kPhase{.path = "nodes[].sensors[].phase_us",
                                    .unit = "us",
@@ -106,7 +106,7 @@ inline constexpr NumberKey kReflexBelow{
     .unit = "m",
     .range = {0.0, kReflexLimitMaxMm / 1000.0},
     .fallback = {0.0},
-    .meaning = "a closer hit makes the node send REFLEX, in whole millimetres; 0 is never",
+    .meaning = "a closer hit makes the node send REFLEX; whole millimetres, 0: never",
     .is_in_node_block = true};
 inline constexpr FlagKey kAppliesGainFactor{
     .path = "nodes[].sensors[].applies_gain_factor",

@@ -36,7 +36,8 @@ void read_wiring(const Table& table, const Board& board, SensorConfig& config) {
     config.address = table.integer<std::uint8_t>(keys::sensor::kAddress);
     if (config.address == kDefaultAddress) {
         table.fail(keys::sensor::kAddress,
-                   "expected any address but 0x29, found 0x29: a sensor that resets itself answers there");
+                   {ErrorCode::bad_value,
+                    "expected any address but 0x29, at which a sensor that resets itself answers", "0x29"});
     }
 }
 
@@ -44,25 +45,31 @@ void read_timing(const Table& table, SensorConfig& config) {
     config.distance_mode = table.choice(keys::sensor::kDistanceMode);
     const auto budget_ms = table.integer<std::int64_t>(keys::sensor::kTimingBudget);
     if (budget_ms > kBudgetMaxMs) {
-        table.fail(keys::sensor::kTimingBudget,
-                   fmt::format("expected at most {}, found {}: a reading's time on the wire would be "
-                               "ambiguous",
-                               kBudgetMaxMs, budget_ms));
+        table.fail(
+            keys::sensor::kTimingBudget,
+            {ErrorCode::out_of_range,
+             fmt::format("expected at most {}, because the time of a reading on the bus would be ambiguous",
+                         kBudgetMaxMs),
+             std::to_string(budget_ms)});
     }
     const auto budgets_ms = budgets_of(config.distance_mode);
     if (std::ranges::find(budgets_ms, budget_ms) == budgets_ms.end()) {
         table.fail(keys::sensor::kTimingBudget,
-                   fmt::format("expected one of {} in {} mode, found {}", joined(budgets_ms),
-                               word_of(keys::sensor::kDistanceMode, config.distance_mode), budget_ms));
+                   {ErrorCode::out_of_range,
+                    fmt::format("expected one of {} in {} mode", joined(budgets_ms),
+                                word_of(keys::sensor::kDistanceMode, config.distance_mode)),
+                    std::to_string(budget_ms)});
     }
     const auto period_ms = table.integer<std::int64_t>(keys::sensor::kInterMeasurement);
     if (period_ms < budget_ms + kSpareMs) {
         table.fail(
             keys::sensor::kInterMeasurement,
-            fmt::format(
-                "expected at least timing_budget_ms + {} = {}, found {}: the device would range at half the "
-                "rate",
-                kSpareMs, budget_ms + kSpareMs, period_ms));
+            {ErrorCode::conflict,
+             fmt::format(
+                 "expected at least timing_budget_ms + {} = {}, because the device would range at half "
+                 "the rate",
+                 kSpareMs, budget_ms + kSpareMs),
+             std::to_string(period_ms)});
     }
     config.timing_budget_ms = static_cast<std::uint16_t>(budget_ms);
     config.inter_measurement_ms = static_cast<std::uint16_t>(period_ms);
@@ -83,8 +90,8 @@ std::uint16_t read_reflex_limit_mm(const Table& table) {
     const double limit_m = table.number(keys::sensor::kReflexBelow);
     const double limit_mm = std::round(1000.0 * limit_m);
     if (std::abs(1000.0 * limit_m - limit_mm) > kRoundingMm) {
-        table.fail(keys::sensor::kReflexBelow,
-                   fmt::format("expected whole millimetres, found {} mm", 1000.0 * limit_m));
+        table.fail(keys::sensor::kReflexBelow, {ErrorCode::bad_value, "expected whole millimetres",
+                                                fmt::format("{} mm", 1000.0 * limit_m)});
     }
     return static_cast<std::uint16_t>(limit_mm);
 }
@@ -111,8 +118,10 @@ void read_zones(const Table& table, SensorEntry& entry) {
     const auto& items = read_list(*zones, path);
     if (items.size() < keys::sensor::kZones.count.min || items.size() > keys::sensor::kZones.count.max) {
         fail(*zones, path,
-             fmt::format("expected {} to {} zones, found {}", keys::sensor::kZones.count.min,
-                         keys::sensor::kZones.count.max, items.size()));
+             {ErrorCode::limit_exceeded,
+              fmt::format("expected {} to {} zones", keys::sensor::kZones.count.min,
+                          keys::sensor::kZones.count.max),
+              std::to_string(items.size())});
     }
     entry.config.zone_count = static_cast<std::uint8_t>(items.size());
     entry.sensor.zone_offset_m.clear();
@@ -123,8 +132,8 @@ void read_zones(const Table& table, SensorEntry& entry) {
                       zone.integer<std::uint8_t>(keys::zone::kHeight)};
         if (!fits_on_array(roi)) {
             zone.fail(keys::zone::kCentre,
-                      fmt::format("expected a zone within the 16 x 16 array, found {} x {} about SPAD {}",
-                                  roi.width, roi.height, roi.centre_spad));
+                      {ErrorCode::out_of_range, "expected a zone within the 16 x 16 array",
+                       fmt::format("{} x {} about SPAD {}", roi.width, roi.height, roi.centre_spad)});
         }
         entry.config.zones[i] = roi;
         entry.sensor.zone_offset_m.push_back(zone.number(keys::zone::kOffset));
@@ -144,10 +153,11 @@ std::optional<Cone> read_cone(const Table& table) {
 std::string read_link(const Table& table, const UrdfDocument& robot, const std::string& base_link) {
     auto link = table.text(keys::sensor::kLink);
     if (!robot.is_below(base_link, link)) {
-        table.fail(keys::sensor::kLink,
-                   fmt::format("expected a link of {} at or below {}, found '{}'; there are {}",
-                               robot.file().filename().string(), base_link, link,
-                               joined(robot.link_names(base_link))));
+        table.fail(
+            keys::sensor::kLink,
+            {ErrorCode::unknown_name,
+             fmt::format("expected a link of {} at or below {}", robot.file().filename().string(), base_link),
+             fmt::format("'{}'", link), "there are " + joined(robot.link_names(base_link))});
     }
     return link;
 }

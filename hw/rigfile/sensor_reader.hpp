@@ -16,7 +16,7 @@ struct SensorEntry {
 
 /// The table of one sensor, its keys checked.
 [[nodiscard]] Table sensor_table(const Value& value, const std::string& path);
-/// Throws Fault for an error in this sensor, including the board's limits.
+/// Throws Error for an error in this sensor, including the board's limits.
 [[nodiscard]] SensorEntry read_sensor(const Table& table, const UrdfDocument& robot,
                                       const std::string& base_link, const Board& board);
 

@@ -39,25 +39,32 @@ bool is_name_character(char c) {
            c == '-' || c == '.' || c == '/';
 }
 
-/// Describes the value that was found instead of a plain value, and its error.
+/// The error for a value that is not a plain number or flag, or is outside its range.
 template <class Parse>
-std::string describe_misread(const Value& value, Parse parse) {
-    if (value.kind != Value::Kind::scalar) return describe(value);
-    if (value.is_quoted && parse(value.text))
-        return fmt::format("{} in quotes, which make it a text: leave them out", describe(value));
+Error misread(const Value& value, std::string expected, Parse parse) {
+    const bool is_scalar = value.kind == Value::Kind::scalar;
+    const bool is_parsed = is_scalar && parse(value.text);
+    Error error{.code = is_parsed && !value.is_quoted ? ErrorCode::out_of_range : ErrorCode::wrong_type,
+                .what = std::move(expected),
+                .value = describe(value)};
+    if (!is_scalar) return error;
+    if (value.is_quoted && is_parsed) {
+        error.remedy = "leave out the quotes, which make it a text";
+        return error;
+    }
     std::string pointed = value.text;
     const auto comma = pointed.find(',');
-    if (comma != std::string::npos) pointed[comma] = '.';
-    if (comma != std::string::npos && parse_all<double>(pointed))
-        return fmt::format("{}: a decimal point, {}?", describe(value), pointed);
-    return describe(value);
+    if (comma == std::string::npos) return error;
+    pointed[comma] = '.';
+    if (parse_all<double>(pointed)) error.remedy = fmt::format("write a decimal point: {}", pointed);
+    return error;
 }
 
 bool is_number_of_digits(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Hint with the tables that know the key; empty if there is none.
+/// Hint with the tables that have the key; empty if there is none.
 std::string hint_below(std::string_view key, std::span<const std::string> keys_below) {
     const std::string ending = fmt::format(".{}", key);
     std::string found;
@@ -120,9 +127,11 @@ bool is_plain_scalar(const Value& value) {
 
 }  // namespace
 
-void fail(const Value& value, const std::string& path, std::string what) {
-    throw Fault{
-        {value.file ? value.file->shown() : std::filesystem::path{}, value.line, path, std::move(what)}};
+void fail(const Value& value, const std::string& path, Error error) {
+    if (value.file) error.file = value.file->shown();
+    error.line = value.line;
+    error.key = path;
+    throw error;
 }
 
 std::string describe(const Value& value) {
@@ -144,9 +153,8 @@ double read_number(const Value& value, const std::string& path, Range<double> ra
     // NaN, which from_chars reads, must be outside every range.
     if (!number || !(*number >= range.min && *number <= range.max)) {
         fail(value, path,
-             fmt::format(
-                 "expected a number from {} to {}, found {}", range.min, range.max,
-                 describe_misread(value, [](std::string_view text) { return parse_all<double>(text); })));
+             misread(value, fmt::format("expected a number from {} to {}", range.min, range.max),
+                     [](std::string_view text) { return parse_all<double>(text); }));
     }
     return *number;
 }
@@ -155,8 +163,8 @@ std::int64_t read_integer(const Value& value, const std::string& path, Range<std
     const auto number = is_plain_scalar(value) ? parse_integer<std::int64_t>(value.text) : std::nullopt;
     if (!number || *number < range.min || *number > range.max) {
         fail(value, path,
-             fmt::format("expected a whole number from {} to {}, found {}", range.min, range.max,
-                         describe_misread(value, parse_integer<std::int64_t>)));
+             misread(value, fmt::format("expected a whole number from {} to {}", range.min, range.max),
+                     parse_integer<std::int64_t>));
     }
     return *number;
 }
@@ -165,16 +173,16 @@ std::uint64_t read_unsigned(const Value& value, const std::string& path) {
     const auto number = is_plain_scalar(value) ? parse_integer<std::uint64_t>(value.text) : std::nullopt;
     if (!number) {
         fail(value, path,
-             fmt::format("expected a whole number from 0 to 2^64 - 1, found {}",
-                         describe_misread(value, parse_integer<std::uint64_t>)));
+             misread(value, "expected a whole number from 0 to 2^64 - 1", parse_integer<std::uint64_t>));
     }
     return *number;
 }
 
 std::string read_text(const Value& value, const std::string& path) {
     if (value.kind != Value::Kind::scalar)
-        fail(value, path, fmt::format("expected a text, found {}", describe(value)));
-    if (!is_writable_text(value.text)) fail(value, path, "expected a text in UTF-8, found other bytes");
+        fail(value, path, {ErrorCode::wrong_type, "expected a text", describe(value)});
+    if (!is_writable_text(value.text))
+        fail(value, path, {ErrorCode::bad_value, "expected a text in UTF-8", "other bytes"});
     return value.text;
 }
 
@@ -184,8 +192,9 @@ std::string read_name(const Value& value, const std::string& path) {
                          std::all_of(value.text.begin(), value.text.end(), is_name_character);
     if (!is_name) {
         fail(value, path,
-             fmt::format("expected a name of 1 to {} letters, digits or _ - . /, found {}", kNameLengthMax,
-                         describe(value)));
+             {ErrorCode::bad_name,
+              fmt::format("expected a name of 1 to {} letters, digits or _ - . /", kNameLengthMax),
+              describe(value)});
     }
     return value.text;
 }
@@ -195,17 +204,20 @@ std::string read_element_name(const Value& value, const std::string& path) {
                          value.text.size() <= kElementNameMax && is_writable_text(value.text) &&
                          !has_control_character(value.text);
     if (!is_name) {
-        fail(value, path,
+        fail(
+            value, path,
+            {ErrorCode::bad_name,
              fmt::format("expected a name of 1 to {} bytes of UTF-8 without control characters, in quotes if "
-                         "it is more than letters and digits, found {}",
-                         kElementNameMax, describe(value)));
+                         "it is more than letters and digits",
+                         kElementNameMax),
+             describe(value)});
     }
     return value.text;
 }
 
 const std::vector<Value>& read_list(const Value& value, const std::string& path) {
     if (value.kind != Value::Kind::list) {
-        fail(value, path, fmt::format("expected a list, found {}", describe(value)));
+        fail(value, path, {ErrorCode::wrong_type, "expected a list", describe(value)});
     }
     return value.items;
 }
@@ -214,7 +226,7 @@ Table::Table(const Value& value, std::string path, std::span<const std::string_v
              std::span<const std::string> keys_below)
     : value_(value), path_(std::move(path)) {
     if (value.kind != Value::Kind::table) {
-        rig::fail(value, path_, fmt::format("expected a table of keys, found {}", describe(value)));
+        rig::fail(value, path_, {ErrorCode::wrong_type, "expected a table of keys", describe(value)});
     }
     const auto is_known = [&known_keys](const Value& item) {
         return std::find(known_keys.begin(), known_keys.end(), item.key) != known_keys.end();
@@ -226,9 +238,11 @@ Table::Table(const Value& value, std::string path, std::span<const std::string_v
             std::none_of(value.items.begin(), value.items.end(),
                          [&](const Value& other) { return other.file == item.file && is_known(other); });
         if (path_.empty() && !item.is_quotable && is_of_another_kind) {
-            throw Fault{{item.file->shown(), item.line, "",
-                         "expected a known key, found none in this file: known here are " +
-                             joined(known_keys) + "; is it a file of another kind?"}};
+            throw Error{.code = ErrorCode::foreign_format,
+                        .what = "expected a known key, found none in this file",
+                        .remedy = "known here are " + joined(known_keys) + "; is it a file of another kind?",
+                        .file = item.file->shown(),
+                        .line = item.line};
         }
         // In a flow table a comma ends a value: {a: 0,02} has the keys a and 02.
         const bool is_fraction = item.kind == Value::Kind::null && is_number_of_digits(item.key);
@@ -238,7 +252,10 @@ Table::Table(const Value& value, std::string path, std::span<const std::string_v
                                              item.key)
                                        : hint_below(item.key, keys_below);
         if (hint.empty()) hint = hint_for_key(item.key, known_keys, path_);
-        rig::fail(item, path_of(item.key), "expected a known key, found this one: " + hint);
+        rig::fail(item, path_of(item.key),
+                  {.code = ErrorCode::unknown_key,
+                   .what = "expected a known key, found this one",
+                   .remedy = std::move(hint)});
     }
 }
 
@@ -257,8 +274,10 @@ const Value* Table::find(std::string_view key) const noexcept {
 const Value& Table::require(std::string_view key) const {
     if (const Value* found = find(key)) return *found;
     rig::fail(value_, path_of(key),
-              std::string("expected this key, found none: add it") +
-                  (value_.replaces_inherited ? " (a list replaces the inherited one as a whole)" : ""));
+              {.code = ErrorCode::missing_key,
+               .what = "expected this key, found none",
+               .remedy = value_.replaces_inherited ? "add it (a list replaces the inherited one as a whole)"
+                                                   : "add it"});
 }
 
 double Table::number(std::string_view key, Range<double> range, std::optional<double> fallback) const {
@@ -270,10 +289,7 @@ bool Table::flag(std::string_view key, std::optional<bool> fallback) const {
     if (!find(key) && fallback) return *fallback;
     const Value& value = require(key);
     const auto parsed = is_plain_scalar(value) ? parse_flag(value.text) : std::nullopt;
-    if (!parsed) {
-        rig::fail(value, path_of(key),
-                  fmt::format("expected true or false, found {}", describe_misread(value, parse_flag)));
-    }
+    if (!parsed) rig::fail(value, path_of(key), misread(value, "expected true or false", parse_flag));
     return *parsed;
 }
 
@@ -294,10 +310,9 @@ std::string Table::folder_name(std::string_view key) const {
     std::string name = this->name(key);
     if (name.find('/') == std::string::npos && name.find("..") == std::string::npos && name != ".")
         return name;
-    fail(key,
-         fmt::format("expected a name that a folder can have, found '{}': leave out / and .., and do not "
-                     "use . alone; recordings and flashed boards are filed under it",
-                     name));
+    fail(key, {ErrorCode::bad_name, "expected a name that a folder can have", fmt::format("'{}'", name),
+               "leave out / and .., and do not use . alone; folders of recordings and flashed boards get "
+               "this name"});
 }
 
 std::string Table::text(std::string_view key) const {
@@ -323,13 +338,13 @@ const std::vector<Value>& Table::list(const ListKey& key) const {
     return read_list(require(key), path_of(key));
 }
 
-void Table::fail(std::string_view key, std::string what) const {
+void Table::fail(std::string_view key, Error error) const {
     const Value* found = find(key);
-    rig::fail(found ? *found : value_, path_of(key), std::move(what));
+    rig::fail(found ? *found : value_, path_of(key), std::move(error));
 }
 
 void Table::fail_choice(std::string_view key, const std::string& expected) const {
-    fail(key, fmt::format("expected {}, found {}", expected, describe(require(key))));
+    fail(key, {ErrorCode::unknown_word, "expected " + expected, describe(require(key))});
 }
 
 }  // namespace octoskin::rig

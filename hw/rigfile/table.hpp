@@ -1,6 +1,5 @@
 // Strict access to a table of the rig file: every key known, every value of its type and within its range.
-// Each function throws Fault with file, line and key; the message has the expected value, the found value and
-// the remedy.
+// Each function throws Error with file, line and key, the expected and the found value, and the remedy.
 #pragma once
 
 #include <concepts>
@@ -18,8 +17,8 @@
 
 namespace octoskin::rig {
 
-/// Throws Fault with the file and line of `value`.
-[[noreturn]] void fail(const Value& value, const std::string& path, std::string what);
+/// Throws `error` at the file and line of `value`, with the key `path`.
+[[noreturn]] void fail(const Value& value, const std::string& path, Error error);
 
 [[nodiscard]] double read_number(const Value& value, const std::string& path, Range<double> range);
 [[nodiscard]] std::int64_t read_integer(const Value& value, const std::string& path,
@@ -58,8 +57,8 @@ class Table {
     [[nodiscard]] std::string path_of(const DeclaredKey auto& key) const { return path_of(name_of(key)); }
     [[nodiscard]] const Value* find(const DeclaredKey auto& key) const noexcept { return find(name_of(key)); }
     [[nodiscard]] const Value& require(const DeclaredKey auto& key) const { return require(name_of(key)); }
-    [[noreturn]] void fail(const DeclaredKey auto& key, std::string what) const {
-        fail(name_of(key), std::move(what));
+    [[noreturn]] void fail(const DeclaredKey auto& key, Error error) const {
+        fail(name_of(key), std::move(error));
     }
 
     /// The value of a declared key; its default if it is absent and has one.
@@ -120,7 +119,7 @@ class Table {
                               std::optional<Enum> fallback = std::nullopt) const {
         return choice(key, std::span(words.begin(), words.size()), fallback);
     }
-    [[noreturn]] void fail(std::string_view key, std::string what) const;
+    [[noreturn]] void fail(std::string_view key, Error error) const;
 
   private:
     [[noreturn]] void fail_choice(std::string_view key, const std::string& expected) const;

@@ -106,19 +106,21 @@ std::optional<ElementFault> find_shape_fault(const std::filesystem::path& file, 
         const auto* const shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
         if (shape == nullptr) continue;
         const std::string name = shape->Name();
-        const auto fault = [&](const std::string& what) {
+        const auto fault = [&](Error error) {
             const char* const of = link.Attribute("name");
-            return ElementFault{
-                {file, shape->GetLineNum(), fmt::format("link {}", of == nullptr ? "" : of), what}, name};
+            error.file = file;
+            error.line = shape->GetLineNum();
+            error.key = fmt::format("link {}", of == nullptr ? "" : of);
+            return ElementFault{std::move(error), name};
         };
         if (!is_one_of(name, {"box", "sphere", "cylinder", "capsule", "mesh"})) {
-            return fault(fmt::format(
-                "its <collision> is a <{}>: expected a cylinder, a sphere or a capsule; put one around it in "
-                "its place, or remove it",
-                name));
+            return fault({ErrorCode::unsupported,
+                          "expected a cylinder, a sphere or a capsule as its <collision>",
+                          fmt::format("a <{}>", name), "replace it by one that encloses it, or remove it"});
         }
         if (name == "capsule" && !(has_numbers(*shape, "radius", 1) && has_numbers(*shape, "length", 1)))
-            return fault("expected a <capsule> with a radius and a length, each a finite number of metres");
+            return fault({ErrorCode::bad_value,
+                          "expected a <capsule> with a radius and a length, each a finite number of metres"});
     }
     return std::nullopt;
 }
@@ -153,22 +155,30 @@ std::string printed_anew(const tinyxml2::XMLElement& robot) {
 }
 
 /// Unexpanded xacro at or below an element of a link or joint.
-std::optional<RigError> find_xacro(const std::filesystem::path& file, const Element& part) {
+std::optional<Error> find_xacro(const std::filesystem::path& file, const Element& part) {
     std::vector<const Element*> left{&part};
     while (!left.empty()) {
         const Element& element = *left.back();
         left.pop_back();
         if (is_xacro(element)) {
-            return RigError{file, element.GetLineNum(), element.Name(),
-                            fmt::format("a macro that is not expanded: {}", kXacroRemedy)};
+            return Error{.code = ErrorCode::unsupported,
+                         .what = "a macro that is not expanded",
+                         .remedy = kXacroRemedy,
+                         .file = file,
+                         .line = element.GetLineNum(),
+                         .key = element.Name()};
         }
         for (const auto* at = element.FirstAttribute(); at != nullptr; at = at->Next()) {
             const std::string_view value = at->Value();
             if (value.find("${") == std::string_view::npos && value.find("$(") == std::string_view::npos)
                 continue;
-            return RigError{
-                file, element.GetLineNum(), fmt::format("<{}>", element.Name()),
-                fmt::format("{}=\"{}\" has a xacro expression: {}", at->Name(), value, kXacroRemedy)};
+            return Error{.code = ErrorCode::unsupported,
+                         .what = "expected a value, because xacro expressions are not evaluated",
+                         .value = fmt::format("{}=\"{}\"", at->Name(), value),
+                         .remedy = kXacroRemedy,
+                         .file = file,
+                         .line = element.GetLineNum(),
+                         .key = fmt::format("<{}>", element.Name())};
         }
         for (const auto* child = element.FirstChildElement(); child != nullptr;
              child = child->NextSiblingElement())
@@ -179,7 +189,7 @@ std::optional<RigError> find_xacro(const std::filesystem::path& file, const Elem
 
 }  // namespace
 
-Result<std::string, RigError> counted_urdf(const std::filesystem::path& file, tinyxml2::XMLElement& robot) {
+Result<std::string, Error> counted_urdf(const std::filesystem::path& file, tinyxml2::XMLElement& robot) {
     robot.DeleteAttribute("version");
     keep_children(robot, {"link", "joint"});
     std::vector<ElementFault> faults;

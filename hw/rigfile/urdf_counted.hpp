@@ -25,7 +25,7 @@ namespace octoskin::rig {
 /// line: a used element contains a xacro expression or element; a <collision> of a shape that is none of box,
 /// sphere, cylinder, capsule and mesh, or a capsule without its numbers (all links in one error). `file` is
 /// for the messages only.
-[[nodiscard]] Result<std::string, RigError> counted_urdf(const std::filesystem::path& file,
-                                                         tinyxml2::XMLElement& robot);
+[[nodiscard]] Result<std::string, Error> counted_urdf(const std::filesystem::path& file,
+                                                      tinyxml2::XMLElement& robot);
 
 }  // namespace octoskin::rig

@@ -39,23 +39,30 @@ class CapturedLog final : public console_bridge::OutputHandler {
     std::string errors_;
 };
 
-std::string reason_of(const FolderError& error) {
-    if (error.fault == FolderFault::not_a_file)
-        return fmt::format("is {}: give the path of an ordinary URDF file", error.what);
-    if (error.fault == FolderFault::link || error.fault == FolderFault::outside) return error.reason();
-    return "cannot be opened: give the path of an existing, readable URDF file";
+Error error_of(const FolderError& error) {
+    Error refused = to_error(error);
+    if (error.fault == FolderFault::not_a_file) {
+        refused.remedy = "give the path of an ordinary URDF file";
+    } else if (error.fault != FolderFault::link && error.fault != FolderFault::outside) {
+        refused.what = "cannot be opened";
+        refused.remedy = "give the path of an existing, readable URDF file";
+    }
+    return refused;
 }
 
-Result<std::string, RigError> read_text(const FilePlace& file) {
-    const auto failed = [&file](std::string what) {
-        return unexpected(RigError{file.shown(), 0, "", std::move(what)});
+Result<std::string, Error> read_text(const FilePlace& file) {
+    const auto failed = [&file](Error error) {
+        error.file = file.shown();
+        return unexpected(std::move(error));
     };
     const auto opened = file.open();
-    if (!opened) return failed(reason_of(opened.error()));
+    if (!opened) return failed(error_of(opened.error()));
     auto text = opened->read(kFileBytesMax);
-    if (!text) return failed("cannot be read: " + text.error().reason());
-    if (text->size() > kFileBytesMax)
-        return failed(fmt::format("expected at most {} bytes, found more", kFileBytesMax));
+    if (!text) return failed(to_error(text.error(), "cannot be read: "));
+    if (text->size() > kFileBytesMax) {
+        return failed(
+            {ErrorCode::too_large, fmt::format("expected at most {} bytes", kFileBytesMax), "more"});
+    }
     return std::move(*text);
 }
 
@@ -94,44 +101,47 @@ void make_exact(urdf::Vector3& axis) {
     if (is_within(length - 1.0, kWritten)) axis = {axis.x / length, axis.y / length, axis.z / length};
 }
 
-/// A message if a joint seems to be in millimetres or degrees; else empty.
-std::string unit_fault(const urdf::Joint& joint) {
+/// An error if a joint seems to be in millimetres or degrees.
+std::optional<Error> unit_fault(const urdf::Joint& joint) {
     const urdf::Vector3& at = joint.parent_to_joint_origin_transform.position;
     if (!is_within(at.x, kOriginMax_m) || !is_within(at.y, kOriginMax_m) || !is_within(at.z, kOriginMax_m)) {
-        return fmt::format(
-            "origin at ({:g}, {:g}, {:g}), expected metres up to {:g}: is it written in millimetres?", at.x,
-            at.y, at.z, kOriginMax_m);
+        return Error{ErrorCode::out_of_range,
+                     fmt::format("expected an origin in metres, up to {:g}", kOriginMax_m),
+                     fmt::format("({:g}, {:g}, {:g})", at.x, at.y, at.z), "is it written in millimetres?"};
     }
-    if (!joint.limits) return "";
+    if (!joint.limits) return std::nullopt;
+    const auto found = [&joint] {
+        return fmt::format("{:g} to {:g}", joint.limits->lower, joint.limits->upper);
+    };
     const auto outside = [&](double max) {
         return !is_within(joint.limits->lower, max) || !is_within(joint.limits->upper, max);
     };
     if (joint.type == urdf::Joint::REVOLUTE && outside(kTurnMax_rad)) {
-        return fmt::format(
-            "limits {:g} to {:g}, expected radians, at most two turns: are they written in degrees?",
-            joint.limits->lower, joint.limits->upper);
+        return Error{ErrorCode::out_of_range, "expected limits in radians, at most two turns", found(),
+                     "are they written in degrees?"};
     }
     if (joint.type == urdf::Joint::PRISMATIC && outside(kOriginMax_m)) {
-        return fmt::format(
-            "limits {:g} to {:g}, expected metres up to {:g}: are they written in millimetres?",
-            joint.limits->lower, joint.limits->upper, kOriginMax_m);
+        return Error{ErrorCode::out_of_range,
+                     fmt::format("expected limits in metres up to {:g}", kOriginMax_m), found(),
+                     "are they written in millimetres?"};
     }
-    return "";
+    return std::nullopt;
 }
 
 }  // namespace
 
-Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
+Result<UrdfDocument, Error> UrdfDocument::read(const FilePlace& place) {
     const auto text = read_text(place);
     const std::filesystem::path file = place.shown();
     if (!text) return unexpected(text.error());
     if (is_utf16(*text)) {
-        return unexpected(RigError{
-            file, 0, "", "is in UTF-16: save it as UTF-8 (`iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`)"});
+        return unexpected(Error{.code = ErrorCode::unsupported,
+                                .what = "is in UTF-16",
+                                .remedy = "save it as UTF-8 (`iconv -f UTF-16 -t UTF-8 FILE > NEW_FILE`)",
+                                .file = file});
     }
     // An untrusted rig may name any file of this machine: its content is not shown.
-    if (text->find("<robot") == std::string::npos)
-        return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
+    if (text->find("<robot") == std::string::npos) return unexpected(no_robot_in(file));
     tinyxml2::XMLDocument xml;
     const auto robot = parse_robot(file, *text, xml);
     if (!robot) return unexpected(robot.error());
@@ -144,14 +154,16 @@ Result<UrdfDocument, RigError> UrdfDocument::read(const FilePlace& place) {
     if (!counted) return unexpected(counted.error());
     auto [model, complaint] = parse(*counted);
     if (!model || !model->getRoot()) {
-        return unexpected(RigError{
-            file, 0, "", "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint)});
+        return unexpected(
+            Error{.code = ErrorCode::bad_value,
+                  .what = "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint),
+                  .file = file});
     }
     std::vector<ElementFault> faults;
     for (const auto& [name, joint] : model->joints_) {
         make_exact(joint->axis);
-        if (auto fault = unit_fault(*joint); !fault.empty())
-            faults.push_back({document.error("joint", name, std::move(fault)), "its numbers"});
+        if (auto fault = unit_fault(*joint))
+            faults.push_back({document.error("joint", name, *std::move(fault)), "its numbers"});
     }
     if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));
     document.model_ = std::move(model);

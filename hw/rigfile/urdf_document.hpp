@@ -26,7 +26,7 @@ class UrdfDocument {
     /// origin or a sliding limit beyond 10 m) or of degrees (a limit beyond two turns). The message contains
     /// urdfdom's text. urdfdom prints nothing. Not to be called from two threads at once: urdfdom's log is
     /// global.
-    [[nodiscard]] static Result<UrdfDocument, RigError> read(const FilePlace& file);
+    [[nodiscard]] static Result<UrdfDocument, Error> read(const FilePlace& file);
 
     [[nodiscard]] const urdf::ModelInterface& model() const noexcept { return *model_; }
     [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
@@ -37,8 +37,8 @@ class UrdfDocument {
     /// The joints below `base_link` that are not fixed, by name.
     [[nodiscard]] std::vector<std::string> moving_joints(const std::string& base_link) const;
     /// An error about one element ("joint", "panda_joint3"), with its line if the element exists.
-    [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const {
-        return outline_.error(tag, name, std::move(what));
+    [[nodiscard]] Error error(std::string_view tag, std::string_view name, Error error) const {
+        return outline_.error(tag, name, std::move(error));
     }
 
     /// Whether a joint has a <limit> without `upper`, for which urdfdom uses 0.

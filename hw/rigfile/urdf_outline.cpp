@@ -22,27 +22,28 @@ std::string attribute(const tinyxml2::XMLElement* element, const char* name) {
     return text ? text : "";
 }
 
-/// A message if an `<origin rpy>` seems to be in degrees; else empty. urdfdom does not keep the angles.
-std::string turn_fault(const tinyxml2::XMLElement* origin) {
+/// An error if an `<origin rpy>` seems to be in degrees. urdfdom does not keep the angles.
+std::optional<Error> turn_fault(const tinyxml2::XMLElement* origin) {
     constexpr double kOriginTurnMax_rad = 6.29;  // one turn, plus rounding
     std::istringstream turns(attribute(origin, "rpy"));
     for (double turn = 0.0; turns >> turn;) {
         if (std::abs(turn) > kOriginTurnMax_rad) {
-            return fmt::format("rpy=\"{}\", expected radians, at most once round: is it written in degrees?",
-                               attribute(origin, "rpy"));
+            return Error{ErrorCode::out_of_range, "expected an rpy in radians, at most once round",
+                         fmt::format("\"{}\"", attribute(origin, "rpy")), "is it written in degrees?"};
         }
     }
-    return "";
+    return std::nullopt;
 }
 
 /// The error of the first element of a link or joint whose pose is used and whose rotation is too large.
-std::optional<RigError> find_turn_fault(const std::filesystem::path& file,
-                                        const tinyxml2::XMLElement& element) {
-    const auto fault_at = [&](const tinyxml2::XMLElement* origin) -> std::optional<RigError> {
-        auto fault = turn_fault(origin);
-        if (fault.empty()) return std::nullopt;
-        return RigError{file, origin->GetLineNum(),
-                        fmt::format("{} {}", element.Name(), attribute(&element, "name")), std::move(fault)};
+std::optional<Error> find_turn_fault(const std::filesystem::path& file, const tinyxml2::XMLElement& element) {
+    const auto fault_at = [&](const tinyxml2::XMLElement* origin) -> std::optional<Error> {
+        auto error = turn_fault(origin);
+        if (!error) return std::nullopt;
+        error->file = file;
+        error->line = origin->GetLineNum();
+        error->key = fmt::format("{} {}", element.Name(), attribute(&element, "name"));
+        return error;
     };
     if (auto fault = fault_at(element.FirstChildElement("origin"))) return fault;
     for (const auto* body = element.FirstChildElement("collision"); body;
@@ -54,23 +55,30 @@ std::optional<RigError> find_turn_fault(const std::filesystem::path& file,
 
 }  // namespace
 
-Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& file,
-                                                const tinyxml2::XMLElement& robot) {
+Result<UrdfOutline, Error> UrdfOutline::read(const std::filesystem::path& file,
+                                             const tinyxml2::XMLElement& robot) {
     UrdfOutline outline;
     outline.file_ = file;
     std::vector<ElementFault> faults;
     for (const auto* element = robot.FirstChildElement(); element; element = element->NextSiblingElement()) {
         const std::string tag = element->Name();
         if (tag.starts_with("xacro:")) {
-            return unexpected(RigError{file, element->GetLineNum(), tag,
-                                       "a macro that is not expanded: run xacro first, and give its output"});
+            return unexpected(Error{.code = ErrorCode::unsupported,
+                                    .what = "a macro that is not expanded",
+                                    .remedy = "run xacro first, and give its output",
+                                    .file = file,
+                                    .line = element->GetLineNum(),
+                                    .key = tag});
         }
         if (tag != "link" && tag != "joint") continue;
         if (outline.elements_.size() == kElementsMax) {
-            return unexpected(
-                RigError{file, element->GetLineNum(), tag,
-                         fmt::format("expected a robot of at most {} links and joints together, found more",
-                                     kElementsMax)});
+            return unexpected(Error{
+                .code = ErrorCode::limit_exceeded,
+                .what = fmt::format("expected a robot of at most {} links and joints together", kElementsMax),
+                .value = "more",
+                .file = file,
+                .line = element->GetLineNum(),
+                .key = tag});
         }
         if (auto fault = find_turn_fault(file, *element)) faults.push_back({std::move(*fault), "its rpy"});
         const auto* limit = element->FirstChildElement("limit");
@@ -84,15 +92,15 @@ Result<UrdfOutline, RigError> UrdfOutline::read(const std::filesystem::path& fil
     return outline;
 }
 
-std::optional<RigError> UrdfOutline::find_loop() const {
+std::optional<Error> UrdfOutline::find_loop() const {
     std::map<std::string_view, const Element*> joint_above;
     for (const Element& joint : elements_) {
         if (joint.tag != "joint") continue;
         const auto [first, is_new] = joint_above.try_emplace(joint.child_link, &joint);
         if (is_new) continue;
         return error("link", joint.child_link,
-                     fmt::format("expected one joint to hang from, found {} and {}: remove one",
-                                 first->second->name, joint.name));
+                     {ErrorCode::duplicate, "expected one joint to hang from",
+                      fmt::format("{} and {}", first->second->name, joint.name), "remove one"});
     }
     // Every path upwards ends at a root or at a link of an earlier path: each link is visited once.
     std::map<std::string_view, const Element*> passed_from;
@@ -104,8 +112,9 @@ std::optional<RigError> UrdfOutline::find_loop() const {
             at = above->second->parent_link;
             const auto before = passed_from.find(at);
             if (before == passed_from.end() || before->second != &link) continue;
-            return error("link", link.name,
-                         "expected a way up to a root link, found a loop: remove one joint");
+            return error(
+                "link", link.name,
+                {ErrorCode::bad_value, "expected a way up to a root link", "a loop", "remove one joint"});
         }
     }
     return std::nullopt;
@@ -117,12 +126,14 @@ bool UrdfOutline::is_upper_missing(std::string_view joint) const {
     });
 }
 
-RigError UrdfOutline::error(std::string_view tag, std::string_view name, std::string what) const {
+Error UrdfOutline::error(std::string_view tag, std::string_view name, Error error) const {
     const auto found = std::find_if(elements_.begin(), elements_.end(), [&](const Element& element) {
         return element.tag == tag && element.name == name;
     });
-    const int line = found == elements_.end() ? 0 : found->line;
-    return {file_, line, fmt::format("{} {}", tag, name), std::move(what)};
+    error.file = file_;
+    error.line = found == elements_.end() ? 0 : found->line;
+    error.key = fmt::format("{} {}", tag, name);
+    return error;
 }
 
 }  // namespace octoskin::rig

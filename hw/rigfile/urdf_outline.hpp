@@ -21,11 +21,11 @@ class UrdfOutline {
   public:
     /// Errors, each with its line: a xacro element, more than 4,000 links and joints, an <origin rpy> of more
     /// than a turn, a link with two parent joints, a loop. O(n log n). `file` is for the messages only.
-    [[nodiscard]] static Result<UrdfOutline, RigError> read(const std::filesystem::path& file,
-                                                            const tinyxml2::XMLElement& robot);
+    [[nodiscard]] static Result<UrdfOutline, Error> read(const std::filesystem::path& file,
+                                                         const tinyxml2::XMLElement& robot);
 
     /// An error about one element ("joint", "panda_joint3"), with its line if the element exists.
-    [[nodiscard]] RigError error(std::string_view tag, std::string_view name, std::string what) const;
+    [[nodiscard]] Error error(std::string_view tag, std::string_view name, Error error) const;
 
     /// Whether a joint has a <limit> without `upper`, for which urdfdom uses 0.
     [[nodiscard]] bool is_upper_missing(std::string_view joint) const;
@@ -39,7 +39,7 @@ class UrdfOutline {
         std::string child_link;
         bool is_upper_missing = false;  ///< of a joint with a <limit>
     };
-    [[nodiscard]] std::optional<RigError> find_loop() const;
+    [[nodiscard]] std::optional<Error> find_loop() const;
 
     std::filesystem::path file_;
     std::vector<Element> elements_;  ///< links and joints in the order of the file

@@ -21,16 +21,26 @@ std::string element_of(const tinyxml2::XMLDocument& document) {
 
 }  // namespace
 
-Result<tinyxml2::XMLElement*, RigError> parse_robot(const std::filesystem::path& file,
-                                                    const std::string& text, tinyxml2::XMLDocument& xml) {
-    if (auto fault = crowded_element(text))
-        return unexpected(RigError{file, fault->line, "", std::move(fault->what)});
+Error no_robot_in(const std::filesystem::path& file) {
+    return {.code = ErrorCode::foreign_format,
+            .what = "expected a URDF with a <robot>, found none",
+            .file = file};
+}
+
+Result<tinyxml2::XMLElement*, Error> parse_robot(const std::filesystem::path& file, const std::string& text,
+                                                 tinyxml2::XMLDocument& xml) {
+    if (auto error = crowded_element(text)) {
+        error->file = file;
+        return unexpected(*std::move(error));
+    }
     if (xml.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-        return unexpected(RigError{file, xml.ErrorLineNum(), "",
-                                   "not XML: " + xml_syntax_hint(xml.ErrorName(), element_of(xml))});
+        return unexpected(Error{.code = ErrorCode::bad_syntax,
+                                .what = "not XML: " + xml_syntax_hint(xml.ErrorName(), element_of(xml)),
+                                .file = file,
+                                .line = xml.ErrorLineNum()});
     }
     if (auto* const robot = xml.FirstChildElement("robot")) return robot;
-    return unexpected(RigError{file, 0, "", "expected a URDF with a <robot>, found none"});
+    return unexpected(no_robot_in(file));
 }
 
 }  // namespace octoskin::rig

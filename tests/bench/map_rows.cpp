@@ -270,14 +270,14 @@ void add_files(MapRows& rows, const std::filesystem::path& folder, const std::st
     });
     rows.add_ours("save", "octomap_save", [ours](const FusedMap& map) {
         const auto saved = save_map(map, ours);
-        if (!saved) throw std::runtime_error(saved.error().message);
+        if (!saved) throw std::runtime_error(saved.error().message());
     });
     // One file for both to load. Whether a row that saves comes first depends on the order of rows.
     const std::string loaded = folder / (resolution + ".loaded.ot");
     const auto provide = [maps, loaded] {
         if (std::filesystem::exists(loaded)) return;
         const auto saved = save_map(maps->ours(), loaded);
-        if (!saved) throw std::runtime_error(saved.error().message);
+        if (!saved) throw std::runtime_error(saved.error().message());
     };
     const auto with_file = [&](Row row) {
         row.make = [provide, make = std::move(row.make)] {
@@ -298,7 +298,7 @@ void add_files(MapRows& rows, const std::filesystem::path& folder, const std::st
     rows.rows.back() = with_file(std::move(rows.rows.back()));
     rows.add_ours("load", "octomap_load", [loaded](const FusedMap& map) {
         const auto read = load_map(loaded, {.map = map.config()});
-        if (!read) throw std::runtime_error(read.error().message);
+        if (!read) throw std::runtime_error(read.error().message());
     });
     rows.rows.back() = with_file(std::move(rows.rows.back()));
 }

@@ -45,9 +45,8 @@ std::vector<Eigen::Vector3d> directions_of(const CameraIntrinsics& camera,
 
 }  // namespace
 
-Result<RoomFrames, sim::WorldError> render_room(const std::filesystem::path& sdf,
-                                                const CameraIntrinsics& camera, unsigned count,
-                                                double range_max_m) {
+Result<RoomFrames, sim::Error> render_room(const std::filesystem::path& sdf, const CameraIntrinsics& camera,
+                                           unsigned count, double range_max_m) {
     const auto world = sim::World::read(sdf);
     if (!world) return unexpected(world.error());
     RoomFrames room{.camera = camera, .frames = {}};

@@ -7,7 +7,6 @@
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_frame.hpp"
-#include "hw/sim/world/world_error.hpp"
 
 namespace octoskin::bench {
 
@@ -25,8 +24,8 @@ struct RoomFrames {
 };
 
 /// `count` frames with noise of 3 cm, in millimetres as a camera gives them. About 20 ms a frame.
-[[nodiscard]] Result<RoomFrames, sim::WorldError> render_room(const std::filesystem::path& sdf,
-                                                              const CameraIntrinsics& camera, unsigned count,
-                                                              double range_max_m);
+[[nodiscard]] Result<RoomFrames, sim::Error> render_room(const std::filesystem::path& sdf,
+                                                         const CameraIntrinsics& camera, unsigned count,
+                                                         double range_max_m);
 
 }  // namespace octoskin::bench

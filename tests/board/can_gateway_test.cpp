@@ -97,9 +97,9 @@ TEST_F(CanGatewayTest, ends_when_the_other_side_is_gone) {
 TEST(OpenInterface, names_one_that_is_not_there) {
     const auto socket = open_interface("nocan7");
     ASSERT_FALSE(socket);
-    EXPECT_NE(socket.error().message.find("nocan7"), std::string::npos);
-    EXPECT_TRUE(socket.error().code == ExitCode::unavailable ||
-                socket.error().code == ExitCode::no_permission);
+    EXPECT_EQ(socket.error().error.file, "nocan7");
+    EXPECT_TRUE(socket.error().exit == ExitCode::unavailable ||
+                socket.error().exit == ExitCode::no_permission);
 }
 
 }  // namespace

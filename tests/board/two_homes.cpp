@@ -109,7 +109,7 @@ Heard TwoHomes::run(const std::optional<EmulatedBoards>& emulated,
                 log.truth[{ranging.node_id, ranging.sensor}].push_back(ranging);
             }};
     const auto summary = run_experiment(input, output);
-    EXPECT_TRUE(summary) << summary.error().what;
+    EXPECT_TRUE(summary) << summary.error().message();
     return summary ? judged(log, *summary) : Heard{};
 }
 

@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::istringstream stream{std::string(octoskin::fuzz::text_of({data, size}))};
     const auto path = octoskin::read_joint_path(stream, "fuzzed");
     if (!path) {
-        assert(path.error().message.starts_with("fuzzed:"));
+        assert(path.error().message().starts_with("fuzzed:"));
         return 0;
     }
     assert(path->lines.size() == path->configurations.size());

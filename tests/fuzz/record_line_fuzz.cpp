@@ -9,7 +9,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace octoskin;
     const auto start = read_record_start(fuzz::text_of({data, size}));
     if (!start) {
-        assert(!start.error().message.empty());
+        assert(!start.error().message().empty());
         return 0;
     }
     assert(start->folder.is_absolute() && plain(start->folder) == start->folder);

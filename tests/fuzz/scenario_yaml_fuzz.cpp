@@ -38,7 +38,7 @@ class ScenarioInput {
             assert(scenario->map_shift_m(seed).cwiseAbs().maxCoeff() <= 1.0);
         }
         for (const char* key : {"region", "hidden_models", "motion.circle", "motion.circle.link"}) {
-            assert(scenario->error(key, "x").line > 0);
+            assert(scenario->error(key, {.what = "x"}).line > 0);
         }
     }
 

@@ -29,11 +29,22 @@ Result<Question, AppError> question_of(const rig::Rig& rig, const Wish& wish, st
                             .sequence = sequence};
         }
         return fail(ExitCode::usage,
-                    fmt::format("no sensor '{}' on node {}: it has {}", wish.sensor, node.name, sensors));
+                    {.code = ErrorCode::unknown_name,
+                     .what = fmt::format("expected a sensor of node {}, which has {}", node.name, sensors),
+                     .value = "'" + wish.sensor + "'",
+                     .key = "--sensor"});
     }
-    if (wish.node.empty()) return fail(ExitCode::usage, "--node is missing; it takes one of: " + names);
+    if (wish.node.empty()) {
+        return fail(ExitCode::usage, {.code = ErrorCode::bad_argument,
+                                      .what = "is missing",
+                                      .remedy = "give one of " + names,
+                                      .key = "--node"});
+    }
     return fail(ExitCode::usage,
-                fmt::format("no node '{}' in rig {}: it has {}", wish.node, rig.name, names));
+                {.code = ErrorCode::unknown_name,
+                 .what = fmt::format("expected a node of rig {}, which has {}", rig.name, names),
+                 .value = "'" + wish.node + "'",
+                 .key = "--node"});
 }
 
 Dialogue::Outcome converse(Dialogue& dialogue, socketcan::CanSocket& socket, const Outside& outside) {
@@ -60,10 +71,10 @@ Result<std::filesystem::path, AppError> write_into_rig(const std::filesystem::pa
         if (error) return error.message();
         const auto saved =
             save_atomically(itself, text, posix_file_operations(), Attributes::of_the_old_file);
-        return saved ? std::nullopt : std::optional(saved.error().message());
+        return saved ? std::nullopt : std::optional(to_error(saved.error()).reason());
     };
     const auto file = rig::edit_sensor(rig, edit, save);
-    if (!file) return fail(ExitCode::cannot_create, file.error().message());
+    if (!file) return fail(ExitCode::cannot_create, file.error());
     return *file;
 }
 

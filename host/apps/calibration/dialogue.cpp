@@ -21,27 +21,31 @@ constexpr std::int64_t kPeriodsMax =
     130;  // 60 ranges, at worst at half the rate, and 3 periods without a range
 constexpr int kAsksMax = 3;
 
-const char* explanation(CalibrationOutcome outcome) {
+Error error_of(CalibrationOutcome outcome) {
     switch (outcome) {
         case CalibrationOutcome::refused:
-            return "the node refuses: another calibration is running on it, it does not range (safe mode, no "
-                   "valid configuration), or its rig makes it refuse all commands (refuses_commands)";
+            return {
+                ErrorCode::bad_argument,
+                "the node refuses: another calibration is running on it, it does not range (safe mode, no "
+                "valid configuration), or its rig makes it refuse all commands (refuses_commands)"};
         case CalibrationOutcome::not_brought_up:
-            return "the sensor could not be initialised: see its SENSOR_HEALTH";
+            return {ErrorCode::no_device, "the sensor could not be initialised", "", "see its SENSOR_HEALTH"};
         case CalibrationOutcome::device_failed:
-            return "the sensor failed during the calibration: see its SENSOR_HEALTH";
+            return {ErrorCode::no_device, "the sensor failed during the calibration", "",
+                    "see its SENSOR_HEALTH"};
         case CalibrationOutcome::no_result:
-            return "the sensor gave no range for 2 s and for 3 of its periods";
+            return {ErrorCode::no_data, "the sensor gave no range for 2 s and for 3 of its periods"};
         case CalibrationOutcome::no_target:
-            return "the sensor had no valid target in more than 10 of 50 ranges: is the target grey and in "
-                   "front of the sensor, and is the room dark?";
+            return {ErrorCode::no_data, "the sensor had no valid target in more than 10 of 50 ranges", "",
+                    "is the target grey and in front of the sensor, and is the room dark?"};
         case CalibrationOutcome::out_of_range:
-            return "the ranges are more than one metre off: is the target at the distance of --target-mm?";
+            return {ErrorCode::out_of_range, "the ranges are more than one metre off", "",
+                    "is the target at the distance of --target-mm?"};
         case CalibrationOutcome::under_way:
         case CalibrationOutcome::done:
             break;
     }
-    return "the calibration ended with an outcome that this program does not know";
+    return {ErrorCode::unsupported, "the calibration ended with an outcome that this program does not know"};
 }
 
 }  // namespace
@@ -53,8 +57,9 @@ std::string Dialogue::whom() const {
     return sensor_text(question_.node_id, question_.node_name, question_.sensor, question_.sensor_name);
 }
 
-void Dialogue::give_up(ExitCode code, const std::string& why) {
-    outcome_ = fail(code, whom() + ": " + why);
+void Dialogue::give_up(ExitCode exit, Error error) {
+    error.key = whom();
+    outcome_ = fail(exit, std::move(error));
 }
 
 void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
@@ -73,19 +78,23 @@ void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
     } else if (const auto* page = std::get_if<wire::NodeInfo>(&decoded->message)) {
         const auto* fault = std::get_if<wire::InfoFault>(page);
         if (fault != nullptr && fault->kind == wire::FaultKind::commands_refused)
-            give_up(ExitCode::failed, kCommandsRefused);
+            give_up(ExitCode::failed, commands_refused());
     }
 }
 
 void Dialogue::on_heartbeat(const wire::Heartbeat& heartbeat, HostTime now) {
-    if (const char* why = obstacle(heartbeat.state)) return give_up(ExitCode::failed, why);
+    if (auto why = obstacle(heartbeat.state)) return give_up(ExitCode::failed, std::move(*why));
     if (step_ != Step::awaiting_heartbeat) return;
     const std::uint32_t expected = question_.node_hash & 0xFFFFU;
     if (heartbeat.node_hash_low != expected) {
-        give_up(ExitCode::bad_config, fmt::format("its configuration is not that of the rig file (low half "
-                                                  "of node_hash {:04x}, the rig has {:04x}): flash it first",
-                                                  heartbeat.node_hash_low, expected));
-        return;
+        return give_up(
+            ExitCode::bad_config,
+            {.code = ErrorCode::mismatch,
+             .what = fmt::format("its configuration is not that of the rig file: expected the low half of "
+                                 "node_hash to be {:04x}",
+                                 expected),
+             .value = fmt::format("{:04x}", heartbeat.node_hash_low),
+             .remedy = "flash it first"});
     }
     ask(now);
 }
@@ -116,7 +125,7 @@ void Dialogue::on_calibration(const wire::Calibration& said, HostTime now) {
         const auto periods = std::chrono::milliseconds(kPeriodsMax * question_.inter_measurement_ms);
         deadline_ = now + kEndWithin + periods;
     } else {
-        give_up(ExitCode::failed, explanation(said.outcome));
+        give_up(ExitCode::failed, error_of(said.outcome));
     }
 }
 
@@ -124,13 +133,16 @@ void Dialogue::on_time(HostTime now) {
     if (outcome_ || now < deadline_) return;
     switch (step_) {
         case Step::awaiting_heartbeat:
-            return give_up(ExitCode::unavailable, kNoHeartbeat);
+            return give_up(ExitCode::unavailable, no_heartbeat());
         case Step::awaiting_answer:
             if (asks_ < kAsksMax) return ask(now);
             return give_up(ExitCode::unavailable,
-                           "the node does not answer: its firmware may be older than the command; flash it");
+                           {.code = ErrorCode::no_answer,
+                            .what = "the node does not answer",
+                            .remedy = "its firmware may be older than the command; flash it"});
         case Step::awaiting_end:
-            return give_up(ExitCode::io_failed, "the calibration began, but its result never arrived");
+            return give_up(ExitCode::io_failed,
+                           {ErrorCode::time_limit, "the calibration began, but its result never arrived"});
     }
 }
 

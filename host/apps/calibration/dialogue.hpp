@@ -54,7 +54,7 @@ class Dialogue final : public NodeDialogue {
     void on_heartbeat(const wire::Heartbeat& heartbeat, HostTime now);
     void ask(HostTime now);
     void on_calibration(const wire::Calibration& said, HostTime now);
-    void give_up(ExitCode code, const std::string& why);
+    void give_up(ExitCode exit, Error error);
     [[nodiscard]] std::string whom() const;
 
     Question question_;

@@ -28,13 +28,20 @@ constexpr int kUptimeWaitsMax = 8;  // the uptime of a node that keeps resetting
 constexpr int kAsksMax = 3;
 constexpr std::uint8_t kCountFull = 255;
 
+Error no_sensor(std::uint8_t wanted, std::uint8_t count) {
+    if (count == 0) return {ErrorCode::unknown_name, "it has no sensors", {}, "leave out --sensor"};
+    return {ErrorCode::unknown_name, fmt::format("expected a sensor from 0 to {}", count - 1),
+            fmt::format("{}", wanted), "give the number of one of its sensors"};
+}
+
 }  // namespace
 
 Dialogue::Dialogue(Order order, HostTime now)
     : order_(std::move(order)), deadline_(now + kHeartbeatWithin), commanded_(now) {}
 
-void Dialogue::give_up(ExitCode code, const std::string& why) {
-    outcome_ = fail(code, order_.whom() + ": " + why);
+void Dialogue::give_up(ExitCode exit, Error error) {
+    error.key = order_.whom();
+    outcome_ = fail(exit, std::move(error));
 }
 
 void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
@@ -50,7 +57,7 @@ void Dialogue::on_frame(const wire::CanFrame& frame, HostTime now) {
     take(decoded->message);
     const auto& fault = view_.info.fault;
     if (fault && fault->kind == wire::FaultKind::commands_refused)
-        return give_up(ExitCode::failed, kCommandsRefused);
+        return give_up(ExitCode::failed, commands_refused());
     advance(now);
 }
 
@@ -88,14 +95,17 @@ void Dialogue::advance(HostTime now) {
 }
 
 void Dialogue::on_first_heartbeat(HostTime now) {
-    const std::string difference = difference_text(view_, order_);
     if (order_.is_sensor_by_name && view_.state() == wire::NodeState::bad_config)
-        return give_up(ExitCode::bad_config, obstacle(wire::NodeState::bad_config));
-    if (order_.is_sensor_by_name && !difference.empty())
+        return give_up(ExitCode::bad_config, *obstacle(wire::NodeState::bad_config));
+    if (order_.is_sensor_by_name && !difference_text(view_, order_).empty())
         return give_up(
             ExitCode::bad_config,
-            difference +
-                ", so the name may mean another sensor: flash the node, or give the sensor's number");
+            {.code = ErrorCode::mismatch,
+             .what = fmt::format("its configuration is not that of the rig file, so the name may mean "
+                                 "another sensor: expected the low half of node_hash to be {:04x}",
+                                 order_.known->node_hash & 0xFFFFU),
+             .value = fmt::format("{:04x}", view_.heartbeat->node_hash_low),
+             .remedy = "flash the node, or give the sensor's number"});
     ask(Step::asking_before, now);
 }
 
@@ -133,8 +143,7 @@ void Dialogue::on_sent(HostTime now) {
 
 void Dialogue::command(HostTime now) {
     if (order_.command.sensor != wire::kAllSensors && order_.command.sensor >= view_.sensor_count())
-        return give_up(ExitCode::usage, fmt::format("it has no sensor {}; it has {} of them, numbered from 0",
-                                                    order_.command.sensor, view_.sensor_count()));
+        return give_up(ExitCode::usage, no_sensor(order_.command.sensor, view_.sensor_count()));
     const bool is_young = view_.info.build->uptime_s < kUptimeMinS;
     if (order_.command.code == CommandCode::reset && is_young && uptime_waits_ < kUptimeWaitsMax) {
         ++uptime_waits_;
@@ -151,14 +160,19 @@ void Dialogue::command(HostTime now) {
 void Dialogue::judge(HostTime now) {
     if (order_.command.code == CommandCode::reset) return judge_reset(now);
     const std::uint8_t refused_before = before_.info.traffic->rx_rejected;
-    if (view_.info.traffic->rx_rejected > refused_before)
-        return give_up(ExitCode::failed, fmt::format("it refuses {}: {}", wire::name(order_.command.code),
-                                                     refusal(order_, before_)));
+    if (view_.info.traffic->rx_rejected > refused_before) {
+        Error error = refusal(order_, before_);
+        error.what = fmt::format("it refuses {}: {}", wire::name(order_.command.code), error.what);
+        return give_up(ExitCode::failed, std::move(error));
+    }
     if (refused_before == kCountFull)
         return give_up(ExitCode::failed,
-                       fmt::format("whether it refused {} is unknown: its counter of refused frames is at "
-                                   "its maximum ({}); the command 'reset' restarts it",
-                                   wire::name(order_.command.code), kCountFull));
+                       {.code = ErrorCode::limit_exceeded,
+                        .what = fmt::format("whether it refused {} is unknown: its counter of refused frames "
+                                            "must be below its maximum",
+                                            wire::name(order_.command.code)),
+                        .value = fmt::format("{}", kCountFull),
+                        .remedy = "the command 'reset' restarts it"});
     step_ = Step::awaiting_effect;
     deadline_ = commanded_ + kEffectWithin;
     advance(now);
@@ -182,35 +196,42 @@ void Dialogue::succeed() {
 }
 
 void Dialogue::on_no_effect() {
-    const char* const why = obstacle(view_.state());
-    give_up(ExitCode::failed, fmt::format("it did not refuse {}, but 5 s later its state is: {}{}",
-                                          wire::name(order_.command.code), state_text(view_, order_),
-                                          why != nullptr ? std::string(": ") + why : ""));
+    const auto why = obstacle(view_.state());
+    give_up(ExitCode::failed, {.code = why ? why->code : ErrorCode::no_answer,
+                               .what = fmt::format("it did not refuse {}, but 5 s later it has no effect",
+                                                   wire::name(order_.command.code)),
+                               .value = state_text(view_, order_),
+                               .remedy = why ? why->reason() : ""});
 }
 
 void Dialogue::on_time(HostTime now) {
     if (outcome_ || now < deadline_) return;
     switch (step_) {
         case Step::awaiting_heartbeat:
-            return give_up(ExitCode::unavailable, kNoHeartbeat);
+            return give_up(ExitCode::unavailable, no_heartbeat());
         case Step::awaiting_uptime:
             return ask(Step::asking_before, now);
         case Step::commanding:
-            return give_up(ExitCode::unavailable,
-                           "the interface sent nothing for 1 s: is its bus connected and powered?");
+            return give_up(ExitCode::unavailable, {.code = ErrorCode::no_device,
+                                                   .what = "the interface sent nothing for 1 s",
+                                                   .remedy = "check that its bus is connected and powered"});
         case Step::awaiting_rest:
             view_ = {};
             return ask(Step::asking_after, now);
         case Step::asking_before:
             if (asks_ < kAsksMax) return ask_again(now);
-            return give_up(ExitCode::unavailable,
-                           "its heartbeats arrive, but no answer: may this interface send (not listen-only), "
-                           "and is this a sensor board? A joint source takes no commands");
+            return give_up(
+                ExitCode::unavailable,
+                {.code = ErrorCode::no_answer,
+                 .what = "its heartbeats arrive, but no answer",
+                 .remedy = "check that this interface may send (not listen-only), and that this is "
+                           "a sensor board: a joint source takes no commands"});
         case Step::asking_after:
             if (asks_ < kAsksMax || now < commanded_ + kEffectWithin) return ask_again(now);
             return give_up(ExitCode::io_failed,
-                           fmt::format("silent since {}: wait for its light, or read its serial line",
-                                       wire::name(order_.command.code)));
+                           {.code = ErrorCode::no_answer,
+                            .what = fmt::format("silent since {}", wire::name(order_.command.code)),
+                            .remedy = "wait for its light, or read its serial line"});
         case Step::awaiting_effect:
             return on_no_effect();
     }

@@ -62,7 +62,7 @@ class Dialogue final : public NodeDialogue {
     void judge_reset(HostTime now);
     void on_no_effect();
     void succeed();
-    void give_up(ExitCode code, const std::string& why);
+    void give_up(ExitCode exit, Error error);
 
     Order order_;
     Step step_ = Step::awaiting_heartbeat;

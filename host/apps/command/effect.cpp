@@ -48,19 +48,25 @@ bool is_in_effect(const Order& order, const NodeView& now, bool has_sent_black_b
     return true;
 }
 
-std::string refusal(const Order& order, const NodeView& view) {
-    if (view.state() == wire::NodeState::safe)
-        return std::string("it takes only start, identify, reset and send_info: ") +
-               obstacle(wire::NodeState::safe);
-    if (order.command.code == CommandCode::identify) return "it has no light to blink";
-    if (view.state() == wire::NodeState::bad_config) return obstacle(wire::NodeState::bad_config);
-    if (view.sensor_count() == 0) return "it has no sensors";
+Error refusal(const Order& order, const NodeView& view) {
+    if (view.state() == wire::NodeState::safe) {
+        Error error = *obstacle(wire::NodeState::safe);
+        error.what = "it takes only start, identify, reset and send_info: " + error.what;
+        return error;
+    }
+    if (order.command.code == CommandCode::identify)
+        return {ErrorCode::unsupported, "it has no light to blink"};
+    if (view.state() == wire::NodeState::bad_config) return *obstacle(wire::NodeState::bad_config);
+    if (view.sensor_count() == 0) return {ErrorCode::no_content, "it has no sensors"};
     if (order.command.code == CommandCode::set_rate)
-        return fmt::format(
-            "{} ms is less than the timing budget and 5 ms of at least one of its sensors; sensors for which "
-            "it is enough use the new rate",
-            order.command.argument);
-    return "the reason is unknown: look at its state, and check that no other host commands it";
+        return {.code = ErrorCode::out_of_range,
+                .what = "expected at least the timing budget and 5 ms of each of its sensors",
+                .value = fmt::format("{} ms", order.command.argument),
+                .remedy = "give a longer --period-ms",
+                .others = "Sensors for which it is enough use the new rate"};
+    return {.code = ErrorCode::conflict,
+            .what = "the reason is unknown",
+            .remedy = "look at its state, and check that no other host commands it"};
 }
 
 }  // namespace octoskin::commanding

@@ -1,9 +1,8 @@
 // How the effect of a command shows in the node's messages, and why a node refuses a command.
 #pragma once
 
-#include <string>
-
 #include "host/apps/command/node_view.hpp"
+#include "host/errors/error.hpp"
 
 namespace octoskin::commanding {
 
@@ -11,7 +10,7 @@ namespace octoskin::commanding {
 /// Not for `reset`, which ends the run that `now` describes.
 [[nodiscard]] bool is_in_effect(const Order& order, const NodeView& now, bool has_sent_black_box);
 
-/// The text for the user on the refusal of this command: the reason and the remedy.
-[[nodiscard]] std::string refusal(const Order& order, const NodeView& view);
+/// Why the node refuses this command: the reason and the remedy.
+[[nodiscard]] Error refusal(const Order& order, const NodeView& view);
 
 }  // namespace octoskin::commanding

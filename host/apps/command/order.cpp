@@ -35,22 +35,26 @@ std::optional<std::uint8_t> number_of(const std::string& text) {
 Result<wire::Command, AppError> command_of(const Wish& wish, std::uint8_t sequence) {
     for (const auto& [code, name] : wire::values_of(CommandCode{})) {
         if (!is_offered(code) || name != wish.code) continue;
-        const auto refuse = [&wish](const std::string& what) {
-            return fail(ExitCode::usage, wish.code + " " + what);
+        const auto refuse = [](const char* option, const std::string& what, const std::string& remedy) {
+            return fail(ExitCode::usage,
+                        {.code = ErrorCode::bad_argument, .what = what, .remedy = remedy, .key = option});
         };
-        if (wish.period_ms && code != CommandCode::set_rate) return refuse("takes no --period-ms");
-        if (wish.seconds && code != CommandCode::identify) return refuse("takes no --seconds");
+        const auto is_not_taken = [&](const char* option, const std::string& why = {}) {
+            return refuse(option, "`" + wish.code + "` does not take this option" + why, "leave it out");
+        };
+        if (wish.period_ms && code != CommandCode::set_rate) return is_not_taken("--period-ms");
+        if (wish.seconds && code != CommandCode::identify) return is_not_taken("--seconds");
         if (!wish.sensor.empty() && !takes_sensor(code))
-            return refuse("concerns the whole node: it takes no --sensor");
+            return is_not_taken("--sensor", ": it concerns the whole node");
         if (code == CommandCode::set_rate && !wish.period_ms)
-            return refuse("needs --period-ms; 0 means the configured period");
+            return refuse("--period-ms", "`set_rate` needs this option", "0 means the configured period");
         std::uint16_t argument = 0;
         if (code == CommandCode::set_rate) argument = *wish.period_ms;
         if (code == CommandCode::identify) argument = wish.seconds.value_or(kIdentifySeconds);
         return wire::Command{.code = code, .argument = argument, .sequence = sequence};
     }
-    return fail(ExitCode::usage, fmt::format("there is no command '{}'; the commands are {}", wish.code,
-                                             rig::joined(code_names())));
+    return fail(ExitCode::usage, {ErrorCode::unknown_word, "expected a command for a node",
+                                  "'" + wish.code + "'", "the commands are " + rig::joined(code_names())});
 }
 
 std::string names_of(const rig::Rig& rig) {
@@ -78,14 +82,16 @@ Result<std::vector<Order>, AppError> recipients(const rig::Rig* rig, const std::
         if (!found.empty()) return found;
         if (number && *number == rig->joints.node_id)
             return fail(ExitCode::usage,
-                        fmt::format("node {} is the rig's joint source: it takes no commands", *number));
+                        {ErrorCode::bad_argument, "expected a sensor board, which takes commands",
+                         fmt::format("node {}, the rig's joint source", *number), "give another node"});
         return fail(ExitCode::usage,
-                    fmt::format("no node '{}' in rig {}: it has {}", wanted, rig->name, names_of(*rig)));
+                    {ErrorCode::unknown_name, fmt::format("expected a node of the rig {}", rig->name),
+                     "'" + wanted + "'", "it has " + names_of(*rig)});
     }
     if (number && wire::is_allowed(wire::Party::from_node, *number))
         return std::vector<Order>{{.node_id = *number}};
-    return fail(ExitCode::usage,
-                fmt::format("no node '{}': without --rig a node is a number, 1 to 62", wanted));
+    return fail(ExitCode::usage, {ErrorCode::unknown_name, "expected the number of a node, 1 to 62",
+                                  "'" + wanted + "'", "give --rig for the names of nodes"});
 }
 
 Status<AppError> aim(Order& order, const std::string& sensor) {
@@ -105,10 +111,16 @@ Status<AppError> aim(Order& order, const std::string& sensor) {
         return Done{};
     }
     if (!order.known)
-        return fail(ExitCode::usage,
-                    fmt::format("no sensor '{}': without --rig a sensor is a number, from 0", sensor));
-    return fail(ExitCode::usage, fmt::format("no sensor '{}' on {}: it has {}", sensor, order.whom(),
-                                             rig::joined(order.known->sensors)));
+        return fail(ExitCode::usage, {.code = ErrorCode::unknown_name,
+                                      .what = "expected the number of a sensor, from 0",
+                                      .value = "'" + sensor + "'",
+                                      .remedy = "give --rig for the names of sensors",
+                                      .key = "--sensor"});
+    return fail(ExitCode::usage, {.code = ErrorCode::unknown_name,
+                                  .what = "expected a sensor of " + order.whom(),
+                                  .value = "'" + sensor + "'",
+                                  .remedy = "it has " + rig::joined(order.known->sensors),
+                                  .key = "--sensor"});
 }
 
 }  // namespace

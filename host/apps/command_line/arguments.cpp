@@ -41,20 +41,25 @@ std::string is_seed(std::string& text) {
 void check_interface_name(const std::string& interface) {
     // A recording's log repeats the name on each line.
     if (wire::is_interface_name(interface)) return;
-    throw CommandFailure({ExitCode::usage, fmt::format("'{}': {}", interface, wire::kInterfaceNameRule)});
+    throw CommandFailure(ExitCode::usage,
+                         {ErrorCode::bad_name, std::string(wire::kInterfaceNameRule), "'" + interface + "'"});
 }
 
 void check_frame_socket(const std::string& interface, int descriptor) {
     int type = 0;
     socklen_t size = sizeof(type);
     if (::getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) != 0) {
-        throw CommandFailure(
-            {ExitCode::usage,
-             interface + " is not a socket: give one that carries frames as a raw CAN socket does"});
+        throw CommandFailure(ExitCode::usage,
+                             {.code = ErrorCode::wrong_kind_of_file,
+                              .what = "is not a socket",
+                              .remedy = "give one that carries frames as a raw CAN socket does",
+                              .file = interface});
     }
     if (type == SOCK_STREAM) {
-        throw CommandFailure({ExitCode::usage, interface + " is a stream socket, which does not keep frames "
-                                                           "apart: give a datagram socket (SOCK_SEQPACKET)"});
+        throw CommandFailure(ExitCode::usage, {.code = ErrorCode::wrong_kind_of_file,
+                                               .what = "is a stream socket, which does not keep frames apart",
+                                               .remedy = "give a datagram socket (SOCK_SEQPACKET)",
+                                               .file = interface});
     }
 }
 
@@ -64,14 +69,20 @@ CLI::Validator existing_file() {
     return {[](std::string& path) -> std::string {
                 check_readable(path);
                 std::error_code error;
-                if (std::filesystem::is_directory(path, error)) return path + " is a directory, not a file";
-                if (const auto kind = rig::other_than_a_file(path); !kind.empty()) {
+                if (std::filesystem::is_directory(path, error))
                     throw CommandFailure(
-                        {ExitCode::no_input, absolute(path) + ": is " + std::string(kind) +
-                                                 "; give a regular file: it is read more than once"});
+                        ExitCode::usage,
+                        in_file({ErrorCode::wrong_kind_of_file, "is a directory, not a file"}, path));
+                if (const auto kind = rig::other_than_a_file(path); !kind.empty()) {
+                    throw CommandFailure(ExitCode::no_input,
+                                         {.code = ErrorCode::wrong_kind_of_file,
+                                          .what = "is " + std::string(kind),
+                                          .remedy = "give a regular file: it is read more than once",
+                                          .file = absolute(path)});
                 }
                 if (std::filesystem::exists(path, error)) return {};
-                throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file"});
+                throw CommandFailure(ExitCode::no_input,
+                                     in_file({ErrorCode::not_found, "no such file"}, absolute(path)));
             },
             "FILE"};
 }
@@ -81,7 +92,9 @@ CLI::Validator existing_path() {
                 check_readable(path);
                 std::error_code error;
                 if (std::filesystem::exists(path, error)) return {};
-                throw CommandFailure({ExitCode::no_input, absolute(path) + ": no such file or directory"});
+                throw CommandFailure(
+                    ExitCode::no_input,
+                    in_file({ErrorCode::not_found, "no such file or directory"}, absolute(path)));
             },
             "PATH"};
 }
@@ -94,16 +107,25 @@ std::string configuration_help(const std::string& use) {
     return use + ": " + rig::joined(kBuiltInMappings) + ", or a YAML file";
 }
 
+bool wants_json_errors(int argc, const char* const* argv) noexcept {
+    return argc > 1 && argv[1] == kJsonErrors;
+}
+
+std::string_view first_argument(int argc, const char* const* argv) noexcept {
+    const int first = wants_json_errors(argc, argv) ? 2 : 1;
+    return argc > first ? argv[first] : std::string_view();
+}
+
 void check_command_name(const CLI::App& app, const std::string& others, int argc, const char* const* argv) {
-    if (argc < 2 || std::string_view(argv[1]).starts_with('-')) return;
-    const std::string word = argv[1];
+    const std::string word(first_argument(argc, argv));
+    if (word.starts_with('-') || argc < (wants_json_errors(argc, argv) ? 3 : 2)) return;
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
     if (std::find(names.begin(), names.end(), word) != names.end()) return;
     const auto near = rig::nearest_word(word, names);
-    throw CommandFailure({ExitCode::usage, "there is no command '" + word + "'" +
-                                               (near ? ": did you mean '" + *near + "'?" : ".") +
-                                               " The commands are " + rig::joined(names) +
+    throw CommandFailure(ExitCode::usage, {ErrorCode::unknown_word, "expected a command", "'" + word + "'",
+                                           (near ? "did you mean '" + *near + "'? The" : "the") +
+                                               std::string(" commands are ") + rig::joined(names) +
                                                "; --help explains them" + others});
 }
 
@@ -115,10 +137,13 @@ std::optional<int> descriptor_of(const std::string& interface) {
     const char* const last = interface.data() + interface.size();
     const auto [end, error] = std::from_chars(interface.data() + kPrefix.size(), last, descriptor);
     if (error != std::errc{} || end != last)
-        throw CommandFailure(
-            {ExitCode::usage, interface + ": expected fd: and the number of an open descriptor"});
+        throw CommandFailure(ExitCode::usage,
+                             {ErrorCode::bad_syntax, "expected fd: and the number of an open descriptor",
+                              "'" + interface + "'"});
     if (descriptor < 0 || ::fcntl(descriptor, F_GETFD) < 0)
-        throw CommandFailure({ExitCode::usage, interface + ": no open descriptor has that number"});
+        throw CommandFailure(
+            ExitCode::usage,
+            in_file({ErrorCode::no_device, "no open descriptor has that number"}, interface));
     check_frame_socket(interface, descriptor);
     return descriptor;
 }
@@ -126,7 +151,9 @@ std::optional<int> descriptor_of(const std::string& interface) {
 socketcan::CanSocket open_can(const std::string& interface, const socketcan::SocketOptions& options) {
     if (const auto descriptor = descriptor_of(interface)) return {interface, *descriptor};
     auto socket = socketcan::CanSocket::open(interface, options);
-    if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
+    if (!socket)
+        throw CommandFailure(ExitCode::unavailable,
+                             in_file({ErrorCode::no_device, socket.error().what}, interface));
     return std::move(socket).value();
 }
 

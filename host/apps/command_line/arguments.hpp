@@ -7,6 +7,7 @@
 #include <charconv>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "host/io/socketcan/can_socket.hpp"
@@ -37,7 +38,13 @@ template <class T>
 /// The help text of --configuration.
 [[nodiscard]] std::string configuration_help(const std::string& use);
 
-/// Throws CommandFailure with ExitCode::usage if the first word is not a command. The message contains the
+/// The option before the command with which errors are printed as JSON.
+inline constexpr std::string_view kJsonErrors = "--json-errors";
+[[nodiscard]] bool wants_json_errors(int argc, const char* const* argv) noexcept;
+/// The first argument after the program and kJsonErrors; empty if there is none.
+[[nodiscard]] std::string_view first_argument(int argc, const char* const* argv) noexcept;
+
+/// Throws CommandFailure with ExitCode::usage if the first word is not a command. The remedy contains the
 /// most similar command and `others`.
 void check_command_name(const CLI::App& app, const std::string& others, int argc, const char* const* argv);
 

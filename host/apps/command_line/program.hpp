@@ -17,7 +17,8 @@ struct Program {
 };
 
 /// Parses the command line, runs the command and returns the exit code. An exception of a command, or output
-/// that cannot be written, becomes a message on standard error and an exit code. `program` adds its commands
+/// that cannot be written, becomes a message (with --json-errors one line of JSON) on standard error and an
+/// exit code. `program` adds its commands
 /// to a parser; exactly one command is required.
 [[nodiscard]] int run_program(const Program& program, int argc, char** argv) noexcept;
 

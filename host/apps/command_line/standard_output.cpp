@@ -46,8 +46,10 @@ std::optional<AppError> flush_standard_output() {
     note(std::fflush(stdout) == 0 && std::ferror(stdout) == 0);
     if (first_error == 0 || first_error == EPIPE) return std::nullopt;
     return AppError{ExitCode::io_failed,
-                    "standard output: cannot write (" + std::generic_category().message(first_error) +
-                        "); the printed output is incomplete; files that were written are complete"};
+                    {.code = ErrorCode::system_error,
+                     .what = "cannot write (" + std::generic_category().message(first_error) + ")",
+                     .file = "standard output",
+                     .others = "The printed output is incomplete; files that were written are complete"}};
 }
 
 }  // namespace octoskin::app

@@ -51,8 +51,11 @@ std::uint64_t descriptor_limit() {
 static_assert(ControlSocket::kWaitingMax == ControlSocket::kClientsMax);
 static_assert(ControlSocket::kRefusedMax == ControlSocket::kClientsMax);
 
-std::string refusal_line(const std::string& error, ExitCode code) {
-    return fmt::format(R"({{"ok":false,"error":"{}","code":{}}})", error, static_cast<int>(code));
+/// As by query_refused(), but made without JSON, whose destructors need memory. The error has a code, `what`
+/// and a remedy, without characters that JSON escapes.
+std::string refusal_line(ExitCode exit, const Error& error) {
+    return fmt::format(R"({{"ok":false,"exit":{},"error":{{"code":"{}","remedy":"{}","message":"{}"}}}})",
+                       static_cast<int>(exit), name_of(error.code), error.remedy, error.message());
 }
 
 }  // namespace
@@ -130,9 +133,10 @@ void ControlSocket::accept() {
 void ControlSocket::make_room() {
     if (served() > clients_max_) {
         Client* const found = one_to_go();
-        refuse(found != nullptr ? *found : clients_.back(),
-               fmt::format("too many clients: {} are served at once; ask again later", clients_max_),
-               ExitCode::unavailable);
+        refuse(found != nullptr ? *found : clients_.back(), ExitCode::unavailable,
+               {.code = ErrorCode::limit_exceeded,
+                .what = fmt::format("too many clients: {} are served at once", clients_max_),
+                .remedy = "ask again later"});
     }
     const auto refused = std::ranges::count(clients_, true, &Client::is_refused);
     if (std::cmp_greater(refused, clients_max_))
@@ -191,10 +195,10 @@ bool ControlSocket::serve(Client& client) {
     const std::size_t taken = is_whole ? end + 1 : here.size();
     (void)socketcan::receive_text(client.descriptor, std::span(bytes).first(taken));
     if (client.request.size() > kRequestMax) {
-        refuse(client,
-               fmt::format("a request has at most {} bytes, this one has more: ask about parts of it",
-                           kRequestMax),
-               ExitCode::usage);
+        refuse(client, ExitCode::usage,
+               {.code = ErrorCode::limit_exceeded,
+                .what = fmt::format("a request has at most {} bytes, and this one has more", kRequestMax),
+                .remedy = "ask about parts of it"});
     }
     if (client.is_refused) {
         if (is_whole) socketcan::read_the_rest(client.descriptor);
@@ -211,11 +215,11 @@ bool ControlSocket::serve(Client& client) {
 
 /// Sends the refusal at once, because the request may have no end. A client that is still sending would not
 /// read the answer if the connection were closed now: it is dropped when its line ends, or when it is idle.
-void ControlSocket::refuse(Client& client, const std::string& error, ExitCode code) {
+void ControlSocket::refuse(Client& client, ExitCode exit, const Error& error) {
     ++dropped_;
     client.is_refused = true;
     client.request = {};
-    (void)send(client, refusal_line(error, code));
+    (void)send(client, refusal_line(exit, error));
     ::shutdown(client.descriptor, SHUT_WR);
 }
 
@@ -228,10 +232,12 @@ bool ControlSocket::answer(Client& client, const std::string& request) {
     const bool are_all_taken = std::cmp_greater_equal(waiting, clients_max_);
     if (are_all_taken || std::cmp_greater_equal(of_user, kWaitingOfUserMax)) {
         gone_(tickets_);
-        return send(client, refusal_line(fmt::format("too many questions: {} {}wait; ask again later",
-                                                     are_all_taken ? waiting : of_user,
-                                                     are_all_taken ? "" : "of this user "),
-                                         ExitCode::unavailable));
+        return send(client, refusal_line(ExitCode::unavailable,
+                                         {.code = ErrorCode::limit_exceeded,
+                                          .what = fmt::format("too many questions: {} {}wait",
+                                                              are_all_taken ? waiting : of_user,
+                                                              are_all_taken ? "" : "of this user "),
+                                          .remedy = "ask again later"}));
     }
     client.ticket = tickets_;
     client.readable = EventSource();  // the one that calls this now: nothing of it is used after this

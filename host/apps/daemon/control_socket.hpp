@@ -106,7 +106,7 @@ class ControlSocket {
     [[nodiscard]] std::size_t served() const;
     [[nodiscard]] std::size_t places_of(int process) const;
     [[nodiscard]] Client* one_to_go();
-    void refuse(Client& client, const std::string& error, ExitCode code);
+    void refuse(Client& client, ExitCode exit, const Error& error);
     /// Sends its answer, or leaves it for later; false if the client is to be dropped.
     [[nodiscard]] bool answer(Client& client, const std::string& request);
     [[nodiscard]] bool send(const Client& client, std::string line) const;

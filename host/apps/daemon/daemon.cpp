@@ -179,7 +179,10 @@ std::string Daemon::Parts::answer(const std::string& line) {
     if (line == "hello") return R"({"ok":true})";
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
-    return query_refused({ExitCode::usage, "unknown request; there are: hello, status, record, query"})
+    return query_refused({ExitCode::usage,
+                          {.code = ErrorCode::bad_argument,
+                           .what = "unknown request",
+                           .remedy = "there are: hello, status, record, query"}})
         .dump();
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "common/time.hpp"
+#include "host/apps/command_line/json_at.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/query/query_answer.hpp"
@@ -53,40 +54,39 @@ bool is_readable(int descriptor, HostTime end) {
     }
 }
 
-/// Sends a line and its line feed, and returns the line of the answer, or an error text.
-Result<std::string, std::string> exchange_lines(int descriptor, const std::string& line, HostTime end) {
+/// Sends a line and its line feed, and returns the line of the answer.
+Result<std::string, Error> exchange_lines(int descriptor, const std::string& line, HostTime end) {
     // A new connection has room for a request.
     const ssize_t sent = ::send(descriptor, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0 && errno != EPIPE)
-        return unexpected(std::string("the daemon does not accept the request: ") + std::strerror(errno));
+        return unexpected(
+            Error{ErrorCode::system_error,
+                  std::string("the daemon does not accept the request: ") + std::strerror(errno)});
     constexpr std::size_t kAnswerMax = std::size_t{64} << 20U;
     std::string answer;
     while (!answer.ends_with('\n')) {  // bounded by `end`
         if (answer.size() > kAnswerMax)
-            return unexpected(std::string("the answer has no end: is it a daemon that listens there?"));
+            return unexpected(
+                Error{.code = ErrorCode::foreign_format,
+                      .what = "the answer has no end",
+                      .remedy = "another program may listen there; --socket names the daemon's"});
         if (!is_readable(descriptor, end))
-            return unexpected(std::string("the daemon did not answer in time"));
+            return unexpected(Error{ErrorCode::no_answer, "the daemon did not answer in time"});
         std::array<char, 4096> bytes{};
         const ssize_t count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
         if (count == 0 || (count < 0 && errno == ECONNRESET)) {
-            return unexpected(std::string(answer.empty()
-                                              ? "the daemon closed the connection without an answer"
-                                              : "the daemon closed the connection in mid-answer") +
-                              " (has it just ended?)");
+            return unexpected(Error{
+                ErrorCode::no_answer,
+                answer.empty() ? "the daemon closed the connection without an answer (has it just ended?)"
+                               : "the daemon closed the connection in mid-answer (has it just ended?)"});
         }
         if (count < 0 && errno != EAGAIN && errno != EINTR)
-            return unexpected(std::string("cannot read the daemon's answer: ") + std::strerror(errno));
+            return unexpected(Error{ErrorCode::system_error,
+                                    std::string("cannot read the daemon's answer: ") + std::strerror(errno)});
         if (count > 0) answer.append(bytes.data(), static_cast<std::size_t>(count));
     }
     answer.pop_back();
     return answer;
-}
-
-/// The value of a key; null if there is none.
-const Json& at(const Json& object, const char* key) {
-    static const Json kNothing;
-    const auto found = object.find(key);
-    return object.is_object() && found != object.end() ? *found : kNothing;
 }
 
 bool is_node(const Json& node) {
@@ -98,6 +98,10 @@ bool is_joints_socket(const Json& joints) {
     return joints.is_null() || (at(joints, "above_rate").is_boolean() && at(joints, "rate_hz").is_number());
 }
 
+bool is_problem(const Json& problem) {
+    return at(problem, "code").is_string() && at(problem, "text").is_string();
+}
+
 bool is_status(const Json& status) {
     const Json& can = at(status, "can");
     const Json& nodes = at(status, "nodes");
@@ -107,7 +111,7 @@ bool is_status(const Json& status) {
            at(can, "state").is_string() && nodes.is_array() && std::ranges::all_of(nodes, is_node) &&
            at(at(status, "map"), "known_voxels").is_number_unsigned() &&
            is_joints_socket(at(status, "joints_socket")) && problems.is_array() &&
-           std::ranges::all_of(problems, [](const Json& problem) { return problem.is_string(); });
+           std::ranges::all_of(problems, is_problem);
 }
 
 }  // namespace
@@ -118,11 +122,11 @@ Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, co
     const auto descriptor = connect_unix_socket(socket, SOCK_STREAM, std::min(patience, kLetInMax));
     if (!descriptor) return unexpected(descriptor.error());
     auto answer = patience > kLetInMax ? exchange_lines(*descriptor, "hello\n", begun + kLetInMax)
-                                       : Result<std::string, std::string>(kSignOfLife);
+                                       : Result<std::string, Error>(kSignOfLife);
     if (answer && *answer == kSignOfLife)
         answer = exchange_lines(*descriptor, request + '\n', begun + patience);
     ::close(*descriptor);
-    if (!answer) return fail(ExitCode::io_failed, socket.string() + ": " + answer.error());
+    if (!answer) return fail(ExitCode::io_failed, in_file(answer.error(), socket));
     if (is_nested_too_deep(*answer)) return unexpected(foreign_answer(socket));
     return std::move(answer).value();
 }
@@ -137,9 +141,11 @@ Result<Json, AppError> ask_status(const std::filesystem::path& socket) {
 }
 
 AppError foreign_answer(const std::filesystem::path& socket) {
-    return {ExitCode::bad_data, socket.string() +
-                                    ": not the answer of a daemon of this version: restart the daemon if its "
-                                    "version differs; --socket names another place"};
+    return {ExitCode::bad_data,
+            {.code = ErrorCode::foreign_format,
+             .what = "not the answer of a daemon of this version",
+             .remedy = "restart the daemon if its version differs; --socket names another place",
+             .file = socket}};
 }
 
 }  // namespace octoskin

@@ -60,7 +60,7 @@ struct Daemon::Parts {
     void save_map();
     std::string save_last_map(HostTime end);
     std::uint64_t settle_pipeline();
-    [[nodiscard]] std::string why_map_ends(const Settings& next) const;
+    [[nodiscard]] std::optional<Error> why_map_ends(const Settings& next) const;
     [[nodiscard]] bool is_placed_as(std::uint32_t placement_crc32) const;
     /// The address space that a save of such a map takes in addition, for its list of bricks.
     [[nodiscard]] static std::size_t bytes_to_save(const MapConfig& map) noexcept;

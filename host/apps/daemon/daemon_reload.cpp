@@ -27,7 +27,8 @@ void Daemon::Parts::begin_reload() {
     try {
         reading.begin([request = request, held = settings.recorded] { return read_next(request, held); });
     } catch (const std::bad_alloc&) {
-        obey_reload(fail(ExitCode::bad_config, "no memory to read the rig, robot and mapping files"));
+        obey_reload(fail(ExitCode::bad_config,
+                         {ErrorCode::no_resources, "no memory to read the rig, robot and mapping files"}));
     }
 }
 
@@ -44,10 +45,9 @@ void Daemon::Parts::obey_reload(NextResult next) {
 
 bool Daemon::Parts::take_next(NextResult next) {
     if (next && next->has_value()) {
-        if (std::string why = why_map_ends((*next)->settings); !why.empty())
-            next = fail(ExitCode::bad_config, std::move(why));
+        if (auto why = why_map_ends((*next)->settings)) next = fail(ExitCode::bad_config, std::move(*why));
     }
-    if (!next) reload_error = next.error().message;
+    if (!next) reload_error = next.error().message();
     if (next && !next->has_value()) {
         ++reloads.unchanged;
         reload_error.clear();
@@ -85,12 +85,14 @@ bool Daemon::Parts::resume_with(Next& next) {
 
 /// Why the map cannot be kept with these settings; empty if it can. Another resolution is refused as at the
 /// start: the next save would replace the map.
-std::string Daemon::Parts::why_map_ends(const Settings& next) const {
+std::optional<Error> Daemon::Parts::why_map_ends(const Settings& next) const {
     const double now = settings.mapping.map.resolution_m;
     const double wanted = next.mapping.map.resolution_m;
     if (wanted == now) return why_no_room(pipeline.map(), next.mapping.map);
-    return fmt::format("{}; end octoskin, move {} away and start octoskin to begin with an empty map",
-                       describe_other_voxels(request.map_folder / kMapFile, now, wanted), kMapFilesText);
+    Error other = other_voxels(request.map_folder / kMapFile, now, wanted);
+    other.remedy = fmt::format("end octoskin, move {} away and start octoskin to begin with an empty map",
+                               kMapFilesText);
+    return other;
 }
 
 /// While the pipeline still runs: waiting inputs must not make the map larger than the next start may load.

@@ -28,19 +28,23 @@ class DepthRecorder::Work {
     Work(FilePlace oni, FilePlace epoch) : oni_(std::move(oni)), epoch_(std::move(epoch)) {}
 
     void run() {
-        std::string error;
+        Status<Error> outcome = Done{};
         try {
-            error = record();
+            outcome = record();
         } catch (const std::exception& thrown) {  // no memory, no thread
-            error = oni_.shown().string() + ": " + reason_of(thrown);
+            outcome =
+                unexpected(in_file(shortage_in(thrown)
+                                       .value_or(AppError{.error = {ErrorCode::system_error, thrown.what()}})
+                                       .error,
+                                   oni_.shown()));
         }
         const std::lock_guard lock(mutex_);
-        error_ = std::move(error);
+        if (!outcome) error_ = outcome.error();
     }
     [[nodiscard]] bool add(const DepthFrame& frame) {
         {
             const std::lock_guard lock(mutex_);
-            if (!error_.empty() || waiting_bytes_ + bytes_of(frame) > kWaitingMax) return false;
+            if (error_ || waiting_bytes_ + bytes_of(frame) > kWaitingMax) return false;
             waiting_.push_back(frame);
             waiting_bytes_ += bytes_of(frame);
         }
@@ -63,7 +67,7 @@ class DepthRecorder::Work {
         }
         changed_.notify_all();
     }
-    [[nodiscard]] std::string error() const {
+    [[nodiscard]] std::optional<Error> error() const {
         const std::lock_guard lock(mutex_);
         return error_;
     }
@@ -79,17 +83,16 @@ class DepthRecorder::Work {
         waiting_bytes_ -= bytes_of(frame);
         return frame;
     }
-    [[nodiscard]] std::string record() {
+    [[nodiscard]] Status<Error> record() {
         auto frame = next();
-        if (!frame) return {};
+        if (!frame) return Done{};
         auto writer = openni2::OniWriter::create(oni_, epoch_, {frame->width, frame->height});
-        if (!writer) return writer.error().what;
+        if (!writer) return unexpected(writer.error());
         for (; frame; frame = next()) {
             if (const auto written = writer->write(frame->captured, frame->depth_mm); !written)
-                return written.error().what;
+                return written;
         }
-        const auto closed = writer->close();
-        return closed ? std::string() : closed.error().what;
+        return writer->close();
     }
 
     FilePlace oni_;
@@ -101,7 +104,7 @@ class DepthRecorder::Work {
     bool may_begin_ = false;
     bool is_finishing_ = false;
     bool is_dropped_ = false;
-    std::string error_;
+    std::optional<Error> error_;
 };
 
 DepthRecorder::DepthRecorder(FilePlace oni, FilePlace epoch)
@@ -121,13 +124,14 @@ bool DepthRecorder::add(const DepthFrame& frame) {
     return work_->add(frame);
 }
 
-std::string DepthRecorder::finish() {
+std::optional<Error> DepthRecorder::finish() {
     work_->end(false);
-    if (!thread_.end(kFinishPatience)) return "depth frames were not written within a minute";
+    if (!thread_.end(kFinishPatience))
+        return Error{ErrorCode::time_limit, "depth frames were not written within a minute"};
     return work_->error();
 }
 
-std::string DepthRecorder::error() const {
+std::optional<Error> DepthRecorder::error() const {
     return work_->error();
 }
 

@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string>
+#include <optional>
 
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
@@ -30,11 +31,11 @@ class DepthRecorder {
     /// Adds a frame; all have one size and come in the order of their times. False if there is no room, or
     /// recording failed. Never waits.
     [[nodiscard]] bool add(const DepthFrame& frame);
-    /// Waits at most a minute until all frames are in the file and the file is complete. Returns the error,
-    /// for a person; empty: none.
-    [[nodiscard]] std::string finish();
+    /// Waits at most a minute until all frames are in the file and the file is complete. Returns the error;
+    /// empty: none.
+    [[nodiscard]] std::optional<Error> finish();
     /// The error so far; empty: none.
-    [[nodiscard]] std::string error() const;
+    [[nodiscard]] std::optional<Error> error() const;
 
   private:
     class Work;

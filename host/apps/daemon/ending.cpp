@@ -42,8 +42,8 @@ int report_why_it_ends(const std::exception& thrown) {
                          thrown.what());
         return kInternalDefect;
     }
-    spdlog::critical("{}; octoskin saves the map and ends", shortage->message);
-    return static_cast<int>(shortage->code);
+    spdlog::critical("{}; octoskin saves the map and ends", shortage->message());
+    return static_cast<int>(shortage->exit);
 }
 
 }  // namespace octoskin

@@ -32,13 +32,12 @@ Result<FolderLock, AppError> FolderLock::settled(FolderLock lock) {
 
 AppError FolderLock::cannot_save(const std::filesystem::path& folder, const FolderError& error) {
     if (error.fault == FolderFault::link || error.fault == FolderFault::not_a_file)
-        return cannot_create(error.path, error.reason()).error;
-    const std::string remedy = error.fault == FolderFault::foreign_owner
-                                   ? std::string()
-                                   : ": " + remedy_of({error.error_number, std::generic_category()});
-    return cannot_create(folder, "no maps can be saved there (" + error.reason() + ")" + remedy +
-                                     "; --maps names the folder")
-        .error;
+        return cannot_create(error.path, to_error(error)).error;
+    Error refused = to_error(error, "no maps can be saved there: ");
+    if (error.fault != FolderFault::foreign_owner)
+        refused.remedy = remedy_of({error.error_number, std::generic_category()});
+    refused.remedy += "; --maps names the folder";
+    return cannot_create(folder, std::move(refused)).error;
 }
 
 Result<FolderLock, AppError> FolderLock::take(const std::filesystem::path& named) {
@@ -53,10 +52,11 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
         if (!opened) return unexpected(cannot_save(named / kFile, opened.error()));
         OpenFile& file = opened->file;
         if (::flock(file.descriptor(), LOCK_EX | LOCK_NB) != 0) {
-            return cannot_create(named,
-                                 "another octoskin" + holder_of(file) +
-                                     " writes maps there (octoskin run, or octoskin replay at its end); "
-                                     "stop it or wait until it ends, or name another folder");
+            return cannot_create(
+                named, {.code = ErrorCode::in_use,
+                        .what = "another octoskin" + holder_of(file) +
+                                " writes maps there (octoskin run, or octoskin replay at its end)",
+                        .remedy = "stop it or wait until it ends, or name another folder with --maps"});
         }
         struct stat status {};
         if (::fstat(file.descriptor(), &status) != 0)
@@ -72,9 +72,9 @@ Result<FolderLock, AppError> FolderLock::take(const OpenFolder& folder, const st
                 return unexpected(cannot_save(named, removed.error()));
         }
     }
-    return cannot_create(
-        named,
-        "its lock file is replaced again and again; look for another program that works in this folder");
+    return cannot_create(named, {.code = ErrorCode::in_use,
+                                 .what = "its lock file is replaced again and again",
+                                 .remedy = "look for another program that works in this folder"});
 }
 
 }  // namespace octoskin

@@ -13,20 +13,20 @@ GrowingFile::~GrowingFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-Unexpected<std::string> GrowingFile::failure() const {
-    return unexpected(file_.string() + ": " + std::generic_category().message(errno));
+Unexpected<Error> GrowingFile::failure() const {
+    return unexpected(in_file({ErrorCode::system_error, std::generic_category().message(errno)}, file_));
 }
 
-Status<std::string> GrowingFile::create(const FilePlace& file) {
+Status<Error> GrowingFile::create(const FilePlace& file) {
     constexpr unsigned kReadableByAll = 0644;
     file_ = file.shown();
     auto created = file.create_new(kReadableByAll);
-    if (!created) return unexpected(created.error().message());
+    if (!created) return unexpected(to_error(created.error()));
     descriptor_ = created->release();
     return Done{};
 }
 
-Status<std::string> GrowingFile::append(const std::string& text) {
+Status<Error> GrowingFile::append(const std::string& text) {
     std::string_view rest = text;
     while (!rest.empty()) {  // each round writes a part
         const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
@@ -37,14 +37,15 @@ Status<std::string> GrowingFile::append(const std::string& text) {
     return Done{};
 }
 
-Status<std::string> GrowingFile::check() const {
+Status<Error> GrowingFile::check() const {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0) return failure();
-    if (status.st_nlink == 0) return unexpected(file_.string() + ": was removed while it was written");
+    if (status.st_nlink == 0)
+        return unexpected(in_file({ErrorCode::not_found, "was removed while it was written"}, file_));
     return Done{};
 }
 
-Status<std::string> GrowingFile::finish() {
+Status<Error> GrowingFile::finish() {
     const bool is_synced = ::fsync(descriptor_) == 0;
     if (!is_synced) return failure();
     const bool is_closed = ::close(descriptor_) == 0;

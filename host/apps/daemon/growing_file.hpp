@@ -5,12 +5,12 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
 
-/// A new file that only grows. Errors contain the file and the reason ("out/can.log: No space left on
-/// device").
+/// A new file that only grows. Errors contain the file.
 class GrowingFile {
   public:
     GrowingFile() = default;
@@ -18,15 +18,15 @@ class GrowingFile {
     GrowingFile& operator=(const GrowingFile&) = delete;
     ~GrowingFile();
     /// Refuses an existing file.
-    [[nodiscard]] Status<std::string> create(const FilePlace& file);
-    [[nodiscard]] Status<std::string> append(const std::string& text);
+    [[nodiscard]] Status<Error> create(const FilePlace& file);
+    [[nodiscard]] Status<Error> append(const std::string& text);
     /// Error: the file was removed. Its content is lost when it is closed.
-    [[nodiscard]] Status<std::string> check() const;
+    [[nodiscard]] Status<Error> check() const;
     /// Writes it to the disk and closes it.
-    [[nodiscard]] Status<std::string> finish();
+    [[nodiscard]] Status<Error> finish();
 
   private:
-    [[nodiscard]] Unexpected<std::string> failure() const;
+    [[nodiscard]] Unexpected<Error> failure() const;
     std::filesystem::path file_;
     int descriptor_ = -1;
 };

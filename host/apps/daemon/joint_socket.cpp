@@ -97,8 +97,9 @@ Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& fil
     } catch (const std::system_error& error) {
         socketcan::close_socket(*descriptor);
         ::unlink(file.c_str());
-        const AppError why = shortage_in(error).value_or(AppError{ExitCode::unavailable, error.what()});
-        return fail(why.code, fmt::format("{}: {}", file.string(), why.message));
+        AppError why = shortage_in(error).value_or(
+            AppError{ExitCode::unavailable, {ErrorCode::system_error, error.what()}});
+        return fail(why.exit, in_file(std::move(why.error), file));
     }
 }
 

@@ -63,7 +63,7 @@ bool MapHome::look() {
     }
     if (!there) {
         problem_ = fmt::format("the maps' folder was replaced while octoskin ran: {}; {}",
-                               FolderLock::cannot_save(place_, there.error()).message, where_it_goes());
+                               FolderLock::cannot_save(place_, there.error()).message(), where_it_goes());
         return false;
     }
     if (has_map(*there)) {  // not even locked: another daemon may be about to start with it
@@ -73,7 +73,7 @@ bool MapHome::look() {
     auto next = FolderLock::take(*there, place_);
     if (!next) {
         problem_ = fmt::format("the maps' folder was replaced while octoskin ran: {}; {}",
-                               next.error().message, where_it_goes());
+                               next.error().message(), where_it_goes());
         return false;
     }
     if (has_map(*there)) {  // another octoskin put it there before the lock was taken

@@ -23,21 +23,23 @@ namespace octoskin {
 namespace {
 
 Result<LoadedMap, AppError> load_to_go_on(const MapConfig& config, const FilePlace& file) {
-    const auto refuse = [&file](const std::string& why) {
-        return unexpected(reading_error(
-            file, {ExitCode::bad_data,
-                   fmt::format("{}. To begin with an empty map, move {} away", why, kMapFilesText)}));
+    const auto refuse = [&file](Error why) {
+        if (!why.remedy.empty()) why.remedy += "; ";
+        why.remedy += fmt::format("to begin with an empty map, move {} away", kMapFilesText);
+        return unexpected(reading_error(file, {ExitCode::bad_data, std::move(why)}));
     };
     auto loaded = load_map_of(config, file);
     if (!loaded) {
-        const char* const remedy =
-            loaded.error().is_of_other_voxels ? ": set map.resolution_m to its former value" : "";
-        return refuse(loaded.error().message + remedy);
+        Error why = loaded.error();
+        if (why.code == ErrorCode::mismatch) why.remedy = "set map.resolution_m to its former value";
+        return refuse(std::move(why));
     }
     if (loaded->has_lost_colours) {
-        return refuse(file.shown().string() +
-                      ": its voxels have colours, which the next save would lose: to continue with the map "
-                      "without them, run `convert_octree fused.ot fused.bt` and move fused.ot away");
+        return refuse({.code = ErrorCode::unsupported,
+                       .what = "its voxels have colours, which the next save would lose",
+                       .remedy = "to continue with the map without them, run `convert_octree fused.ot "
+                                 "fused.bt` and move fused.ot away",
+                       .file = file.shown()});
     }
     return std::move(loaded).value();
 }
@@ -50,12 +52,13 @@ bool is_of_map(const FilePlace& small_file, const FusedMap& map) {
     return small && encode_bt(small->map) == encode_bt(map);
 }
 
-/// Loads the snapshot of the fused.ot beside it, which has this checksum. The error: why it cannot be used.
+/// Loads the snapshot of the fused.ot beside it; `map_crc32` is that of the fused.ot. The error: why the
+/// snapshot cannot be used.
 Result<Snapshot, std::string> snapshot_of_map(const FilePlace& file, const MappingConfig& mapping,
                                               std::uint32_t mapping_crc32,
                                               const std::optional<std::uint32_t>& map_crc32) {
     auto snapshot = load_snapshot(file, mapping, mapping_crc32);
-    if (!snapshot) return unexpected(snapshot.error().what);
+    if (!snapshot) return unexpected(snapshot.error().message());
     if (!map_crc32 || snapshot->origin.map_crc32 != map_crc32)
         return unexpected(file.shown().string() + ": was not saved with the fused.ot beside it");
     return std::move(*snapshot);
@@ -67,7 +70,8 @@ Result<KeptMap, AppError> load_alone(const MapConfig& config, const FilePlace& f
     if (!loaded) return unexpected(loaded.error());
     KeptMap kept{std::move(loaded->map), std::move(loaded->warnings)};
     if (!why.empty())
-        kept.warnings.push_back(why + "; the map continues from its log-odds, and all of it is stale");
+        kept.warnings.push_back(why +
+                                "; the map continues with the log-odds of fused.ot, and all of it is stale");
     return kept;
 }
 
@@ -95,14 +99,16 @@ bool finish_save(const OpenFolder& folder) {
     return static_cast<bool>(folder.move(draft.filename(), kSnapshotFile));
 }
 
-std::string why_no_room(const FusedMap& map, const MapConfig& next) {
+std::optional<Error> why_no_room(const FusedMap& map, const MapConfig& next) {
     constexpr unsigned kMib = 20;
     const std::uint64_t needed_mib = (bytes_needed(map.layers()) + (std::size_t{1} << kMib) - 1) >> kMib;
-    if (needed_mib <= next.memory_max_mib) return {};
-    return fmt::format(
-        "the map takes {} MiB, and map.memory_max_mib is {}: make that {} or more, or end the daemon and "
-        "move the saved map away",
-        needed_mib, next.memory_max_mib, needed_mib);
+    if (needed_mib <= next.memory_max_mib) return std::nullopt;
+    return Error{.code = ErrorCode::too_large,
+                 .what = fmt::format("expected at least {} MiB, which the map takes", needed_mib),
+                 .value = fmt::format("{}", next.memory_max_mib),
+                 .remedy = fmt::format("set it to {} or more, or end the daemon and move the saved map away",
+                                       needed_mib),
+                 .key = "map.memory_max_mib"};
 }
 
 MapSaver::MapSaver(NamedFolder folder, Writer writer, Copier copier)
@@ -144,10 +150,12 @@ Result<std::optional<KeptMap>, AppError> MapSaver::find(const MappingConfig& map
     if (!kept) return unexpected(kept.error());
     if (has_file && has_small_file && !is_of_map(small_file, kept->map)) {
         return fail(ExitCode::bad_data,
-                    small_file.shown().string() +
-                        ": is another map than fused.ot beside it, octoskin did not save it, and the next "
-                        "save would replace it. Move it away to continue with fused.ot, or move fused.ot "
-                        "away to continue with it");
+                    {.code = ErrorCode::mismatch,
+                     .what = "is another map than fused.ot beside it, octoskin did not save it, and the next "
+                             "save would replace it",
+                     .remedy = "move it away to continue with fused.ot, or move fused.ot away to continue "
+                               "with it",
+                     .file = small_file.shown()});
     }
     return std::optional(std::move(*kept));
 }
@@ -260,9 +268,9 @@ void MapSaver::end_save(Work& shared, std::string error) {
 std::string MapSaver::write_map(const FusedMap& map, const SnapshotOrigin& origin,
                                 const NamedFolder& folder) {
     auto exact = draft_map(map, {folder, kMapFile});
-    if (!exact) return exact.error().message;
+    if (!exact) return exact.error().message();
     auto small = draft_map(map, {folder, kSmallMapFile});
-    if (!small) return small.error().message;
+    if (!small) return small.error().message();
     SnapshotOrigin of_map = origin;
     of_map.map_crc32 = exact->crc();
     auto snapshot = draft_snapshot({map.copy(), {}}, of_map, {folder, kSnapshotFile});

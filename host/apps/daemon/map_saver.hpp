@@ -23,7 +23,7 @@ namespace octoskin {
 
 /// Why a map cannot be kept with this mapping: it takes more than `next.memory_max_mib`, and the next start
 /// would refuse it. Empty: it can.
-[[nodiscard]] std::string why_no_room(const FusedMap& map, const MapConfig& next);
+[[nodiscard]] std::optional<Error> why_no_room(const FusedMap& map, const MapConfig& next);
 
 struct SaveRecord {
     std::uint64_t saved = 0;

@@ -14,7 +14,8 @@ NextResult read_next(const DaemonRequest& request, const RecordedSettings& held)
         if (!made) return unexpected(made.error());
         return std::optional(Next{std::move(read).value(), std::move(made).value()});
     } catch (const std::bad_alloc&) {
-        return fail(ExitCode::bad_config, "no memory to read the rig, robot and mapping files");
+        return fail(ExitCode::bad_config,
+                    {ErrorCode::no_resources, "no memory to read the rig, robot and mapping files"});
     }
 }
 

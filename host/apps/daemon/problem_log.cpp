@@ -22,18 +22,17 @@ void ProblemLog::update(std::vector<Problem> problems, HostTime now, bool is_set
     log_over(now);
     if (newest_ == problems) return;
     const std::string state =
-        problems.empty() ? "STATUS=all is well" : "STATUS=" + printable(problems.front().text);
+        problems.empty() ? "STATUS=all is well" : "STATUS=" + printable(problems.front().text());
     (void)sd_notify(0, state.c_str());
     newest_ = std::move(problems);
 }
 
 void ProblemLog::log(const std::vector<Problem>& problems, HostTime now) {
     for (const Problem& problem : problems) {
-        const auto reported = std::ranges::find(
-            logged_, problem.about,
-            [](const LoggedProblem& each) -> const std::string& { return each.problem.about; });
+        const auto reported = std::ranges::find_if(
+            logged_, [&](const LoggedProblem& each) { return each.problem.is_same(problem); });
         if (reported == logged_.end()) {
-            spdlog::warn("{}", problem.text);
+            spdlog::warn("{}", problem.text());
             logged_.push_back({problem, now, returns_of_gone(problem)});
         } else {
             const bool was_away = now - reported->seen >= kOver;
@@ -57,7 +56,7 @@ void ProblemLog::log_over(HostTime now) {
             const std::string often = reported.returns > kFreeReturns
                                           ? fmt::format(" (it came and went {} times)", reported.returns + 1)
                                           : "";
-            spdlog::info("over: {}{}", reported.problem.text, often);
+            spdlog::info("over: {}{}", reported.problem.text(), often);
         }
         gone_.push_back(reported);
     }
@@ -68,8 +67,7 @@ void ProblemLog::log_over(HostTime now) {
 /// How often a problem that appears has come back by now. Removes it from the gone ones.
 unsigned ProblemLog::returns_of_gone(const Problem& problem) {
     const auto gone =
-        std::ranges::find(gone_, problem.about,
-                          [](const LoggedProblem& each) -> const std::string& { return each.problem.about; });
+        std::ranges::find_if(gone_, [&](const LoggedProblem& each) { return each.problem.is_same(problem); });
     if (gone == gone_.end()) return 0;
     const unsigned returns = gone->returns + 1;
     gone_.erase(gone);

@@ -2,24 +2,12 @@
 // for good.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "common/time.hpp"
+#include "host/apps/daemon/problem.hpp"
 
 namespace octoskin {
-
-struct Problem {
-    /// Identifies the problem; the same as long as it lasts, whatever figures its text has.
-    std::string about;
-    std::string text;  ///< a sentence for a person
-    /// Its subject, if another sentence of the same subject may replace this one; else empty.
-    std::string subject = {};
-    /// The subject whose problem hides this one: while that has a problem, it cannot be decided whether this
-    /// one is over.
-    std::string hidden_by = {};
-    friend bool operator==(const Problem&, const Problem&) = default;
-};
 
 class ProblemLog {
   public:

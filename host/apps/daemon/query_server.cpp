@@ -149,7 +149,8 @@ std::string QueryServer::answer(const std::string& question, Ground ground) {
     } catch (const std::bad_alloc&) {  // nor for a message
         throw;
     } catch (const std::exception& error) {
-        json = query_refused({ExitCode::unavailable, std::string("no answer: ") + error.what()});
+        json = query_refused(
+            {ExitCode::unavailable, {ErrorCode::no_answer, std::string("no answer: ") + error.what()}});
     }
     std::string line = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     UnwindingRoom::spend();

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "host/apps/command_line/error_json.hpp"
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/folder_lock.hpp"
 #include "host/core/text/printable.hpp"
@@ -33,32 +34,39 @@ bool is_daemons_own(const std::string& name) {
 }
 
 /// Why no other recording can start.
-std::string describe_busy(const Recorder& recorder) {
-    const std::string folder = recorder.folder().string();
-    if (recorder.is_stopped())
-        return "still writing the end of the recording " + folder +
-               "; `octoskin status` shows when it has ended";
-    return "already recording to " + folder + "; `octoskin record --stop` ends that";
+Error busy(const Recorder& recorder) {
+    Error error{.code = ErrorCode::in_use, .file = recorder.folder()};
+    error.what = recorder.is_stopped() ? "the end of this recording is still being written"
+                                       : "a recording goes there already";
+    error.remedy = recorder.is_stopped() ? "`octoskin status` shows when it has ended"
+                                         : "`octoskin record --stop` ends that";
+    return error;
+}
+
+Unexpected<AppError> no_recording() {
+    return fail(ExitCode::unavailable, {ErrorCode::no_data, "nothing is being recorded"});
 }
 
 }  // namespace
 
-std::string fault_of_folder(const std::filesystem::path& folder) {
+std::optional<Error> fault_of_folder(const std::filesystem::path& folder) {
     const std::string name = folder.string();
     const std::string shown = printable(name);
     constexpr std::size_t kLongest = 4095;
     if (name.size() > kLongest)
-        return fmt::format("a path has at most {} bytes, and this one has {}: give a shorter one", kLongest,
-                           name.size());
-    if (!folder.is_absolute()) return fmt::format("'{}' is no absolute path", shown);
+        return Error{.code = ErrorCode::bad_name,
+                     .what = fmt::format("a path has at most {} bytes", kLongest),
+                     .value = fmt::format("{} bytes", name.size()),
+                     .remedy = "give a shorter one"};
+    const std::string quoted = "'" + shown + "'";
+    if (!folder.is_absolute()) return Error{ErrorCode::bad_value, "expected an absolute path", quoted};
     if (is_daemons_own(plain(folder).filename().string()))
-        return fmt::format("'{}': octoskin may use this name itself; give another one", shown);
-    if (shown == name) return {};
+        return Error{ErrorCode::bad_name, "expected a name that octoskin does not use itself", quoted,
+                     "give another one"};
+    if (shown == name) return std::nullopt;
     // The name goes into logs, into the status, and to users who replay the recording.
-    return fmt::format(
-        "'{}': a recording's folder may have no control characters in its name, and must be UTF-8; give "
-        "another one",
-        shown);
+    return Error{ErrorCode::bad_name, "expected a name in UTF-8 without control characters", quoted,
+                 "give another one"};
 }
 
 std::filesystem::path plain(const std::filesystem::path& folder) {
@@ -72,9 +80,9 @@ Result<RecordStart, AppError> read_record_start(std::string_view arguments) {
     const auto [end, error] = std::from_chars(arguments.data(), last, seconds);
     const bool is_time = error == std::errc{} && seconds >= 0.0 && seconds <= kSecondsMax;
     if (!is_time || end == last || *end != ' ')
-        return fail(ExitCode::usage, "expected: record start SECONDS FOLDER");
+        return fail(ExitCode::usage, {ErrorCode::bad_argument, "expected: record start SECONDS FOLDER"});
     const std::filesystem::path named(end + 1, last);
-    if (const std::string fault = fault_of_folder(named); !fault.empty()) return fail(ExitCode::usage, fault);
+    if (auto fault = fault_of_folder(named)) return fail(ExitCode::usage, std::move(*fault));
     const auto limit = seconds > 0.0 ? std::optional(Nanoseconds{std::llround(seconds * 1e9)}) : std::nullopt;
     return RecordStart{limit, plain(named)};
 }
@@ -85,19 +93,21 @@ std::string RecordRequests::answer(const std::string& line, const RecordedSettin
     if (line.starts_with(kStart)) {
         outcome = start(line.substr(kStart.size()), settings, pipeline, now);
     } else if (line == "record stop") {
-        if (!recorder_) outcome = fail(ExitCode::unavailable, "nothing is being recorded");
+        if (!recorder_) outcome = no_recording();
         stop(now);
     } else if (line.starts_with(kStop)) {
         outcome = stop(line.substr(kStop.size()), now);
     } else if (line != "record status") {
-        outcome = fail(ExitCode::usage,
-                       "unknown request; there are: record start SECONDS FOLDER, record stop [FOLDER], "
-                       "record status");
+        outcome =
+            fail(ExitCode::usage,
+                 {.code = ErrorCode::bad_argument,
+                  .what = "unknown request",
+                  .remedy = "there are: record start SECONDS FOLDER, record stop [FOLDER], record status"});
     }
     nlohmann::ordered_json answer{{"ok", outcome.has_value()}};
     if (!outcome) {
-        answer["error"] = outcome.error().message;
-        answer["code"] = static_cast<int>(outcome.error().code);
+        answer["exit"] = static_cast<int>(outcome.error().exit);
+        answer["error"] = octoskin::to_json(outcome.error().error);
     }
     answer["recording"] = to_json(now);
     answer["before"] = before_;
@@ -109,25 +119,27 @@ Status<AppError> RecordRequests::start(const std::string& arguments, const Recor
     const auto asked = read_record_start(arguments);
     if (!asked) return unexpected(asked.error());
     if (recorder_ && !recorder_->has_ended()) {
-        return fail(ExitCode::cannot_create, describe_busy(*recorder_));
+        return fail(ExitCode::cannot_create, busy(*recorder_));
     }
     if (recorder_) recorder_->stop(now);  // releases the pipeline first
+    Error refused{ErrorCode::no_resources};
     try {
         return begin(
             std::make_unique<Recorder>(asked->folder, asked->limit, settings, pipeline, now, copier_), now);
     } catch (const std::bad_alloc&) {
-        refusal_ = fmt::format("no memory for a copy of the map ({} MiB), which a recording starts with",
-                               pipeline.map().memory_bytes() >> 20U);
+        refused.what = fmt::format("no memory for a copy of the map ({} MiB), which a recording starts with",
+                                   pipeline.map().memory_bytes() >> 20U);
     } catch (const std::system_error& error_thrown) {
-        refusal_ = fmt::format("no thread left for a recording ({})", error_thrown.code().message());
+        refused.what = fmt::format("no thread left for a recording ({})", error_thrown.code().message());
     }
-    return fail(ExitCode::unavailable, refusal_);
+    refusal_ = refused.message();
+    return fail(ExitCode::unavailable, std::move(refused));
 }
 
 Status<AppError> RecordRequests::begin(std::unique_ptr<Recorder> recorder, HostTime now) {
-    if (const std::string why = recorder->refusal(kFolderPatience); !why.empty()) {
-        spdlog::warn("not recorded: {}", why);
-        return fail(ExitCode::cannot_create, why);
+    if (auto why = recorder->refusal(kFolderPatience)) {
+        spdlog::warn("not recorded: {}", why->message());
+        return fail(ExitCode::cannot_create, std::move(*why));
     }
     if (recorder_) before_ = to_json(now);
     recorder_ = std::move(recorder);
@@ -138,15 +150,16 @@ Status<AppError> RecordRequests::begin(std::unique_ptr<Recorder> recorder, HostT
 }
 
 Status<AppError> RecordRequests::stop(const std::string& folder, HostTime now) {
-    if (const std::string fault = fault_of_folder(folder); !fault.empty())
-        return fail(ExitCode::usage, fault);
-    if (!recorder_) return fail(ExitCode::unavailable, "nothing is being recorded");
+    if (auto fault = fault_of_folder(folder)) return fail(ExitCode::usage, std::move(*fault));
+    if (!recorder_) return no_recording();
     const std::filesystem::path named = plain(folder);
     if (recorder_->folder() != named) {
         return fail(ExitCode::unavailable,
-                    fmt::format("{} is not being recorded; the recording {} {}", named.string(),
-                                recorder_->has_ended() ? "that ended last is" : "goes to",
-                                recorder_->folder().string()));
+                    {.code = ErrorCode::no_data,
+                     .what = fmt::format("is not being recorded; the recording {} {}",
+                                         recorder_->has_ended() ? "that ended last is" : "goes to",
+                                         recorder_->folder().string()),
+                     .file = named});
     }
     stop(now);
     return Done{};

@@ -24,7 +24,7 @@ namespace octoskin {
 
 /// Why nothing is recorded to a folder of this name; empty if it is allowed. Control characters would end a
 /// request, or a line of a log, in the middle; the name of a daemon's file would take its place.
-[[nodiscard]] std::string fault_of_folder(const std::filesystem::path& folder);
+[[nodiscard]] std::optional<Error> fault_of_folder(const std::filesystem::path& folder);
 /// The form in requests and answers: without "." or "..", and without a slash at the end.
 [[nodiscard]] std::filesystem::path plain(const std::filesystem::path& folder);
 
@@ -41,8 +41,9 @@ class RecordRequests {
     explicit RecordRequests(Recorder::Copier copier = &FusedMap::copy) : copier_(std::move(copier)) {}
 
     [[nodiscard]] static bool is_one(const std::string& line) { return line.starts_with("record "); }
-    /// A line of JSON: "ok"; if false, "error" and "code", the exit code; "recording", the running or the
-    /// last one, with its "number" since the daemon started; and "before", the one before that.
+    /// A line of JSON: "ok"; if false, "exit", the exit code, and "error" (error_json.hpp); "recording", the
+    /// running or the last one, with its "number" since the daemon started; and "before", the one before
+    /// that.
     [[nodiscard]] std::string answer(const std::string& line, const RecordedSettings& settings,
                                      Pipeline& pipeline, HostTime now);
 

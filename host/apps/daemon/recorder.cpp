@@ -132,7 +132,7 @@ void Recorder::on_time_jump() {
 void Recorder::attend(HostTime now) {
     if (stopped_) return report_end();
     const bool is_long_enough = limit_ && now - begun_ >= *limit_;
-    if (is_long_enough || !writer_.error().empty()) stop(now);
+    if (is_long_enough || writer_.error()) stop(now);
 }
 
 void Recorder::stop(HostTime now, std::string early) {

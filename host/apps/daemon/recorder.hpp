@@ -66,17 +66,20 @@ class Recorder final : public CommitListener {
 
     /// Why the folder was refused: it is not empty, or belongs to another user. Empty if it was accepted. If
     /// a disk takes longer than `patience`, `error` has it then.
-    [[nodiscard]] std::string refusal(Nanoseconds patience) { return writer_.refusal(patience); }
+    [[nodiscard]] std::optional<Error> refusal(Nanoseconds patience) { return writer_.refusal(patience); }
 
     /// It accepts no more input; its files may not be complete yet.
     [[nodiscard]] bool is_stopped() const { return stopped_.has_value(); }
     [[nodiscard]] bool has_ended() const { return writer_.has_ended(); }
     /// For a person; empty: no error so far.
-    [[nodiscard]] std::string error() const { return writer_.error(); }
+    [[nodiscard]] std::string error() const {
+        const auto error = writer_.error();
+        return error ? error->message() : std::string();
+    }
     /// As RecordingWriter::writing_since.
     [[nodiscard]] std::optional<HostTime> writing_since() const { return writer_.writing_since(); }
     /// All that went into the map could be recorded so far, and the map took it as a replay will.
-    [[nodiscard]] bool is_complete() const { return counts_.is_complete() && error().empty(); }
+    [[nodiscard]] bool is_complete() const { return counts_.is_complete() && !writer_.error(); }
     [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
     [[nodiscard]] nlohmann::ordered_json to_json(HostTime now) const;
 

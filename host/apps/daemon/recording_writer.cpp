@@ -28,7 +28,7 @@ constexpr std::chrono::milliseconds kWritePeriod{100};
 constexpr Nanoseconds kCheckPeriod{1'000'000'000};
 constexpr Nanoseconds kDropPatience{100'000'000};
 
-Status<std::string> write_file(const FilePlace& file, const std::string& text) {
+Status<Error> write_file(const FilePlace& file, const std::string& text) {
     GrowingFile stream;
     if (const auto created = stream.create(file); !created) return created;
     if (const auto written = stream.append(text); !written) return written;
@@ -36,21 +36,28 @@ Status<std::string> write_file(const FilePlace& file, const std::string& text) {
 }
 
 /// Does not create parents: if a disk is not mounted, hours of a recording would go to another one.
-Result<OpenFolder, std::string> make_folder(const RecordingPaths& paths) {
+Result<OpenFolder, Error> make_folder(const RecordingPaths& paths) {
     const fs::path& folder = paths.directory;
     std::error_code error;
     if (!fs::exists(folder.parent_path(), error) && !error)
-        return unexpected(folder.string() + ": there is no " + folder.parent_path().string() +
-                          "; create it, or mount the disk that should be there");
+        return unexpected(
+            Error{.code = ErrorCode::not_found,
+                  .what = "the folder of the recording " + folder.filename().string() + " does not exist",
+                  .remedy = "create it, or mount the disk that should be there",
+                  .file = folder.parent_path()});
     fs::create_directory(folder, error);
-    if (error) return unexpected(folder.string() + ": " + error.message());
+    if (error) return unexpected(to_error(folder_error_of(error.value(), folder)));
     const auto opened = paths.folder.open();
-    if (!opened) return unexpected(opened.error().message());
+    if (!opened) return unexpected(to_error(opened.error()));
     auto to_write = opened->to_write();
-    if (!to_write) return unexpected(to_write.error().message());
+    if (!to_write) return unexpected(to_error(to_write.error()));
     const auto names = to_write->names();
-    if (!names) return unexpected(names.error().message());
-    if (!names->empty()) return unexpected(folder.string() + ": is not empty; give another directory");
+    if (!names) return unexpected(to_error(names.error()));
+    if (!names->empty())
+        return unexpected(Error{.code = ErrorCode::already_exists,
+                                .what = "is not empty",
+                                .remedy = "give another directory",
+                                .file = folder});
     return std::move(*to_write);
 }
 
@@ -71,14 +78,14 @@ class RecordingWriter::Work {
     [[nodiscard]] bool add_order(const std::string& line) { return order_.add(line); }
     [[nodiscard]] bool add_depth(const DepthFrame& frame) { return depth_.add(frame); }
     [[nodiscard]] bool has_ended() const;
-    [[nodiscard]] std::string error() const;
+    [[nodiscard]] std::optional<Error> error() const;
     [[nodiscard]] std::optional<HostTime> writing_since() const;
     [[nodiscard]] bool wait(Nanoseconds patience);
-    [[nodiscard]] std::string refusal(Nanoseconds patience);
+    [[nodiscard]] std::optional<Error> refusal(Nanoseconds patience);
     [[nodiscard]] const fs::path& folder() const { return begin_.paths.directory; }
 
   private:
-    using Step = Status<std::string>;
+    using Step = Status<Error>;
     [[nodiscard]] Step record();
     [[nodiscard]] Step begin();
     [[nodiscard]] Step write_waiting();
@@ -91,8 +98,11 @@ class RecordingWriter::Work {
     [[nodiscard]] Step end(RecordingEnd end, const OpenFolder& held);
     [[nodiscard]] Step keep_first();
     /// Saves the map and returns its checksum; an empty one has neither file nor checksum.
-    [[nodiscard]] Result<std::optional<std::uint32_t>, std::string> keep_map(const FusedMap& map,
-                                                                             const FilePlace& file) const;
+    [[nodiscard]] Result<std::optional<std::uint32_t>, Error> keep_map(const FusedMap& map,
+                                                                       const FilePlace& file) const;
+    [[nodiscard]] Unexpected<Error> failure(ErrorCode code, const std::string& what) const {
+        return unexpected(in_file({code, what}, folder()));
+    }
 
     RecordingBegin begin_;
     MapWriter map_writer_;
@@ -107,7 +117,7 @@ class RecordingWriter::Work {
     bool is_dropped_ = false;
     bool has_folder_ = false;  ///< it was empty, and belongs to this user
     bool has_ended_ = false;
-    std::string error_;
+    std::optional<Error> error_;
     std::optional<HostTime> writing_since_ = monotonic_now();
     HostTime checked_ = monotonic_now();
 };
@@ -138,7 +148,7 @@ void RecordingWriter::finish(RecordingEnd end) {
 bool RecordingWriter::has_ended() const {
     return work_->has_ended();
 }
-std::string RecordingWriter::error() const {
+std::optional<Error> RecordingWriter::error() const {
     return work_->error();
 }
 bool RecordingWriter::wait(Nanoseconds patience) {
@@ -147,7 +157,7 @@ bool RecordingWriter::wait(Nanoseconds patience) {
 std::optional<HostTime> RecordingWriter::writing_since() const {
     return work_->writing_since();
 }
-std::string RecordingWriter::refusal(Nanoseconds patience) {
+std::optional<Error> RecordingWriter::refusal(Nanoseconds patience) {
     return work_->refusal(patience);
 }
 
@@ -172,9 +182,9 @@ bool RecordingWriter::Work::has_ended() const {
     return has_ended_;
 }
 
-std::string RecordingWriter::Work::error() const {
+std::optional<Error> RecordingWriter::Work::error() const {
     const std::lock_guard lock(mutex_);
-    return error_.empty() ? depth_.error() : error_;
+    return error_ ? error_ : depth_.error();
 }
 
 std::optional<HostTime> RecordingWriter::Work::writing_since() const {
@@ -187,10 +197,10 @@ bool RecordingWriter::Work::wait(Nanoseconds patience) {
     return changed_.wait_for(lock, patience, [this] { return has_ended_; });
 }
 
-std::string RecordingWriter::Work::refusal(Nanoseconds patience) {
+std::optional<Error> RecordingWriter::Work::refusal(Nanoseconds patience) {
     std::unique_lock lock(mutex_);
     (void)changed_.wait_for(lock, patience, [this] { return has_folder_ || has_ended_; });
-    return has_folder_ ? std::string() : error_;
+    return has_folder_ ? std::nullopt : error_;
 }
 
 void RecordingWriter::Work::run() {
@@ -198,7 +208,9 @@ void RecordingWriter::Work::run() {
     try {
         outcome = record();
     } catch (const std::exception& thrown) {  // no memory for the text of a map
-        outcome = unexpected(folder().string() + ": " + reason_of(thrown));
+        outcome = unexpected(in_file(
+            shortage_in(thrown).value_or(AppError{.error = {ErrorCode::system_error, thrown.what()}}).error,
+            folder()));
     }
     {
         const std::lock_guard lock(mutex_);
@@ -209,12 +221,12 @@ void RecordingWriter::Work::run() {
     changed_.notify_all();
 }
 
-Status<std::string> RecordingWriter::Work::record() {
+Status<Error> RecordingWriter::Work::record() {
     const auto made = make_folder(begin_.paths);
     if (!made) return unexpected(made.error());
     // Other writers of recordings or maps there take the same lock.
     const auto lock = FileLock::take(*made, FileLock::Kind::exclusive);
-    if (!lock) return unexpected(begin_.paths.directory.string() + ": another octoskin is writing here");
+    if (!lock) return failure(ErrorCode::in_use, "another octoskin is writing here");
     {
         const std::lock_guard guard(mutex_);
         has_folder_ = true;
@@ -225,26 +237,24 @@ Status<std::string> RecordingWriter::Work::record() {
     while (!rest()) {
         if (const Step written = write_waiting(); !written) return written;
         if (const Step checked = check_sometimes(*made); !checked) return checked;
-        if (std::string error = depth_.error(); !error.empty()) return unexpected(std::move(error));
+        if (auto error = depth_.error()) return unexpected(std::move(*error));
     }
     std::unique_lock guard(mutex_);
-    if (!end_)
-        return unexpected(begin_.paths.directory.string() +
-                          ": the daemon ended before the recording was complete");
+    if (!end_) return failure(ErrorCode::cancelled, "the daemon ended before the recording was complete");
     RecordingEnd last = std::move(*std::exchange(end_, std::nullopt));
     guard.unlock();
     return end(std::move(last), *made);
 }
 
-Result<std::optional<std::uint32_t>, std::string> RecordingWriter::Work::keep_map(
-    const FusedMap& map, const FilePlace& file) const {
+Result<std::optional<std::uint32_t>, Error> RecordingWriter::Work::keep_map(const FusedMap& map,
+                                                                            const FilePlace& file) const {
     if (map.known_voxels() == 0) return std::optional<std::uint32_t>{};
     const auto saved = map_writer_(map, file);
-    if (!saved) return unexpected(saved.error().message);
+    if (!saved) return unexpected(saved.error());
     return std::optional(*saved);
 }
 
-Status<std::string> RecordingWriter::Work::keep_first() {
+Status<Error> RecordingWriter::Work::keep_first() {
     const auto map = keep_map(begin_.first.map, begin_.paths.first_map());
     if (!map) return unexpected(map.error());
     begin_.order.first_map = *map;
@@ -252,13 +262,13 @@ Status<std::string> RecordingWriter::Work::keep_first() {
                                 .placement_crc32 = begin_.placement_crc32,
                                 .map_crc32 = *map};
     const auto saved = save_snapshot(begin_.first, origin, begin_.paths.first_state());
-    if (!saved) return unexpected(saved.error().message());
+    if (!saved) return unexpected(to_error(saved.error()));
     begin_.order.first_state = *saved;
     begin_.first = {FusedMap(begin_.first.map.config()), {}};  // its memory is no longer needed
     return Done{};
 }
 
-Status<std::string> RecordingWriter::Work::begin() {
+Status<Error> RecordingWriter::Work::begin() {
     const RecordingPaths& paths = begin_.paths;
     const std::pair<FilePlace, const std::string&> texts[] = {
         {paths.rig(), begin_.rig}, {paths.robot(), begin_.robot}, {paths.mapping(), begin_.mapping}};
@@ -279,44 +289,42 @@ bool RecordingWriter::Work::rest() {
     return is_to_end;
 }
 
-Status<std::string> RecordingWriter::Work::write_waiting() {
+Status<Error> RecordingWriter::Work::write_waiting() {
     if (const Step written = can_file_.append(can_.take()); !written) return written;
     return order_file_.append(order_.take());
 }
 
-Status<std::string> RecordingWriter::Work::check(const OpenFolder& held) const {
+Status<Error> RecordingWriter::Work::check(const OpenFolder& held) const {
     struct stat status {};
     if (::fstat(held.descriptor(), &status) != 0)
-        return unexpected(folder().string() + ": " + std::generic_category().message(errno));
+        return failure(ErrorCode::system_error, std::generic_category().message(errno));
     if (status.st_nlink == 0)
-        return unexpected(folder().string() + ": was removed while the recording was made");
+        return failure(ErrorCode::not_found, "was removed while the recording was made");
     if (const Step checked = can_file_.check(); !checked) return checked;
     return order_file_.check();
 }
 
-Status<std::string> RecordingWriter::Work::check_sometimes(const OpenFolder& held) {
+Status<Error> RecordingWriter::Work::check_sometimes(const OpenFolder& held) {
     const HostTime now = monotonic_now();
     if (now - checked_ < kCheckPeriod) return Done{};
     checked_ = now;
     return check(held);
 }
 
-Status<std::string> RecordingWriter::Work::end(RecordingEnd last, const OpenFolder& held) {
+Status<Error> RecordingWriter::Work::end(RecordingEnd last, const OpenFolder& held) {
     if (const Step written = write_waiting(); !written) return written;
     if (const Step checked = check(held); !checked) return checked;
     if (const Step finished = can_file_.finish(); !finished) return finished;
-    if (std::string error = depth_.finish(); !error.empty()) return unexpected(std::move(error));
+    if (auto error = depth_.finish()) return unexpected(std::move(*error));
     if (!last.last_map)
-        return unexpected(folder().string() + ": there was no memory for a copy of the map at the end");
+        return failure(ErrorCode::no_resources, "there was no memory for a copy of the map at the end");
     const auto map = keep_map(*last.last_map, begin_.paths.last_map());
     if (!map) return unexpected(map.error());
     last.order.last_map = *map;
     const std::string text = last.remarks + orderlog::format_trailer(last.order);
     if (const Step written = order_file_.append(text); !written) return written;
     if (const Step finished = order_file_.finish(); !finished) return finished;
-    if (const auto written = write_meta(begin_.paths, last.meta); !written)
-        return unexpected(written.error().message());
-    return Done{};
+    return write_meta(begin_.paths, last.meta);
 }
 
 }  // namespace octoskin

@@ -15,6 +15,7 @@
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/mapping/map_state.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/orderlog/order_line.hpp"
 
@@ -44,8 +45,7 @@ class RecordingWriter {
     /// Bytes of each text that may wait: seconds of a full bus.
     static constexpr std::size_t kTextMax = std::size_t{8} << 20U;
     /// Saves a map under that name; returns the file's CRC-32.
-    using MapWriter =
-        std::function<Result<std::uint32_t, MapFileError>(const FusedMap& map, const FilePlace& file)>;
+    using MapWriter = std::function<Result<std::uint32_t, Error>(const FusedMap& map, const FilePlace& file)>;
 
     /// Throws std::system_error if there is no thread left.
     explicit RecordingWriter(RecordingBegin begin, MapWriter map_writer = save_map);
@@ -62,13 +62,13 @@ class RecordingWriter {
     void finish(RecordingEnd end);
 
     [[nodiscard]] bool has_ended() const;
-    /// The error, for a person; empty: none so far.
-    [[nodiscard]] std::string error() const;
+    /// The error; empty: none so far.
+    [[nodiscard]] std::optional<Error> error() const;
     /// When the write, or the request to the folder, in progress began; empty: none is.
     [[nodiscard]] std::optional<HostTime> writing_since() const;
     /// Why the folder was refused, so that nothing is written; empty if it was accepted, or if the disk has
     /// not answered within `patience`.
-    [[nodiscard]] std::string refusal(Nanoseconds patience);
+    [[nodiscard]] std::optional<Error> refusal(Nanoseconds patience);
     /// Waits for the end, after `finish`; false if `patience` was too short.
     [[nodiscard]] bool wait(Nanoseconds patience);
 

@@ -60,10 +60,12 @@ Result<Settings, AppError> settings_of(const rig::Rig& rig, const DaemonRequest&
     auto host = make_host_setup(rig);
     if (!host) return unexpected(reading_error(ExitCode::bad_config, host.error()));
     if (!request.camera_uri.empty() && !rig.camera) {
-        return fail(
-            ExitCode::usage,
-            "--camera " + request.camera_uri + ": " + request.rig.string() +
-                " has no camera: add one with its pose and its mode to the rig, or leave --camera out");
+        return fail(ExitCode::usage,
+                    {.code = ErrorCode::conflict,
+                     .what = "the rig has no camera for " + request.camera_uri,
+                     .remedy = "add one with its pose and its mode to the rig, or leave --camera out",
+                     .file = request.rig,
+                     .key = "--camera"});
     }
     auto recorded = recorded_settings(rig, configuration->mapping, request.interface);
     if (!recorded) return unexpected(recorded.error());
@@ -88,7 +90,10 @@ Result<Settings, AppError> read_settings(const DaemonRequest& request) {
         stamp_before = stamp;
     }
     return fail(ExitCode::bad_config,
-                request.rig.string() + ": its robot's URDF was saved again during each attempt to read it");
+                {.code = ErrorCode::in_use,
+                 .what = "its robot's URDF was saved again during each attempt to read it",
+                 .remedy = "let the other program end its work on that file",
+                 .file = request.rig});
 }
 
 Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Settings& settings) {

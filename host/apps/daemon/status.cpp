@@ -315,18 +315,30 @@ void LastUsed::note(const Pipeline& pipeline, HostTime now) {
     if (depth_left_out == now && (!before || now - *before > kAgain)) depth_left_out_since = now;
 }
 
+/// Fields that are empty are left out.
+Json problem_json(const Problem& problem) {
+    Json json{{"code", name_of(problem.code)}, {"text", problem.text()}};
+    const auto put = [&json](const char* key, const std::string& value) {
+        if (!value.empty()) json[key] = value;
+    };
+    put("on", problem.on);
+    put("key", problem.key);
+    put("remedy", problem.remedy);
+    return json;
+}
+
 Json status_json(const DaemonView& view) {
     Json nodes = Json::array();
     for (const HostNode& node : view.rig->nodes) nodes.push_back(node_json(view, node));
-    Json sentences = Json::array();
-    for (const Problem& problem : problems(view)) sentences.push_back(problem.text);
+    Json reported = Json::array();
+    for (const Problem& problem : problems(view)) reported.push_back(problem_json(problem));
     return {{"octoskin", program_version()},
             {"uptime_s", seconds_of(view.now - view.started)},
             {"rig", view.rig->name},
             {"links_without_body", links_json(*view.rig, false)},
             {"links_unknown", links_json(*view.rig, true)},
             {"links_with_borrowed_body", borrowed_json(*view.rig)},
-            {"problems", std::move(sentences)},
+            {"problems", std::move(reported)},
             {"can", can_json(view)},
             {"clock", clock_json(view)},
             {"nodes", std::move(nodes)},

@@ -34,10 +34,18 @@ std::optional<sockaddr_un> address_of(const std::filesystem::path& file) {
 }
 
 Unexpected<AppError> failure(const std::filesystem::path& file, const std::string& what, int error) {
-    const ExitCode code = error == EACCES || error == EPERM ? ExitCode::no_permission
-                          : error == ENOENT                 ? ExitCode::unavailable
-                                                            : ExitCode::cannot_create;
-    return fail(code, file.string() + ": " + what + ": " + std::strerror(error));
+    const std::string reason = what + ": " + std::strerror(error);
+    if (error == EACCES || error == EPERM)
+        return fail(ExitCode::no_permission, in_file({ErrorCode::no_permission, reason}, file));
+    if (error == ENOENT) return fail(ExitCode::unavailable, in_file({ErrorCode::not_found, reason}, file));
+    return cannot_create(file, {ErrorCode::system_error, reason});
+}
+
+Unexpected<AppError> wrong_length(const std::filesystem::path& file) {
+    return fail(ExitCode::usage, {.code = ErrorCode::bad_name,
+                                  .what = "expected a socket's path of 1 to 107 bytes",
+                                  .value = std::to_string(file.string().size()) + " bytes",
+                                  .file = file});
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -49,15 +57,20 @@ Unexpected<AppError> cannot_listen(const std::filesystem::path& file, const std:
     const std::string folder = folder_of(file).string();
     const std::string elsewhere = "name a place elsewhere with " + option;
     if (error == ENOENT) {
-        return fail(ExitCode::unavailable, file.string() + ": cannot listen there: the folder " + folder +
-                                               " does not exist; create it, or " + elsewhere);
+        return fail(ExitCode::unavailable,
+                    {.code = ErrorCode::not_found,
+                     .what = "cannot listen there: the folder " + folder + " does not exist",
+                     .remedy = "create it, or " + elsewhere,
+                     .file = file});
     }
     if (error == ENOTDIR) {
-        return fail(ExitCode::unavailable,
-                    file.string() + ": cannot listen there: " + folder + " is no folder; " + elsewhere);
+        return fail(ExitCode::unavailable, {.code = ErrorCode::wrong_kind_of_file,
+                                            .what = "cannot listen there: " + folder + " is no folder",
+                                            .remedy = elsewhere,
+                                            .file = file});
     }
     auto failed = failure(file, "cannot listen there", error);
-    failed.error.message += "; " + elsewhere;
+    failed.error.error.remedy = elsewhere;
     return failed;
 }
 
@@ -139,19 +152,25 @@ class StartLock {
 Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type,
                                        const std::string& option) {
     const auto address = address_of(file);
-    if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
+    if (!address) return wrong_length(file);
     const StartLock lock(file);
     if (!lock.is_taken()) {
-        return cannot_create(file, "another octoskin keeps " + file.filename().string() +
-                                       ".lock beside it locked; is it stopped while starting?");
+        return cannot_create(
+            file, {.code = ErrorCode::in_use,
+                   .what = "another octoskin keeps " + file.filename().string() + ".lock beside it locked",
+                   .remedy = "end that octoskin, or let it continue if it is stopped while starting"});
     }
     if (const auto listener = find_listener(*address, type)) {
-        return cannot_create(
-            file, "another octoskin" + *listener + " has this socket; stop it, or name another one");
+        return cannot_create(file, {.code = ErrorCode::in_use,
+                                    .what = "another octoskin" + *listener + " has this socket",
+                                    .remedy = "stop it, or name another socket with " + option});
     }
     struct stat found {};
     if (::lstat(file.c_str(), &found) == 0) {
-        if (!S_ISSOCK(found.st_mode)) return cannot_create(file, "is there and is no socket");
+        if (!S_ISSOCK(found.st_mode))
+            return cannot_create(file, {.code = ErrorCode::wrong_kind_of_file,
+                                        .what = "is there and is no socket",
+                                        .remedy = "move it away, or name another socket with " + option});
         ::unlink(file.c_str());
     }
     const int descriptor = ::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -173,7 +192,7 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
 Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int type,
                                           std::chrono::milliseconds patience) {
     const auto address = address_of(file);
-    if (!address) return fail(ExitCode::usage, file.string() + ": a socket's path has 1 to 107 bytes");
+    if (!address) return wrong_length(file);
     const int descriptor = ::socket(AF_UNIX, type | SOCK_CLOEXEC, 0);
     if (descriptor < 0) return failure(file, "no socket", errno);
     // connect(2) waits for room among the connections not accepted yet, as long as a send may.
@@ -185,13 +204,16 @@ Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int
     ::close(descriptor);
     if (error == ECONNREFUSED || error == ENOENT) {
         return fail(ExitCode::unavailable,
-                    file.string() +
-                        ": no octoskin listens there (is `octoskin run` running? --socket names "
-                        "another place)");
+                    {.code = ErrorCode::no_listener,
+                     .what = "no octoskin listens there",
+                     .remedy = "start `octoskin run`, or name another place with --socket",
+                     .file = file});
     }
     if (error == EAGAIN) {
-        return fail(ExitCode::io_failed,
-                    file.string() + ": the daemon accepts no connection (is it stopped?)");
+        return fail(ExitCode::io_failed, {.code = ErrorCode::no_answer,
+                                          .what = "the daemon accepts no connection",
+                                          .remedy = "let it continue if it is stopped, or restart it",
+                                          .file = file});
     }
     return failure(file, "cannot connect", error);
 }

@@ -17,7 +17,8 @@ namespace octoskin {
 class AnswerRoom {
   public:
     /// The answer without such room: as by query_refused(), but made without JSON.
-    static constexpr const char* kRefusal = R"({"ok":false,"error":"no memory for an answer","code":69})";
+    static constexpr const char* kRefusal =
+        R"({"ok":false,"exit":69,"error":{"code":"no_resources","message":"no memory for an answer"}})";
 
     /// Throws std::bad_alloc if there is not enough. At most one at a time in a thread.
     explicit AnswerRoom(std::size_t bytes) : reserve_(bytes) { of_thread_ = this; }

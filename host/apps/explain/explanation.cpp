@@ -41,8 +41,11 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
     const auto key = grid.key_of(p_map);
     if (!key) {
         return fail(ExitCode::usage,
-                    fmt::format("{} {} {}: not within the map, {:.0f} m about its origin", p_map.x(),
-                                p_map.y(), p_map.z(), 32768 * grid.resolution_m()));
+                    {.code = ErrorCode::out_of_range,
+                     .what = fmt::format("expected a point within the map, {:.0f} m about its origin",
+                                         32768 * grid.resolution_m()),
+                     .value = fmt::format("{} {} {}", p_map.x(), p_map.y(), p_map.z()),
+                     .key = "x y z"});
     }
     VoxelTrace trace(*key, request.mapping.map, contributions_max);
     request.maps = {MapFeed::both};
@@ -60,7 +63,8 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
     constexpr double kOff = 1e-3;
     const double off = trace.sum() - static_cast<double>(trace.log_odds().value_or(0.0F));
     if (map.log_odds(*key) != trace.log_odds() || std::fabs(off) > kOff)
-        return fail(ExitCode::failed, "the terms do not add up to the log-odds of the voxel in the map");
+        return fail(ExitCode::failed, {ErrorCode::self_check,
+                                       "the terms do not add up to the log-odds of the voxel in the map"});
     return Explanation{.p_map = p_map,
                        .centre = map.centre_of(*key),
                        .resolution_m = map.resolution_m(),

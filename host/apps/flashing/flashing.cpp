@@ -19,16 +19,20 @@ constexpr std::chrono::seconds kRehearsalPatience{20};
 Result<image::ElfImage, AppError> load_image(const Order& order) {
     std::error_code ignored;
     if (!std::filesystem::exists(order.elf, ignored)) {
-        return fail(ExitCode::no_input, fmt::format("{}: no such file: build it with `firmware/flash` of "
-                                                    "octoskin's sources, or give a built image with --elf",
-                                                    order.elf.string()));
+        return fail(ExitCode::no_input, {.code = ErrorCode::not_found,
+                                         .what = "no such file",
+                                         .remedy = "build it with `firmware/flash` of octoskin's sources, or "
+                                                   "give a built image with --elf",
+                                         .file = order.elf});
     }
     auto image = image::ElfImage::load(order.elf.string());
-    if (!image) return unexpected(reading_error(order.elf, {ExitCode::bad_data, image.error().what}));
+    if (!image) return unexpected(reading_error(order.elf, {ExitCode::bad_data, image.error()}));
     const std::vector<std::string> faults = image::faults_of(*image, order.board);
     if (faults.empty()) return image.value();
-    return fail(ExitCode::bad_data, fmt::format("{}: not an image for the board {}: {}", order.elf.string(),
-                                                order.board.name, fmt::join(faults, "; ")));
+    return fail(ExitCode::bad_data, {.code = ErrorCode::mismatch,
+                                     .what = fmt::format("not an image for the board {}: {}",
+                                                         order.board.name, fmt::join(faults, "; ")),
+                                     .file = order.elf});
 }
 
 /// Reads the block back from the bytes that will be written, as the board will read it.
@@ -37,10 +41,10 @@ Result<std::size_t, AppError> check_block(const Order& order, const image::Flash
     const auto decoded = decode_node_config(page.bytes);
     const bool is_nodes = decoded && *decoded == order.node.config;
     if (!is_nodes || page.address != order.board.configuration_page.address) {
-        return fail(
-            ExitCode::bad_config,
-            fmt::format("node {}: its configuration block does not read back as the rig's configuration",
-                        order.node.name));
+        return fail(ExitCode::bad_config,
+                    {.code = ErrorCode::bad_value,
+                     .what = "its configuration block does not read back as the rig's configuration",
+                     .key = "node " + order.node.name});
     }
     return page.bytes.size();
 }
@@ -49,9 +53,11 @@ Result<Done, AppError> write_files(const Order& order, const image::FlashContent
     std::error_code error;
     std::filesystem::create_directories(order.folder, error);
     if (error) {
-        return fail(ExitCode::cannot_create,
-                    fmt::format("{}: cannot be created ({}): choose another folder with --out",
-                                order.folder.string(), error.message()));
+        return cannot_create(order.folder,
+                             {.code = error == std::errc::permission_denied ? ErrorCode::no_permission
+                                                                            : ErrorCode::system_error,
+                              .what = fmt::format("cannot be created ({})", error.message()),
+                              .remedy = "choose another folder with --out"});
     }
     // Checks all files before any programming: a board must not be programmed without a record.
     for (const char* const name : {kHexFile, kScriptFile, kLogFile, kRecordFile}) {
@@ -73,7 +79,7 @@ std::string script_for_openocd() {
 Result<OpenocdRun, AppError> run(const Order& order, std::vector<std::string> arguments,
                                  std::chrono::seconds patience) {
     const auto folder = OpenFolder::open(order.folder, FolderAccess::write);
-    if (!folder) return cannot_create(folder.error().path, folder.error().reason());
+    if (!folder) return fail(ExitCode::cannot_create, to_error(folder.error()));
     const OpenocdRun run = run_openocd(*folder, std::move(arguments), patience);
     if (auto done = write_text({NamedFolder(order.folder), kLogFile}, run.output); !done)
         return unexpected(done.error());
@@ -89,15 +95,25 @@ Result<rig::Node, AppError> choose_node(const rig::Rig& rig, const std::string& 
         if (is_only || node.name == wanted || std::to_string(node.config.node_id) == wanted) return node;
         names += (names.empty() ? "" : ", ") + node.name;
     }
-    if (wanted.empty())
-        return fail(ExitCode::usage, fmt::format("--node is missing; it takes one of: {}", names));
-    return fail(ExitCode::usage, fmt::format("no node '{}' in rig {}: it has {}", wanted, rig.name, names));
+    if (wanted.empty()) {
+        return fail(ExitCode::usage, {.code = ErrorCode::bad_argument,
+                                      .what = "is missing",
+                                      .remedy = "give one of " + names,
+                                      .key = "--node"});
+    }
+    return fail(ExitCode::usage,
+                {.code = ErrorCode::unknown_name,
+                 .what = fmt::format("expected a node of rig {}, which has {}", rig.name, names),
+                 .value = "'" + wanted + "'",
+                 .key = "--node"});
 }
 
 Result<Prepared, AppError> prepare(const Order& order) {
     if (order.node.board.name != order.board.name) {
-        return fail(ExitCode::bad_config, fmt::format("node {} is a {}, not a {}", order.node.name,
-                                                      order.node.board.name, order.board.name));
+        return fail(ExitCode::bad_config, {.code = ErrorCode::mismatch,
+                                           .what = "expected a node with the board " + order.board.name,
+                                           .value = order.node.board.name,
+                                           .key = "node " + order.node.name});
     }
     const auto image = load_image(order);
     if (!image) return unexpected(image.error());

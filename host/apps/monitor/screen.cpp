@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "host/apps/command_line/json_at.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
 #include "host/core/counters/counter_meanings.hpp"
 #include "host/core/text/printable.hpp"
@@ -17,11 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Seconds = std::chrono::duration<double>;
 
-const Json& at(const Json& object, const std::string& key) {
-    static const Json kNothing;
-    const auto found = object.is_object() ? object.find(key) : object.end();
-    return object.is_object() && found != object.end() ? *found : kNothing;
-}
 /// The element at `index`; null if there is none.
 const Json& item(const Json& array, std::size_t index) {
     static const Json kNothing;
@@ -77,7 +73,7 @@ class Screen {
     void add_problems() {
         const Json& problems = at(now_, "problems");
         if (problems.empty()) add("no problems", Emphasis::good);
-        for (const Json& problem : problems) add("! " + text(problem), Emphasis::bad);
+        for (const Json& problem : problems) add("! " + text(at(problem, "text")), Emphasis::bad);
         if (number(at(at(now_, "map"), "known_voxels")) > 0.0) return;
         add(problems.empty() ? "the map is empty: no measurement has been used so far"
                              : "the map is empty: the first problem above is the reason",

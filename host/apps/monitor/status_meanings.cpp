@@ -22,8 +22,8 @@ constexpr ValueType kListOrNull{ValueKind::list, true};
 constexpr ValueType kTable{ValueKind::table};
 constexpr ValueType kTableOrNull{ValueKind::table, true};
 
-// Word for word the texts of docs/status.md. Tests check that both are equal, complete for a status of the
-// daemon, and of the types of its values.
+// The tables of docs/status.md. Tests check that they are equal to these, and that these have each value of a
+// daemon's status with its type.
 constexpr std::array kStatusMeanings = {
     Meaning{"", "octoskin", kText, "", "program, version and commit"},
     Meaning{"", "uptime_s", kNumber, "s", "since the daemon started"},
@@ -37,8 +37,10 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "links_with_borrowed_body", kTable, "",
             "moving links with a <visual> and no body of their own, each with the fixed neighbour whose body "
             "is used for it"},
-    Meaning{"", "problems", kList, "",
-            "what is wrong, a sentence each, the most fundamental first: an empty map has its reason here"},
+    Meaning{
+        "", "problems", kList, "",
+        "one table for each problem, below, the most fundamental first; if the map is empty, the reason is "
+        "among them"},
     Meaning{"", "can", kTable, "", "the CAN interface, below"},
     Meaning{"", "clock", kTable, "", "the bus time, below"},
     Meaning{"", "nodes", kList, "", "one table for each node of the rig, below"},
@@ -58,6 +60,15 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "inputs", kTable, "",
             "the input counters: one table for each of \"CAN frames\", \"readings\", \"joint samples\" and "
             "\"depth frames\", below; they count since the newest reload"},
+    Meaning{"problems", "code", kWord, "", "the kind of problem, for programs to compare"},
+    Meaning{"problems", "text", kText, "", "a sentence for people; it may change"},
+    Meaning{"problems", "on", kText, "",
+            "what has the problem: a node, a sensor, the camera, an interface; absent: the daemon itself or "
+            "the bus"},
+    Meaning{"problems", "key", kText, "",
+            "the counter of the status or the configuration key that it is about; absent if there is none"},
+    Meaning{"problems", "remedy", kText, "",
+            "what to do; absent if the text has none, or has it with the cause"},
     Meaning{"can", "interface", kText, "", "the name of the interface"},
     Meaning{"can", "state", kWord, "", "up, error_passive, bus_off, down or absent: the worst that applies"},
     Meaning{"can", "why", kText, "", "why it is not up, with the remedy; empty if it is up"},
@@ -74,7 +85,7 @@ constexpr std::array kStatusMeanings = {
         "FOLLOW_UP frames of other hosts, ignored because they would set another time; 0 with --listen-only"},
     Meaning{"can", "busy_s", kNumber, "s",
             "how long this rig's frames kept the bus busy, in the worst case; its growth in a second is the "
-            "bus load. The kernel filters out frames of others"},
+            "bus load. Other frames are not counted: the kernel filters them out"},
     Meaning{"can", "error_frames", kCount, "",
             "error reports of the adapter: a wrong bit rate or sample point, a missing terminator, a "
             "disturbed line, or no node that acknowledges. A few when something is plugged in are usual"},
@@ -93,9 +104,9 @@ constexpr std::array kStatusMeanings = {
     Meaning{"clock", "steps_back", kCount, "",
             "how often the receive time stamps, which are wall time, jumped back: the clock of this machine "
             "was set. The next exchange of SYNC and FOLLOW_UP resolves it"},
-    Meaning{
-        "clock", "steps_ahead", kCount, "",
-        "how often they jumped ahead by over 0.14 s: the clock was set, or the bus was silent for that long"},
+    Meaning{"clock", "steps_ahead", kCount, "",
+            "how often the time stamps jumped ahead by over 0.14 s: the clock was set, or the bus was silent "
+            "for that long"},
     Meaning{"clock", "stamps_ignored", kCount, "",
             "receive time stamps that jumped alone, without others that agreed: from other interfaces in one "
             "log, or a driver's error"},
@@ -105,8 +116,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"clock", "times_back", kCount, "",
             "how often the bus time itself went back by over 0.15 s: the host that sends SYNC restarted"},
     Meaning{"clock", "times_ahead", kCount, "",
-            "how often it went ahead by over a second more than passed: another host sends SYNC, or its "
-            "clock was set. The age of the map does not change"},
+            "how often the bus time went ahead by over a second more than passed: another host sends SYNC, "
+            "or the host's clock was set. The age of the map does not change"},
     Meaning{"clock", "follow_up_outliers", kCount, "",
             "exchanges that disagreed with the known clock of the other host (with --listen-only); the first "
             "ones after it was set are among them"},
@@ -116,9 +127,9 @@ constexpr std::array kStatusMeanings = {
             "usable, or why not: other_version, quarantined, babbling, absent, lost, time_suspect, "
             "info_incomplete, info_mismatch, build_refused"},
     Meaning{"nodes", "reason", kTextOrNull, "",
-            "of info_mismatch and the like, what it says and what the rig has; else null"},
+            "of info_mismatch and the like: what the node reports and what the rig has; else null"},
     Meaning{"nodes", "state", kWordOrNull, "",
-            "its own word in its newest heartbeat; the fault table has each with its remedy; null before the "
+            "its state in its newest heartbeat; the fault table has each with its remedy; null before the "
             "first"},
     Meaning{"nodes", "age_s", kNumberOrNull, "s",
             "since it was heard; null: never, or the time is not known"},
@@ -134,7 +145,7 @@ constexpr std::array kStatusMeanings = {
             "share of its readings within the last second that were refused for their time, number or "
             "sender; null: 0.05 or less"},
     Meaning{"nodes", "refused_most", kWordOrNull, "",
-            "the most frequent reason for these, a name of counters.md; null: 0.05 or less"},
+            "the most frequent reason for these, a name of counters.md; null as refused_share"},
     Meaning{"nodes", "clock_contradictions", kCount, "",
             "answers to SYNC under its id that contradicted another answer to the same SYNC "
             "(sync_contradicted): there is another sender"},
@@ -153,7 +164,8 @@ constexpr std::array kStatusMeanings = {
             "reading is withheld for it"},
     Meaning{"nodes.registers", "sensor", kIntegerOrNull, "",
             "the number on the node of the sensor that reads back this value; null if alike"},
-    Meaning{"nodes.registers", "sensors", kCount, "", "sensors that had shown it when the node reported it"},
+    Meaning{"nodes.registers", "sensors", kCount, "",
+            "sensors that had read back this value when the node reported it"},
     Meaning{"nodes.sensors", "index", kInteger, "", "its number on the node"},
     Meaning{"nodes.sensors", "name", kText, "", "its name in the rig"},
     Meaning{"nodes.sensors", "state", kWordOrNull, "",
@@ -162,7 +174,7 @@ constexpr std::array kStatusMeanings = {
     Meaning{
         "nodes.sensors", "fault", kWordOrNull, "",
         "why it is not well, by the same message; the fault table has each with its remedy; null: not known"},
-    Meaning{"nodes.sensors", "received", kCount, "", "readings that came"},
+    Meaning{"nodes.sensors", "received", kCount, "", "readings that arrived"},
     Meaning{"nodes.sensors", "lost", kCount, "",
             "readings that its node sent and that never arrived, exact as of the newest SENSOR_HEALTH"},
     Meaning{"nodes.sensors", "age_s", kNumberOrNull, "s",
@@ -208,8 +220,9 @@ constexpr std::array kStatusMeanings = {
     Meaning{"nodes.sensors.camera", "doubt", kWordOrNull, "",
             "why it is cannot_tell. too_few_comparisons: a fault would not have shown yet. ambiguous: too "
             "little evidence for a fault and too little against it. camera_not_known: the other sensors do "
-            "not show well enough where the camera is. camera_is_off: or likely. joint_is_off: alone or "
-            "beside the camera, or likely. several_contradict: more than two sensors do. null: it is not"},
+            "not show well enough where the camera is. camera_is_off: the camera is off, or likely so. "
+            "joint_is_off: a joint is, with or without the camera, or likely so. several_contradict: more "
+            "than two sensors contradict the camera. null: another verdict"},
     Meaning{"nodes.sensors.camera", "not_excluded", kList, "",
             "the faults that the comparisons do not exclude; turned and exchanged are in it until each turn "
             "and each exchange is excluded, also those that would not have changed a range"},
@@ -241,8 +254,9 @@ constexpr std::array kStatusMeanings = {
             "named; null: none"},
     Meaning{"joint_states", "off_by", kNumberOrNull, "rad or m",
             "its estimated offset, of a prismatic joint in metres; null: none is off"},
-    Meaning{"joint_states", "or_camera", kFlag, "",
-            "an error of the camera explains about as much: which of the two is off is not known"},
+    Meaning{
+        "joint_states", "or_camera", kFlag, "",
+        "an error of the camera explains about as many contradictions: which of the two is off is not known"},
     Meaning{"joints_socket", "samples", kCount, "", "samples received, of the right form"},
     Meaning{"joints_socket", "displaced", kCount, "",
             "datagrams displaced by newer ones: the daemon was held up while 1024 waited, or they come "
@@ -323,7 +337,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"camera", "turned_deg", kListOrNull, "deg",
             "if it is off, or with joint_states.or_camera: its estimated rotation against the rig, about its "
             "axes x right, y down, z ahead; null: it is not off"},
-    Meaning{"camera", "shifted_m", kListOrNull, "m", "or its shift along them; null: it is not off"},
+    Meaning{"camera", "shifted_m", kListOrNull, "m",
+            "or its estimated shift along them; null: it is not off"},
     Meaning{"camera", "depth_scale", kNumberOrNull, "",
             "or the true depth divided by the depth of its image; null: it is not off"},
     Meaning{"camera", "explains_sensors", kCount, "", "sensors whose contradictions this explains"},
@@ -339,7 +354,8 @@ constexpr std::array kStatusMeanings = {
             "no older"},
     Meaning{"latency", "age_p99_ms", kNumber, "ms", "99 of 100 were no older"},
     Meaning{"latency", "age_max_ms", kNumber, "ms", "the oldest"},
-    Meaning{"map", "known_voxels", kCount, "", "voxels that are free or occupied now: for a query, too"},
+    Meaning{"map", "known_voxels", kCount, "",
+            "voxels that are free or occupied now, without those that have expired"},
     Meaning{"map", "resolution_m", kNumber, "m", "the edge of a voxel"},
     Meaning{"map", "memory_mib", kNumber, "MiB", "memory that the map takes"},
     Meaning{"map", "memory_max_mib", kInteger, "MiB", "the limit in the mapping"},
@@ -364,11 +380,12 @@ constexpr std::array kStatusMeanings = {
     Meaning{"reloads", "dropped", kCount, "",
             "readings, joint samples and depth frames that waited at a reload and could no longer be used"},
     Meaning{"reloads", "reading_s", kNumberOrNull, "s",
-            "for how long the files are being read after SIGHUP; null: they are not"},
+            "time since the reading of the files after SIGHUP began; null: they are not being read"},
     Meaning{"log", "dropped", kCount, "",
             "lines dropped because the reader of the log took none for too long"},
     Meaning{"log", "waiting", kCount, "", "lines not written yet"},
-    Meaning{"log", "stuck_s", kNumberOrNull, "s", "for how long one line is being written; null: none is"},
+    Meaning{"log", "stuck_s", kNumberOrNull, "s",
+            "for how long a line has been waiting to be written; null: none is"},
     Meaning{"inputs", "in", kCount, "", "inputs of this kind"},
     Meaning{"inputs", "used", kCount, "", "inputs that went into the map, or were accepted"},
     Meaning{"inputs", "pending", kCount, "", "inputs that wait, for a joint state or for others to arrive"},

@@ -12,7 +12,7 @@ namespace {
 constexpr Nanoseconds kRetry{10'000'000};
 
 AppError app_error(const socketcan::SocketFault& fault) {
-    return {ExitCode::unavailable, fault.message()};
+    return {ExitCode::unavailable, in_file({ErrorCode::no_device, fault.what}, fault.interface)};
 }
 
 /// Discards frames that arrived before the dialogue began. An error of the socket appears again at the next

@@ -46,10 +46,10 @@ void print_black_boxes(const std::filesystem::path& log) {
         if (!*entry) break;
         pieces.take((*entry)->frame);
     }
-    if (const auto foreign = reader->foreign_file())
-        throw CommandFailure({ExitCode::bad_data, foreign->message()});
+    if (const auto foreign = reader->foreign_file()) throw CommandFailure(ExitCode::bad_data, *foreign);
     if (reader->inputs().used() == 0)
-        throw CommandFailure({ExitCode::bad_data, log.string() + ": no frames: the log is empty"});
+        throw CommandFailure(ExitCode::bad_data,
+                             in_file({ErrorCode::no_content, "no frames: the log is empty"}, log));
     for (const Dump& dump : pieces.assembler.finish()) pieces.take(dump);
     spdlog::info("{}: {} dumps, {} of them incomplete", log.string(), pieces.dumps, pieces.incomplete);
 }

@@ -34,19 +34,24 @@ std::optional<std::string> text_of(const openni2::HelperProcess& helper) {
 void list_cameras() {
     constexpr const char* kHelper = "octoskin-camera";
     const auto program = openni2::find_helper(kHelper);
-    if (!program) throw CommandFailure({ExitCode::unavailable, program.error()});
+    if (!program) throw CommandFailure(ExitCode::unavailable, {ErrorCode::no_program, program.error()});
     auto helper = openni2::HelperProcess::start(*program, {"--list"}, openni2::HelperPipe::its_output);
-    if (!helper) throw CommandFailure({ExitCode::unavailable, helper.error()});
+    if (!helper) throw CommandFailure(ExitCode::unavailable, {ErrorCode::no_program, helper.error()});
     const auto text = text_of(*helper);
     if (!text)
-        throw CommandFailure(
-            {ExitCode::io_failed, "a camera does not answer: unplug it and plug it in again"});
+        throw CommandFailure(ExitCode::io_failed, {.code = ErrorCode::no_device,
+                                                   .what = "a camera does not answer",
+                                                   .remedy = "unplug it and plug it in again"});
     if (const auto failed = helper->wait(std::chrono::seconds(2)))
-        throw CommandFailure({ExitCode::io_failed, std::string(kHelper) + " failed: " + *failed});
+        throw CommandFailure(ExitCode::io_failed,
+                             in_file({ErrorCode::no_device, "failed: " + *failed}, kHelper));
     if (text->empty()) {
-        throw CommandFailure({ExitCode::unavailable,
-                              "no camera found: is one plugged in, with an OpenNI2 driver, and may you use "
-                              "it (group video)?"});
+        throw CommandFailure(
+            ExitCode::unavailable,
+            {.code = ErrorCode::no_device,
+             .what = "no camera found",
+             .remedy = "check that one is plugged in, that it has an OpenNI2 driver, and that "
+                       "you may use it (group video)"});
     }
     print_text(*text);
 }

@@ -45,7 +45,9 @@ socketcan::CanSocket open_for(const std::vector<commanding::Order>& orders, cons
             filters.push_back({wire::can_id(type, order.node_id), wire::kStandardIdMax});
     }
     auto socket = socketcan::CanSocket::open(interface, {.filters = filters, .wants_error_frames = false});
-    if (!socket) throw CommandFailure({ExitCode::unavailable, socket.error().message()});
+    if (!socket)
+        throw CommandFailure(ExitCode::unavailable,
+                             in_file({ErrorCode::no_device, socket.error().what}, interface));
     return std::move(*socket);
 }
 
@@ -68,7 +70,10 @@ void perform_each(const std::vector<commanding::Order>& orders, socketcan::CanSo
             if (!first) first = failure;
         }
     }
-    if (first) throw CommandFailure({first->code(), "a node failed: see above"});
+    if (!first) return;
+    const AppError& error = first->error();
+    throw CommandFailure(error.exit,
+                         {.code = error.error.code, .what = "failed: see above", .key = error.error.key});
 }
 
 void run(const CommandOptions& options) {

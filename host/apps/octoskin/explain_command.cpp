@@ -25,9 +25,13 @@ struct ExplainOptions {
 
 void explain_voxel(const ExplainOptions& options) {
     if (options.playback.recording.empty()) {
-        throw CommandFailure({ExitCode::usage,
-                              "--recording is required: the directory that `octoskin record` (with a running "
-                              "daemon) or `octoskin-lab simulate` made"});
+        throw CommandFailure(
+            ExitCode::usage,
+            {.code = ErrorCode::bad_argument,
+             .what = "is required",
+             .remedy = "give the directory that `octoskin record` (with a running daemon) or "
+                       "`octoskin-lab simulate` made",
+             .key = "--recording"});
     }
     const auto explanation = explain(playback_request(options.playback),
                                      {options.p_map[0], options.p_map[1], options.p_map[2]}, options.lines);

@@ -39,12 +39,13 @@ struct FlashOptions {
 rig::BoardHardware read_board(const rig::Node& node) {
     const auto file = shipped_file("hw/boards/" + node.board.name + ".hardware.yaml");
     if (!std::filesystem::exists(file)) {
-        throw CommandFailure(
-            {ExitCode::bad_config,
-             fmt::format(
-                 "node {} is a {}, which is not flashed (a Linux board takes `octoskin rig RIG --node {} "
-                 "--block FILE`)",
-                 node.name, node.board.name, node.name)});
+        throw CommandFailure(ExitCode::bad_config,
+                             {.code = ErrorCode::unsupported,
+                              .what = "expected a board that can be flashed",
+                              .value = "'" + node.board.name + "'",
+                              .remedy = fmt::format(
+                                  "a Linux board takes `octoskin rig RIG --node {} --block FILE`", node.name),
+                              .key = fmt::format("node '{}'", node.name)});
     }
     const auto board = rig::read_board_hardware(file);
     if (!board) throw CommandFailure(reading_error(ExitCode::bad_config, board.error()));
@@ -54,7 +55,10 @@ rig::BoardHardware read_board(const rig::Node& node) {
 flashing::Order make_order(const FlashOptions& options) {
     if (!std::all_of(options.adapter_serial.begin(), options.adapter_serial.end(),
                      [](unsigned char c) { return std::isalnum(c) != 0; })) {
-        throw CommandFailure({ExitCode::usage, "--adapter-serial: expected letters and digits"});
+        throw CommandFailure(ExitCode::usage, {.code = ErrorCode::bad_argument,
+                                               .what = "expected letters and digits",
+                                               .value = "'" + options.adapter_serial + "'",
+                                               .key = "--adapter-serial"});
     }
     const rig::Rig rig = value_or_fail(read_given_rig(options.rig));
     const rig::Node node = value_or_fail(flashing::choose_node(rig, options.node));
@@ -112,9 +116,12 @@ void report_option_bytes(const flashing::Programmed& programmed) {
         return;
     }
     throw CommandFailure(
-        {ExitCode::failed, fmt::format("programmed and running, but the option bytes (0x{:08X}) are not as "
-                                       "required: {}: run the same command with --write-option-bytes",
-                                       programmed.flash_optr, fmt::join(faults, "; "))});
+        ExitCode::failed,
+        {.code = ErrorCode::mismatch,
+         .what = fmt::format("programmed and running, but the option bytes are not as required: {}",
+                             fmt::join(faults, "; ")),
+         .value = fmt::format("0x{:08X}", programmed.flash_optr),
+         .remedy = "run the same command with --write-option-bytes"});
 }
 
 void flash(const FlashOptions& options) {

@@ -26,13 +26,16 @@ std::string lines(std::uint64_t count) {
 
 }  // namespace
 
-std::string RigJoints::fault_of(std::span<const double> position) const {
+std::optional<Error> RigJoints::fault_of(std::span<const double> position) const {
     for (std::size_t i = 0; i < position.size(); ++i) {
         if (limits[i].hold(position[i], JointHistoryConfig{}.limit_tolerance)) continue;
-        return fmt::format("joint {} of {}, {}, is {}, beyond the robot's limits {} to {}", i + 1,
-                           position.size(), names[i], position[i], limits[i].min, limits[i].max);
+        return Error{
+            .code = ErrorCode::out_of_range,
+            .what = fmt::format("expected {} to {}, the robot's limits", limits[i].min, limits[i].max),
+            .value = fmt::format("{}", position[i]),
+            .key = fmt::format("joint {} of {}, {}", i + 1, position.size(), names[i])};
     }
-    return {};
+    return std::nullopt;
 }
 
 JointForwarder::JointForwarder(JointOutput& output, std::optional<RigJoints> joints,
@@ -50,13 +53,15 @@ void JointForwarder::put(const std::string& line) {
     auto sample = parse_joints(line, count, now_, now_);  // it counts as sampled now unless it has a time
     if (!sample) {
         const char* const name = names_of(sample.error()).at(static_cast<std::size_t>(sample.error()));
-        return refuse(
-            name, fmt::format("line not sent, {}: {} (expected: {})",
-                              describe(sample.error(), line, count, now_), shown(line), kJointTextWanted));
+        return refuse(name, {.code = ErrorCode::bad_syntax,
+                             .what = describe(sample.error(), line, count, now_),
+                             .value = "'" + shown(line) + "'",
+                             .remedy = fmt::format("write lines of the form {}", kJointTextWanted)});
     }
-    if (const std::string fault = joints_->fault_of(sample->position); !fault.empty())
-        return refuse("out_of_limits",
-                      fmt::format("line not sent, out_of_limits: {}: {}", fault, shown(line)));
+    if (auto fault = joints_->fault_of(sample->position)) {
+        fault->others = "The line is " + shown(line);
+        return refuse("out_of_limits", std::move(*fault));
+    }
     if (!burst_) return send(line, *sample);
     sample->came = came_;
     waiting_.push_back(std::move(*sample));
@@ -93,21 +98,23 @@ void JointForwarder::finish() {
     send_until(WallTime{std::numeric_limits<std::int64_t>::max()});
     const auto level = lost_ + refused_ > 0 ? spdlog::level::warn : spdlog::level::info;
     spdlog::log(level, "{} sent, {} lost, {} refused", lines(sent_), lost_, refused_);
-    if (sent_ == 0 && lost_ + refused_ > 0) throw CommandFailure({ExitCode::unavailable, why_});
+    if (sent_ == 0 && lost_ + refused_ > 0) throw CommandFailure(ExitCode::unavailable, why_);
 }
 
 void JointForwarder::lose(std::uint64_t count) {
     lost_ += count;
-    why_ = output_.why();
-    if (why_.empty() || losses_reported_.size() >= kLossesTold || !losses_reported_.insert(why_).second)
-        return;
-    spdlog::warn("{}; waiting for it; lines are lost meanwhile", why_);
+    why_ = output_.why().value_or(Error{.code = ErrorCode::no_data});
+    const std::string why = why_.message();
+    if (why.empty() || losses_reported_.size() >= kLossesTold || !losses_reported_.insert(why).second) return;
+    spdlog::warn("{}; waiting for it; lines are lost meanwhile", why);
 }
 
-void JointForwarder::refuse(const char* reason, std::string why) {
+void JointForwarder::refuse(const char* reason, Error why) {
     ++refused_;
     why_ = std::move(why);
-    if (refusals_reported_.insert(reason).second) spdlog::warn("{}", why_);
+    if (!refusals_reported_.insert(reason).second) return;
+    const std::string text = why_.message();  // of a line's form it begins with the reason
+    spdlog::warn("line not sent, {}", text.starts_with(reason) ? text : fmt::format("{}: {}", reason, text));
 }
 
 }  // namespace octoskin::app

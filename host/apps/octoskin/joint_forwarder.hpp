@@ -13,6 +13,7 @@
 #include "host/apps/daemon/joint_socket.hpp"
 #include "host/core/ingest/joint_burst.hpp"
 #include "host/core/kinematics/robot_model.hpp"
+#include "host/errors/error.hpp"
 
 namespace octoskin::app {
 
@@ -27,8 +28,8 @@ class JointOutput {
     virtual void attend() = 0;
     /// -1, or a descriptor for which `attend` is called when it is readable.
     [[nodiscard]] virtual int descriptor() const = 0;
-    /// Why nothing can be sent, for a person; empty while sending works.
-    [[nodiscard]] virtual std::string why() const = 0;
+    /// Why nothing can be sent; empty while sending works.
+    [[nodiscard]] virtual std::optional<Error> why() const = 0;
 };
 
 /// The limits of a line. The daemon drops samples beyond them, and the sender of the lines would not notice.
@@ -37,7 +38,7 @@ struct RigJoints {
     std::vector<JointLimits> limits;
 
     /// Why the daemon would not accept the sample; empty: it is within the limits.
-    [[nodiscard]] std::string fault_of(std::span<const double> position) const;
+    [[nodiscard]] std::optional<Error> fault_of(std::span<const double> position) const;
 };
 
 /// Log messages about the lines: once for each reason of a loss or refusal, and once when lines are sent
@@ -65,7 +66,7 @@ class JointForwarder {
     void send_until(WallTime now);
     void send(const std::string& line, const std::optional<JointSample>& sample);
     void lose(std::uint64_t count);
-    void refuse(const char* reason, std::string why);
+    void refuse(const char* reason, Error why);
 
     JointOutput& output_;
     std::optional<RigJoints> joints_;
@@ -79,7 +80,7 @@ class JointForwarder {
     std::uint64_t refused_ = 0;
     std::set<std::string> losses_reported_;    ///< each reason once since the last line that was sent
     std::set<std::string> refusals_reported_;  ///< likewise
-    std::string why_;                          ///< of the newest line that was not sent
+    Error why_;                                ///< of the newest line that was not sent
 };
 
 }  // namespace octoskin::app

@@ -62,10 +62,10 @@ class SocketOutput final : public JointOutput {
         is_stuck_ = !is_through && errno == EAGAIN;
         if (is_through) return true;
         if (is_stuck_) {
-            why_ = file_.string() + ": the daemon accepts no samples";
+            why_ = in_file({ErrorCode::no_answer, "the daemon accepts no samples"}, file_);
         } else {
             close();
-            why_ = file_.string() + ": the daemon is gone";
+            why_ = in_file({ErrorCode::no_listener, "the daemon is gone"}, file_);
         }
         return false;
     }
@@ -74,11 +74,15 @@ class SocketOutput final : public JointOutput {
         if (descriptor_ >= 0 || (tried_ && now - *tried_ < kRetry)) return;
         tried_ = now;
         const auto connected = connect_unix_socket(file_, SOCK_DGRAM);
-        why_ = connected ? std::string() : connected.error().message;
-        if (connected) descriptor_ = *connected;
+        why_.reset();
+        if (connected) {
+            descriptor_ = *connected;
+        } else {
+            why_ = connected.error().error;
+        }
     }
     [[nodiscard]] int descriptor() const override { return -1; }
-    [[nodiscard]] std::string why() const override { return why_; }
+    [[nodiscard]] std::optional<Error> why() const override { return why_; }
 
   private:
     static constexpr int kPatienceMs = 100;
@@ -92,7 +96,7 @@ class SocketOutput final : public JointOutput {
     int descriptor_ = -1;
     bool is_stuck_ = false;  ///< the daemon, when the newest line came
     std::optional<HostTime> tried_;
-    std::string why_;
+    std::optional<Error> why_;
 };
 
 /// Acts as a node of the bus: sends frames, keeps to the heartbeat's silence, and answers each SYNC.
@@ -122,7 +126,10 @@ class CanOutput final : public JointOutput {
         }
     }
     [[nodiscard]] int descriptor() const override { return link_.descriptor(); }
-    [[nodiscard]] std::string why() const override { return link_.why(); }
+    [[nodiscard]] std::optional<Error> why() const override {
+        if (link_.why().empty()) return std::nullopt;
+        return Error{ErrorCode::no_device, link_.why()};
+    }
 
   private:
     static constexpr std::array<socketcan::IdFilter, 1> kSyncOnly{
@@ -163,9 +170,11 @@ std::optional<JointBurst> burst_of(const JointsOptions& options, const std::opti
 std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
     if (options.interface.empty()) return std::make_unique<SocketOutput>(options.socket);
     if (!rig)
-        throw CommandFailure(
-            {ExitCode::usage,
-             "--can needs --rig, for the node that sends joint states and the number of joints"});
+        throw CommandFailure(ExitCode::usage,
+                             {.code = ErrorCode::bad_argument,
+                              .what = "needs the node that sends joint states and the number of joints",
+                              .remedy = "give --rig",
+                              .key = "--can"});
     return std::make_unique<CanOutput>(options.interface, *rig);
 }
 
@@ -180,7 +189,10 @@ void put_lines(std::string& pending, JointForwarder& forwarder) {
     forwarder.send_due();
     if (pending.size() > kJointTextMax)
         throw CommandFailure(
-            {ExitCode::bad_data, fmt::format("standard input: a line of over {} bytes", kJointTextMax)});
+            ExitCode::bad_data,
+            in_file({ErrorCode::too_large, fmt::format("expected lines of at most {} bytes", kJointTextMax),
+                     "a longer line"},
+                    "standard input"));
 }
 
 void forward(const JointsOptions& options) {
@@ -205,7 +217,9 @@ void forward(const JointsOptions& options) {
         if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
         if (count < 0) {
             throw CommandFailure(
-                {ExitCode::io_failed, fmt::format("cannot read standard input: {}", std::strerror(errno))});
+                ExitCode::io_failed,
+                in_file({ErrorCode::system_error, fmt::format("cannot be read: {}", std::strerror(errno))},
+                        "standard input"));
         }
         if (count == 0) break;
         pending.append(bytes.data(), static_cast<std::size_t>(count));

@@ -1,8 +1,7 @@
 // octoskin: the product's command-line program.
 #include <unistd.h>
 
-#include <string_view>
-
+#include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/exit_codes.hpp"
 #include "host/apps/command_line/program.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
@@ -34,7 +33,7 @@ void add_commands(CLI::App& app) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc > 1 && std::string_view(argv[1]) == "run") octoskin::app::hold_daemon_signals();
+    if (octoskin::app::first_argument(argc, argv) == "run") octoskin::app::hold_daemon_signals();
     const int exit_code = octoskin::app::run_program(
         {"octoskin", "One map of what a depth camera and the range sensors on a robot arm see.",
          octoskin::app::exit_codes_text(true) + "\nAn interrupted replay removes what it had not finished. "

@@ -128,7 +128,10 @@ void show_once(const MonitorOptions& options) {
 
 void watch(const MonitorOptions& options) {
     if (::isatty(STDOUT_FILENO) == 0)
-        throw CommandFailure({ExitCode::usage, "standard output is no terminal: use --once"});
+        throw CommandFailure(ExitCode::usage, {.code = ErrorCode::wrong_kind_of_file,
+                                               .what = "is no terminal",
+                                               .remedy = "use --once",
+                                               .file = "standard output"});
     Terminal terminal;
     Json before;
     auto before_at = Clock::now();
@@ -141,7 +144,7 @@ void watch(const MonitorOptions& options) {
             before_at = now_at;
         } else {
             before = Json();
-            terminal.show({{now.error().message, Emphasis::bad}, {"waiting for it; q ends", {}}});
+            terminal.show({{now.error().message(), Emphasis::bad}, {"waiting for it; q ends", {}}});
         }
         terminal.wait_until(now_at + 1s);
     }

@@ -36,12 +36,14 @@ Status<AppError> check_memory(const MappingConfig& mapping, const FilePlace& fil
     const std::uint64_t machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                                   static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
     if (asked <= std::max(machine / 2, memory_of(MappingConfig{}))) return Done{};
-    return fail(
-        ExitCode::bad_config,
-        fmt::format("{}: map.memory_max_mib {} and depth_box_voxels_max {} allow {} MiB, and this machine "
-                    "has {} MiB: check the file and, if it is yours, name it with --configuration",
-                    file.shown().string(), mapping.map.memory_max_mib, mapping.depth_box_voxels_max,
-                    asked >> 20U, machine >> 20U));
+    return fail(ExitCode::bad_config,
+                {.code = ErrorCode::no_resources,
+                 .what = fmt::format("expected no more than this machine has, {} MiB", machine >> 20U),
+                 .value = fmt::format("{} and {}, which allow {} MiB", mapping.map.memory_max_mib,
+                                      mapping.depth_box_voxels_max, asked >> 20U),
+                 .remedy = "check the file and, if it is yours, name it with --configuration",
+                 .file = file.shown(),
+                 .key = "map.memory_max_mib and depth_box_voxels_max"});
 }
 
 /// The mapping named by --configuration; else the recording's own mapping.yaml, written by the daemon; else
@@ -69,10 +71,12 @@ std::optional<Eigen::Isometry3d> pose_of(const std::string& text) {
             error == std::errc{} && end == word.data() + word.size() && std::abs(number) <= 1'000.0;
         const bool is_last = &number == &numbers.back();
         if (!is_number || is_last != (word.size() == rest.size())) {
-            throw CommandFailure(
-                {ExitCode::usage, "--pose '" + text +
-                                      "': expected X,Y,Z,ROLL,PITCH,YAW, six numbers from -1000 to 1000, "
-                                      "metres and degrees"});
+            throw CommandFailure(ExitCode::usage,
+                                 {.code = ErrorCode::bad_argument,
+                                  .what = "expected X,Y,Z,ROLL,PITCH,YAW, six numbers from -1000 to 1000, "
+                                          "metres and degrees",
+                                  .value = "'" + text + "'",
+                                  .key = "--pose"});
         }
         rest.remove_prefix(std::min(word.size() + 1, rest.size()));
     }
@@ -112,13 +116,16 @@ PlaybackRequest playback_request(const PlaybackOptions& options) {
     const RecordingPaths recording(options.recording);
     const bool has_own_camera = !is_data_set(recording) && !lone_film(recording);
     if (!options.camera.empty() && (!options.rig.empty() || has_own_camera)) {
-        throw CommandFailure(
-            {ExitCode::usage,
-             "--camera " + options.camera +
-                 (options.rig.empty() ? ": " + options.recording.string() +
-                                            " is no data set and no .oni file, and what recorded it is "
-                                            "in its rig: leave --camera out"
-                                      : ": the camera is --rig's: give one of them")});
+        Error error{.code = ErrorCode::conflict, .value = "'" + options.camera + "'", .key = "--camera"};
+        if (options.rig.empty()) {
+            error.what = "expected a data set or an .oni file: the camera of a recording is in its rig";
+            error.remedy = "leave --camera out";
+            error.file = options.recording;
+        } else {
+            error.what = "expected only one of --camera and --rig: a rig has a camera";
+            error.remedy = "leave one of them out";
+        }
+        throw CommandFailure(ExitCode::usage, std::move(error));
     }
     auto configuration = configuration_of(options.configuration, recording);
     if (!configuration) throw CommandFailure(configuration.error());

@@ -37,14 +37,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFooter =
-    "Exit codes: 0 all of it is free (or, with --unknown, pockets are listed); 1 something occupied is in "
-    "the\n"
-    "way; 2 nothing is, but something is unknown or stale, or a link of the arm has no body; 64 command "
-    "line,\n"
-    "joints beyond their limits; 65 a map or path that cannot be used, not the answer of a daemon of this\n"
-    "version; 66 no such file; 69 no daemon, or the joint state is not known; 74 the daemon does not\n"
-    "answer; 78 the rig.\n"
-    "An answer has links, voxels and distances: docs/how-to/query.md.";
+    "Exit codes: 0 all of it is free (or, with --unknown, pockets are listed); 1 something occupied is in\n"
+    "the way; 2 nothing occupied is, but something is unknown or stale, or a link of the arm has no body;\n"
+    "64 command line, joints beyond their limits; 65 a map or path that cannot be used, or the answer is\n"
+    "not of a daemon of this version; 66 no such file; 69 no daemon, or the joint state is not known;\n"
+    "74 the daemon does not answer; 78 the rig.\n"
+    "The links, voxels and distances of an answer: docs/how-to/query.md.";
 
 struct QueryOptions {
     std::optional<std::string> map;  ///< empty: the daemon is asked
@@ -69,7 +67,9 @@ struct Question {
 
 AppError missing_name(const char* option) {
     return {ExitCode::usage,
-            fmt::format("{}: the file name is missing (is a variable of the shell empty?)", option)};
+            {.code = ErrorCode::bad_argument,
+             .what = "the file name is missing (is a variable of the shell empty?)",
+             .key = option}};
 }
 
 /// An empty name is a variable that is not set, not an option that was left out.
@@ -77,30 +77,34 @@ void check_file(const char* option, const std::optional<std::string>& file) {
     if (!file) return;
     if (file->empty()) throw CommandFailure(missing_name(option));
     std::string name = *file;
-    if (const std::string fault = existing_file()(name); !fault.empty())
-        throw CommandFailure({ExitCode::usage, fault});
+    (void)existing_file()(name);  // throws
 }
 
 /// An option without effect is refused: its user expects another answer.
 void check_options(const CLI::App& command, const QueryOptions& options) {
-    const auto refuse = [&command](std::initializer_list<const char*> names, const std::string& why) {
+    const auto refuse = [&command](std::initializer_list<const char*> names, const char* why,
+                                   const char* remedy) {
         for (const char* name : names)
-            if (command.count(name) > 0) throw CommandFailure({ExitCode::usage, name + why});
+            if (command.count(name) > 0)
+                throw CommandFailure(
+                    ExitCode::usage,
+                    {.code = ErrorCode::conflict, .what = why, .remedy = remedy, .key = name});
     };
     if (!options.map) {
-        refuse({"--rig", "--robot"},
-               " is for a map file; a daemon has its own: leave it out, or name the map");
-        refuse({"--stands"},
-               " is for a map file; a daemon knows the arm's posture: leave it out, or name the map");
+        refuse({"--rig", "--robot"}, "is for a map file, and a daemon uses its own",
+               "leave it out, or name the map");
+        refuse({"--stands"}, "is for a map file, and a daemon uses the arm's present posture",
+               "leave it out, or name the map");
     } else {
-        refuse({"--socket"}, " is where a daemon listens, but a map file is given: leave out one of the two");
+        refuse({"--socket"}, "is where a daemon listens, but a map file is given",
+               "leave out one of the two");
     }
     if (options.lists_unknown) {
-        refuse({"--path"}, ": views are searched from one posture, give it as --joints");
-        refuse({"--reach"}, ": --unknown gives no distances, leave it out");
+        refuse({"--path"}, "with --unknown, views are searched from one posture", "give it as --joints");
+        refuse({"--reach"}, "--unknown gives no distances", "leave it out");
     } else {
-        refuse({"--radius", "--above", "--pockets", "--tries"},
-               " is for --unknown: give that, too, or leave it out");
+        refuse({"--radius", "--above", "--pockets", "--tries"}, "is for --unknown",
+               "give --unknown, too, or leave it out");
     }
     if (options.socket.empty()) throw CommandFailure(missing_name("--socket"));
     check_file("map", options.map);
@@ -111,32 +115,40 @@ void check_options(const CLI::App& command, const QueryOptions& options) {
 std::vector<double> read_joints(const char* option, const std::string& text) {
     const auto numbers = read_numbers(text);
     if (numbers && !numbers->empty()) return *numbers;
-    throw CommandFailure({ExitCode::usage, fmt::format("{} '{}': {}", option, text,
-                                                       describe_field(numbers ? "" : numbers.error()))});
+    Error error = field_error(numbers ? "" : numbers.error());
+    error.key = fmt::format("{} '{}'", option, text);
+    throw CommandFailure(ExitCode::usage, std::move(error));
 }
 
 JointPath read_path(const std::string& name) {
     if (name == "-") return value_or_fail(read_joint_path(std::cin, "standard input"));
     std::error_code error;
     if (std::filesystem::is_directory(name, error))
-        throw CommandFailure(
-            {ExitCode::usage, name + " is a directory, not a file with one configuration a line"});
+        throw CommandFailure(ExitCode::usage,
+                             in_file({ErrorCode::wrong_kind_of_file,
+                                      "is a directory, not a file with one configuration a line"},
+                                     name));
     std::ifstream file(name);
     if (!file)
         throw CommandFailure(reading_error(
-            name, {ExitCode::no_input, fmt::format("{}: cannot be read: {}", name, std::strerror(errno))}));
+            name,
+            {ExitCode::no_input, in_file({errno == ENOENT ? ErrorCode::not_found : ErrorCode::system_error,
+                                          fmt::format("cannot be read: {}", std::strerror(errno))},
+                                         name)}));
     return value_or_fail(read_joint_path(file, name));
 }
 
-/// Without the arm's posture the answer would depend on the space that the asked posture itself frees: "free"
-/// on an empty map. A path of some length begins at the arm's posture, and so do the ways to views.
+/// Without the arm's posture, the queried posture would free its own space and be "free" on an empty map. A
+/// path of several configurations begins at the arm's posture, and so do the ways to views.
 void check_own_space(const QueryOptions& options, const Question& question) {
     if (!options.map || !options.own_space_m || options.stands || options.lists_unknown) return;
     if (question.request.path.size() > 1) return;
-    throw CommandFailure(
-        {ExitCode::usage,
-         "--own-space of a map file needs --stands, the arm's posture in it: else the posture that is asked "
-         "about would be its own space, and free whatever the map contains"});
+    throw CommandFailure(ExitCode::usage,
+                         {.code = ErrorCode::bad_argument,
+                          .what = "with a map file needs the arm's posture: else the queried posture would "
+                                  "count as the arm's own space, and be free whatever the map contains",
+                          .remedy = "give --stands, the arm's posture in the map",
+                          .key = "--own-space"});
 }
 
 Question question_of(const QueryOptions& options) {
@@ -152,18 +164,17 @@ Question question_of(const QueryOptions& options) {
         request.path = std::move(path.configurations);
         question.lines = std::move(path.lines);
     }
-    if (const std::string fault = fault_of(request); !fault.empty())
-        throw CommandFailure({ExitCode::usage, fault});
+    if (auto fault = fault_of(request)) throw CommandFailure(ExitCode::usage, std::move(*fault));
     check_own_space(options, question);
     return question;
 }
 
-/// The map of a replay names the rig it was made with.
+/// Warns if the map was made with another rig. The map of a replay names its rig.
 void doubt_rig(const QueryOptions& options, const rig::Rig& rig) {
     const auto origin = origin_of_map(*options.map);
     if (!origin) {
         spdlog::warn("{}; so it is not known whether {} is the rig that the map was made with",
-                     origin.error().message, *options.rig);
+                     origin.error().message(), *options.rig);
     } else if (*origin && (*origin)->rig_hash != rig::rig_hash(rig)) {
         spdlog::warn(
             "{} is another rig than {}, which the map was made with: the answer may be of another arm, or of "
@@ -174,18 +185,19 @@ void doubt_rig(const QueryOptions& options, const rig::Rig& rig) {
 
 Json ask_map_file(const QueryOptions& options, const Question& question) {
     if (!options.rig)
-        throw CommandFailure(
-            {ExitCode::usage,
-             "a map file does not contain the robot: give --rig, the one that the map was made with"});
+        throw CommandFailure(ExitCode::usage, {.code = ErrorCode::bad_argument,
+                                               .what = "is required: a map file does not contain the robot",
+                                               .remedy = "give the rig that the map was made with",
+                                               .key = "--rig"});
     const rig::Rig rig = value_or_fail(read_given_rig(*options.rig, options.robot.value_or("")));
     const auto setup = make_host_setup(rig);
     if (!setup) throw CommandFailure(reading_error(ExitCode::bad_config, setup.error()));
     MapReadLimits limits;
-    limits.map.log_odds_min = -20.0F;  // its maker may have used wider limits
+    limits.map.log_odds_min = -20.0F;  // the map may have been made with wider limits
     limits.map.log_odds_max = 20.0F;
     doubt_rig(options, rig);
     auto map = load_map(*options.map, limits);
-    if (!map) throw CommandFailure(reading_error(*options.map, {ExitCode::bad_data, map.error().message}));
+    if (!map) throw CommandFailure(reading_error(*options.map, {ExitCode::bad_data, map.error()}));
     for (const std::string& warning : map->warnings) spdlog::warn("{}", warning);
     KeptField field;
     return answer_query(question.request,
@@ -196,9 +208,12 @@ Json ask_running_daemon(const QueryOptions& options, const QueryRequest& request
     const std::string line = to_line(request);
     if (line.size() > ControlSocket::kRequestMax)
         throw CommandFailure(
-            {ExitCode::usage, fmt::format("the path takes {} bytes as a request; a daemon accepts {}: ask "
-                                          "about parts of it, or write its numbers with fewer digits",
-                                          line.size(), ControlSocket::kRequestMax)});
+            ExitCode::usage,
+            {.code = ErrorCode::too_large,
+             .what = fmt::format("a daemon accepts requests of at most {} bytes", ControlSocket::kRequestMax),
+             .value = fmt::format("a path that takes {} bytes", line.size()),
+             .remedy = "query parts of the path, or write its numbers with fewer digits",
+             .key = "--path"});
     const auto answer = ask_daemon(options.socket, line, std::chrono::seconds(60));
     if (!answer) throw CommandFailure(answer.error());
     Json json = Json::parse(*answer, nullptr, false);
@@ -214,8 +229,8 @@ ExitCode outcome_of(const Json& answer) {
 /// An answer that is an error, for one of the path's configurations or (0) for all of it.
 class Refusal : public CommandFailure {
   public:
-    Refusal(const AppError& error, std::size_t configuration)
-        : CommandFailure(error), configuration_(configuration) {}
+    Refusal(AppError error, std::size_t configuration)
+        : CommandFailure(std::move(error)), configuration_(configuration) {}
     [[nodiscard]] std::size_t configuration() const noexcept { return configuration_; }
 
   private:
@@ -224,13 +239,14 @@ class Refusal : public CommandFailure {
 
 /// The error in the answer, with the line of the path that it is about.
 Refusal refusal(const QueryOptions& options, const Question& question, const Json& answer) {
-    const int code = answer.value("code", static_cast<int>(ExitCode::unavailable));
-    std::string text = answer.at("error").get<std::string>();
+    auto refused = refusal_of(answer);
+    if (!refused) refused = foreign_answer(options.socket);
     const std::size_t configuration = answer.value("configuration", std::size_t{0});
     if (configuration > 0 && configuration <= question.lines.size())
-        text = fmt::format("{}:{}: {}", options.path == "-" ? "standard input" : *options.path,
-                           question.lines[configuration - 1], text);
-    return {{static_cast<ExitCode>(code), text}, configuration};
+        refused->error =
+            in_file(std::move(refused->error), options.path == "-" ? "standard input" : *options.path,
+                    static_cast<int>(question.lines[configuration - 1]));
+    return {std::move(*refused), configuration};
 }
 
 /// The usual reason why little is free, for users who do not know it.
@@ -268,7 +284,7 @@ ExitCode answered(const QueryOptions& options) {
 
 /// For a script; the sentence follows on standard error.
 void print_refusal(const CommandFailure& failure, std::size_t configuration) {
-    Json refused = query_refused({failure.code(), failure.what()});
+    Json refused = query_refused(failure.error());
     if (configuration > 0) refused["configuration"] = configuration;
     print_json(refused.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -304,16 +320,14 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
         ->excludes(joints);
     command
         .add_option("--step", options.request.step,
-                    "For a path: no joint moves further between two checked postures, rad (m); whatever the "
-                    "step, no link moves further than half a voxel")
+                    "For a path: between two checked postures no joint moves further than this, rad (m), and "
+                    "no link further than half a voxel")
         ->check(from_to(kStepMin, 10.0))
         ->capture_default_str();
     command.add_option("--padding", options.request.padding_m, "Added to the radius of each capsule, m")
         ->check(from_to(0.0, 1.0))
         ->capture_default_str();
-    command
-        .add_option("--reach", options.request.reach_m,
-                    "Up to which distance distances are given, m; 0: none are")
+    command.add_option("--reach", options.request.reach_m, "Give distances up to this one, m; 0: none")
         ->check(from_to(0.0, kReachMax_m))
         ->capture_default_str();
     command
@@ -326,14 +340,14 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
                      "Include bodies that no joint moves: the arm's base");
     command
         .add_option("--own-space", options.own_space_m,
-                    "At the arm's present posture, what is occupied where only the arm can be counts as "
-                    "free, and so does what is unknown or stale within this many metres of it. Give it where "
-                    "nothing can hide that close to the arm")
+                    "At the arm's present posture, occupied space counts as free where only the arm can be; "
+                    "unknown and stale space counts as free within this many metres of the arm. Give it only "
+                    "if nothing can hide that close")
         ->check(from_to(0.0, 1.0));
     command
         .add_option("--stands", options.stands,
-                    "For a map file: the arm's posture, as --joints; without it, the begin of --path. A "
-                    "daemon knows it")
+                    "For a map file: the arm's posture, as --joints; without it, the beginning of --path. A "
+                    "daemon uses the present posture")
         ->type_name("JOINTS");
 }
 
@@ -384,8 +398,8 @@ void add_query_command(CLI::App& app) {
         ->capture_default_str();
     command->add_flag(
         "--json", options->is_json,
-        "For a script: the answer as the daemon gives it, or an object with \"error\" and the exit "
-        "\"code\"");
+        "For a script: the answer as the daemon gives it, or an object with \"error\" and the \"exit\" "
+        "code");
     command->footer(kFooter);
     command->callback([options, command] { ask(*command, *options); });
 }

@@ -12,6 +12,7 @@
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/end_signals.hpp"
+#include "host/apps/command_line/error_json.hpp"
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/places.hpp"
@@ -36,17 +37,14 @@ struct RecordOptions {
 Json recording_of(const RecordOptions& options, const std::string& answer) {
     const Json json = Json::parse(answer, nullptr, false);
     if (!json.is_object() || !json.contains("ok")) throw CommandFailure(foreign_answer(options.socket));
-    if (!json.at("ok").get<bool>()) {
-        throw CommandFailure(
-            {static_cast<ExitCode>(json.value("code", static_cast<int>(ExitCode::unavailable))),
-             json.at("error").get<std::string>()});
-    }
+    if (const auto refused = refusal_of(json)) throw CommandFailure(*refused);
+    if (!json.at("ok").get<bool>()) throw CommandFailure(foreign_answer(options.socket));
     const Json recording = json.value("recording", Json());
     if (recording.is_object()) return recording;
-    throw CommandFailure(
-        {ExitCode::unavailable,
-         options.socket.string() +
-             ": the daemon knows of no recording: it was restarted meanwhile, or never started one"});
+    throw CommandFailure(ExitCode::unavailable, in_file({ErrorCode::no_data,
+                                                         "the daemon knows of no recording: it was restarted "
+                                                         "meanwhile, or never started one"},
+                                                        options.socket));
 }
 
 Json ask(const RecordOptions& options, const std::string& line) {
@@ -70,13 +68,15 @@ bool comes(const FilePlace& file) {
 /// Reports where the recording of an ended daemon is, and whether it is complete. meta.yaml is written last.
 [[noreturn]] void report_left(const std::filesystem::path& folder) {
     if (!comes(RecordingPaths(folder).meta())) {
-        throw CommandFailure({ExitCode::unavailable,
-                              "the daemon ended, and did not complete the recording: what it wrote is in " +
-                                  folder.string() + ", without meta.yaml"});
+        throw CommandFailure(ExitCode::unavailable, in_file({ErrorCode::no_answer,
+                                                             "the daemon ended, and did not complete the "
+                                                             "recording, which is there without meta.yaml"},
+                                                            folder));
     }
-    throw CommandFailure(
-        {ExitCode::failed,
-         folder.string() + ": complete, but the daemon ended, and with it the recording, before its time"});
+    throw CommandFailure(ExitCode::failed, in_file({ErrorCode::no_answer,
+                                                    "complete, but the daemon ended, and with it the "
+                                                    "recording, before its time"},
+                                                   folder));
 }
 
 bool is_same(const Json& recording, const Json& other) {
@@ -92,9 +92,12 @@ Json own_of(const RecordOptions& options, const std::string& answer, const Json&
     Json now = recording_of(options, answer);
     if (is_same(now, followed)) return now;
     const auto folder = followed.at("folder").get<std::string>();
-    throw CommandFailure(
-        {ExitCode::unavailable, folder + ": the daemon was restarted or asked for other recordings, and no "
-                                         "longer knows this one; it is complete if it has a meta.yaml"});
+    throw CommandFailure(ExitCode::unavailable,
+                         {.code = ErrorCode::no_data,
+                          .what = "the daemon was restarted or asked for other recordings, and no longer "
+                                  "knows this one",
+                          .file = folder,
+                          .others = "It is complete if it has a meta.yaml"});
 }
 
 /// The answer; empty if the daemon ended. A daemon that exists and does not answer is a CommandFailure.
@@ -108,19 +111,21 @@ std::optional<std::string> ask_patiently(const RecordOptions& options, const Jso
             answer ? refusal_of(Json::parse(*answer, nullptr, false)) : std::optional<AppError>();
         if (answer && !refused) return std::move(answer).value();
         error = refused ? *refused : answer.error();
-        if (!refused && error.code == ExitCode::unavailable) return std::nullopt;
+        if (!refused && error.exit == ExitCode::unavailable) return std::nullopt;
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
     const auto folder = followed.at("folder").get<std::string>();
-    throw CommandFailure({error.code, "the daemon no longer answers, and may continue to record to " +
-                                          folder + ": `octoskin record --stop " + folder +
-                                          "` ends that once it does (" + error.message + ")"});
+    throw CommandFailure(
+        error.exit,
+        {.code = error.error.code,
+         .what = "the daemon no longer answers, and may continue to record here (" + error.message() + ")",
+         .remedy = "`octoskin record --stop " + folder + "` ends the recording once the daemon answers",
+         .file = folder});
 }
 
 std::filesystem::path folder_of(const RecordOptions& options) {
     const auto folder = plain(std::filesystem::absolute(options.out));
-    if (const std::string fault = fault_of_folder(folder); !fault.empty())
-        throw CommandFailure({ExitCode::usage, fault});
+    if (auto fault = fault_of_folder(folder)) throw CommandFailure(ExitCode::usage, std::move(*fault));
     return folder;
 }
 
@@ -145,28 +150,33 @@ std::optional<Json> follow(const RecordOptions& options, Json recording) {
 void tell(const Json& recording) {
     const auto folder = recording.at("folder").get<std::string>();
     if (recording.at("state") == "failed")
-        throw CommandFailure({ExitCode::cannot_create, recording.at("error").get<std::string>()});
+        throw CommandFailure(ExitCode::cannot_create, error_of(recording.at("error")));
     print("{}: {:.1f} s, {} CAN frames, {} depth frames, {} commits\n", folder,
           recording.at("seconds").get<double>(), recording.at("can_frames").get<std::uint64_t>(),
           recording.at("depth_frames").get<std::uint64_t>(), recording.at("commits").get<std::uint64_t>());
     if (const auto lost = recording.at("lost_can").get<std::uint64_t>(); lost > 0)
         spdlog::warn("{} CAN frames are not in can.log: the disk was too slow", lost);
     if (!recording.at("is_complete").get<bool>())
-        throw CommandFailure(
-            {ExitCode::failed, folder + ": the disk was too slow, or the memory too little, for " +
-                                   recording.at("lost_depth").dump() + " depth frames and " +
-                                   recording.at("lost_commits").dump() +
-                                   " commits: a replay does not give the daemon's map"});
+        throw CommandFailure(ExitCode::failed,
+                             {.code = ErrorCode::no_resources,
+                              .what = "the disk was too slow, or the memory too little, for " +
+                                      recording.at("lost_depth").dump() + " depth frames and " +
+                                      recording.at("lost_commits").dump() + " commits",
+                              .file = folder,
+                              .others = "A replay does not give the daemon's map"});
     if (const auto early = recording.at("ended_early").get<std::string>(); !early.empty())
         throw CommandFailure(
-            {ExitCode::failed, folder + ": complete, but it ended before its time: " + early});
+            ExitCode::failed,
+            in_file({ErrorCode::cancelled, "complete, but it ended before its time: " + early}, folder));
 }
 
 Json stop(const RecordOptions& options) {
     const Json before = ask(options, "record status");
     if (is_going_on(before)) return ask(options, stop_line(options));
-    throw CommandFailure({ExitCode::unavailable, "nothing is being recorded; the last recording, " +
-                                                     before.at("folder").get<std::string>() + ", has ended"});
+    throw CommandFailure(ExitCode::unavailable, in_file({ErrorCode::no_data,
+                                                         "nothing is being recorded: this last recording has "
+                                                         "ended"},
+                                                        before.at("folder").get<std::string>()));
 }
 
 Json start(const RecordOptions& options) {
@@ -175,9 +185,9 @@ Json start(const RecordOptions& options) {
         ask_daemon(options.socket, fmt::format("record start {} {}", options.seconds, folder));
     if (answer) return recording_of(options, *answer);
     AppError error = answer.error();
-    if (error.code == ExitCode::io_failed) {  // it may have accepted the request without answering
-        error.message += "; whether it records to " + folder + " is not known: `octoskin record --stop " +
-                         folder + "` ends that";
+    if (error.exit == ExitCode::io_failed) {  // it may have accepted the request without answering
+        error.error.others = "Whether the daemon records to " + folder +
+                             " is not known: `octoskin record --stop " + folder + "` ends that recording";
     }
     throw CommandFailure(error);
 }
@@ -200,7 +210,7 @@ void add_record_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("record", "Have the running daemon record, until --seconds are over or Ctrl-C");
     command->add_option("out", options->out,
-                        "Directory to create; it must be empty, and writable for the daemon's user. With "
+                        "Directory, new or empty, and writable for the daemon's user. With "
                         "--stop: end only the recording there");
     command->add_option("--seconds", options->seconds, "Duration; 0: until Ctrl-C or --stop")
         ->check(from_to(0.0, 1e6))
@@ -209,12 +219,14 @@ void add_record_command(CLI::App& app) {
     command->add_option("--socket", options->socket, "Control socket of the daemon")->capture_default_str();
     command->footer(
         "Exit codes: 0 the recording is complete; 1 it is incomplete, or the daemon ended it early; 64 "
-        "command line;\n65 not the answer of a daemon of this version; 69 no daemon, or nothing is being "
+        "command line;\n65 the answer is not of a daemon of this version; 69 no daemon, or nothing is being "
         "recorded; 73 the\ndirectory cannot be recorded to, or another recording is running; 74 the daemon "
         "does not answer.");
     command->callback([options] {
         if (options->out.empty() && !options->stops)
-            throw CommandFailure({ExitCode::usage, "record: give a directory, or --stop"});
+            throw CommandFailure(
+                ExitCode::usage,
+                {ErrorCode::bad_argument, "record needs a directory", {}, "give a directory, or --stop"});
         record(*options);
     });
 }

@@ -22,11 +22,11 @@ namespace {
 constexpr const char* kFoldersWithin[] = {"maps", "recording", "recording/maps"};
 
 AppError error_of(const FolderError& error) {
-    ExitCode code = ExitCode::cannot_create;
+    ExitCode exit = ExitCode::cannot_create;
     if (error.fault == FolderFault::absent || error.fault == FolderFault::not_a_folder)
-        code = ExitCode::no_input;
-    if (error.fault == FolderFault::not_permitted) code = ExitCode::no_permission;
-    return {code, error.message()};
+        exit = ExitCode::no_input;
+    if (error.fault == FolderFault::not_permitted) exit = ExitCode::no_permission;
+    return {exit, to_error(error)};
 }
 
 bool is_finished(const OpenFolder& folder) {
@@ -77,9 +77,12 @@ void repair(const std::filesystem::path& named) {
     }
     if (stayed > 0) {
         throw CommandFailure(
-            {ExitCode::cannot_create,
-             fmt::format("{}: {} drafts of killed runs cannot be removed: remove them yourself",
-                         named.string(), stayed)});
+            ExitCode::cannot_create,
+            {.code = ErrorCode::system_error,
+             .what =
+                 fmt::format("{} drafts of killed runs cannot be removed; the lines above name them", stayed),
+             .remedy = "remove them yourself",
+             .file = named});
     }
     if (!is_any) print("{}: nothing is half moved there\n", named.string());
 }

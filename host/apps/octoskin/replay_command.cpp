@@ -45,9 +45,11 @@ void wait_for_enter(const std::string& what) {
         return;
     }
     print("\n");
-    throw CommandFailure({ExitCode::io_failed,
-                          "standard input, and with it the replay, ended before the end of the recording: "
-                          "--step reads a line for each step"});
+    throw CommandFailure(ExitCode::io_failed,
+                         {.code = ErrorCode::no_data,
+                          .what = "ended, and with it the replay, before the end of the recording",
+                          .remedy = "--step reads a line for each step",
+                          .file = "standard input"});
 }
 
 Pace pace_of(const ReplayOptions& options) {
@@ -60,8 +62,10 @@ Pace pace_of(const ReplayOptions& options) {
     const auto [end, error] = std::from_chars(text.data(), last, speed);
     const bool is_speed = error == std::errc{} && end == last && speed >= 1e-3 && speed <= 1e6;
     if (!is_speed)
-        throw CommandFailure(
-            {ExitCode::usage, "--speed '" + text + "': expected 'max', or a number from 0.001 to 1000000"});
+        throw CommandFailure(ExitCode::usage, {.code = ErrorCode::bad_argument,
+                                               .what = "expected 'max', or a number from 0.001 to 1000000",
+                                               .value = "'" + text + "'",
+                                               .key = "--speed"});
     return Pace::times(speed);
 }
 
@@ -103,7 +107,8 @@ BytesReport checksum_report() {
 /// The maps of an earlier replay stay unchanged if this one failed.
 void refuse_failed(const Playback& playback) {
     if (auto failure = failure_of(playback, "the counters above show why")) {
-        failure->message += "; no map is written";
+        std::string& others = failure->error.others;
+        others += (others.empty() ? "" : ". ") + std::string("No map is written");
         throw CommandFailure(std::move(*failure));
     }
 }
@@ -189,9 +194,10 @@ void replay_recording(const ReplayOptions& options) {
     report_last_posture(*playback);
     if (auto lost = loss_of(*playback)) throw CommandFailure(std::move(*lost));
     if (playback->is_unlike_daemons) {
-        throw CommandFailure(
-            {ExitCode::failed, options.playback.recording.string() +
-                                   ": replayed, but not into the daemon's own map; see the warning above"});
+        throw CommandFailure(ExitCode::failed,
+                             in_file({ErrorCode::mismatch,
+                                      "replayed, but not into the daemon's own map; see the warning above"},
+                                     options.playback.recording));
     }
 }
 

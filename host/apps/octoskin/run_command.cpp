@@ -26,9 +26,9 @@ void refuse_few_descriptors() {
     rlimit limit{};
     if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kLeast) return;
     throw CommandFailure(
-        {ExitCode::no_resources, fmt::format("this process may have {} descriptors open at once, and a "
-                                             "daemon needs {}: raise that limit (ulimit -n)",
-                                             limit.rlim_cur, kLeast)});
+        ExitCode::no_resources,
+        {ErrorCode::no_resources, fmt::format("a daemon needs {} descriptors open at once", kLeast),
+         fmt::format("a limit of {}", limit.rlim_cur), "raise that limit (ulimit -n)"});
 }
 
 Result<std::unique_ptr<Daemon>, AppError> begin(const DaemonRequest& request,
@@ -55,7 +55,8 @@ void run_daemon(DaemonRequest& request) {
     auto daemon = begin(request, log);
     if (!daemon) throw CommandFailure(daemon.error());
     const ExitCode outcome = (*daemon)->run();
-    if (outcome != ExitCode::ok) throw CommandFailure({outcome, "ended by a failure: see above"});
+    if (outcome != ExitCode::ok)
+        throw CommandFailure(outcome, {ErrorCode::system_error, "ended by a failure: see above"});
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ void print_for_people(const nlohmann::ordered_json& status) {
             "joint states: {:.0f} Hz through the socket, more than the rig's rate: the surplus is left out\n",
             socket->at("rate_hz").get<double>());
     if (status.at("problems").empty()) print("no problems\n");
-    for (const auto& problem : status.at("problems")) print("! {}\n", problem.get<std::string>());
+    for (const auto& problem : status.at("problems")) print("! {}\n", problem.at("text").get<std::string>());
 }
 
 void show_status(const StatusOptions& options) {

@@ -31,8 +31,11 @@ rig::Camera camera_with(const CameraIntrinsics& intrinsics) {
 
 Result<rig::Camera, AppError> named_camera(std::string_view name) {
     if (const auto found = tum::data_set_camera(name)) return camera_with(*found);
-    return fail(ExitCode::usage, "--camera " + std::string(name) + ": a data set's camera is one of " +
-                                     rig::joined(tum::kDataSetCameras));
+    return fail(ExitCode::usage,
+                {.code = ErrorCode::unknown_word,
+                 .what = "expected a data set's camera, one of " + rig::joined(tum::kDataSetCameras),
+                 .value = "'" + std::string(name) + "'",
+                 .key = "--camera"});
 }
 
 Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest& request,
@@ -42,10 +45,33 @@ Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest&
     auto rig = read_given_rig(request.rig);
     if (!rig) return unexpected(rig.error());
     if (!rig->camera) {
-        return fail(ExitCode::bad_config,
-                    request.rig.string() + ": has no camera, which " + seen + " is seen by");
+        return fail(ExitCode::bad_config, {.code = ErrorCode::missing_key,
+                                           .what = "expected the camera of " + seen,
+                                           .value = "none",
+                                           .remedy = "add it, or give another --rig",
+                                           .file = request.rig,
+                                           .key = "camera"});
     }
     return std::optional(std::move(*rig));
+}
+
+Status<AppError> check_options_of_camera(const PlaybackRequest& request, const std::filesystem::path& file,
+                                         const std::string& kind) {
+    if (!request.robot.empty()) {
+        return fail(ExitCode::usage, {.code = ErrorCode::bad_argument,
+                                      .what = kind + " has no robot",
+                                      .remedy = "omit --robot",
+                                      .file = file,
+                                      .key = "--robot"});
+    }
+    if (!request.rig.empty() && !request.camera.empty()) {
+        return fail(ExitCode::usage, {.code = ErrorCode::conflict,
+                                      .what = kind + " takes a rig or a camera, not both",
+                                      .remedy = "omit --rig or --camera",
+                                      .file = file,
+                                      .key = "--camera"});
+    }
+    return Done{};
 }
 
 rig::Rig rig_of_camera(const rig::Camera& camera, const std::string& name) {
@@ -62,7 +88,7 @@ namespace fs = std::filesystem;
 
 class NoBus final : public CanSource {
   public:
-    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override {
+    [[nodiscard]] Result<std::optional<StampedFrame>, Error> next() override {
         return std::optional<StampedFrame>{};
     }
 };
@@ -93,11 +119,17 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const r
                                  .limits = {}};
     host.joints.joints = {joint.name};
     auto robot = RobotModel::build(rig.base_link, std::span(&joint, 1), host.joints.joints);
-    if (!robot) return fail(ExitCode::failed, std::string("no robot: ") + describe(robot.error().error));
+    if (!robot) {
+        return fail(ExitCode::failed,
+                    {ErrorCode::self_check, std::string("no robot: ") + describe(robot.error().error)});
+    }
     PipelineConfig config;
     config.maps = request.maps;
     auto pipeline = Pipeline::build(host, std::move(*robot), request.mapping, config);
-    if (!pipeline) return fail(ExitCode::failed, "no pipeline: " + pipeline.error().element);
+    if (!pipeline) {
+        return fail(ExitCode::failed,
+                    {ErrorCode::self_check, "no pipeline", "'" + pipeline.error().element + "'"});
+    }
     pipeline->set_listener(request.listener);
     return std::move(*pipeline);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,12 @@ namespace octoskin {
 /// fits `seen`.
 [[nodiscard]] Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest& request,
                                                                         const std::string& seen);
+
+/// Error (usage): the request has a robot, or both a rig and a camera. `file` is played, and `kind` is what
+/// it is.
+[[nodiscard]] Status<AppError> check_options_of_camera(const PlaybackRequest& request,
+                                                       const std::filesystem::path& file,
+                                                       const std::string& kind);
 
 /// A rig that contains only this camera.
 [[nodiscard]] rig::Rig rig_of_camera(const rig::Camera& camera, const std::string& name);

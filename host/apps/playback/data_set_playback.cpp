@@ -28,7 +28,7 @@ Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request, const st
     if (found) return camera_with(*found);
     return unexpected(reading_error(
         calibration->shown(),
-        {ExitCode::bad_data, found.error().what + " (or give the camera with --camera or --rig)"}));
+        {ExitCode::bad_data, with_remedy(found.error(), "give the camera with --camera or --rig")}));
 }
 
 /// Of all measurements of the data set.
@@ -38,10 +38,10 @@ Result<std::uint32_t, AppError> checksum_of(const PlaybackRequest& request,
     const auto missing = reader.missing_image();
     const bool is_refused = std::ranges::any_of(
         reader.files(), [](const FilePlace& file) { return refused_to_read(file).has_value(); });
-    return fail(is_refused ? ExitCode::no_permission : ExitCode::no_input,
-                missing
-                    ? missing->what
-                    : request.recording.directory.string() + ": a file of it disappeared while it was read");
+    const Error disappeared{.code = ErrorCode::not_found,
+                            .what = "a file of it disappeared while it was read",
+                            .file = request.recording.directory};
+    return fail(is_refused ? ExitCode::no_permission : ExitCode::no_input, missing.value_or(disappeared));
 }
 
 std::string first_of(const tum::ImageCounts& images) {
@@ -72,11 +72,13 @@ CounterTable pose_table(const tum::PoseCounts& poses) {
         .is_balanced = poses.in == poses.used + poses.no_pose + poses.bad.count + poses.repeated};
 }
 
-void warn_of_lines(const tum::BadLines& bad, const std::optional<DepthSourceError>& disorder,
-                   std::uint64_t unordered, std::vector<std::string>& warnings) {
+void warn_of_lines(const tum::BadLines& bad, const std::optional<Error>& disorder, std::uint64_t unordered,
+                   std::vector<std::string>& warnings) {
     if (bad.first)
-        warnings.push_back(fmt::format("{}; left out (bad_line: {} in all)", bad.first->what, bad.count));
-    if (disorder) warnings.push_back(fmt::format("{}; put in order ({} in all)", disorder->what, unordered));
+        warnings.push_back(
+            fmt::format("{}; left out (bad_line: {} in all)", bad.first->message(), bad.count));
+    if (disorder)
+        warnings.push_back(fmt::format("{}; put in order ({} in all)", disorder->message(), unordered));
 }
 
 /// The gap between the poses before and after the first image without a pose.
@@ -88,7 +90,7 @@ void warn_of_gap(const tum::DataSetReader& reader, std::vector<std::string>& war
     warnings.push_back(fmt::format(
         "{}: the poses before and after it are {:.0f} ms apart, and at most {:.0f} ms are bridged "
         "(camera.data_set.pose_gap_max_ms of a --rig; without_pose: {} images in all)",
-        first->image.what, static_cast<double>(first->gap->count()) / kNsPerMs,
+        first->image.message(), static_cast<double>(first->gap->count()) / kNsPerMs,
         static_cast<double>(reader.pose_gap_max().count()) / kNsPerMs, reader.images().without_pose));
 }
 
@@ -122,12 +124,9 @@ bool is_data_set(const RecordingPaths& recording) {
 }
 
 Status<AppError> check_data_set(const PlaybackRequest& request) {
-    const std::string name = request.recording.directory.string() + ": a data set (" +
-                             tum::depth_images_of(request.recording.folder).value_or("") + ")";
-    if (!request.robot.empty()) return fail(ExitCode::usage, name + " has no robot: without --robot");
-    if (!request.rig.empty() && !request.camera.empty())
-        return fail(ExitCode::usage, name + " takes --rig or --camera, not both");
-    return Done{};
+    const std::string name =
+        "a data set (" + tum::depth_images_of(request.recording.folder).value_or("") + ")";
+    return check_options_of_camera(request, request.recording.directory, name);
 }
 
 namespace {
@@ -137,14 +136,14 @@ Result<tum::DataSetReader, AppError> open_reader(const PlaybackRequest& request,
     auto reader = tum::DataSetReader::open(request.recording.directory,
                                            given ? given->camera->data_set : rig::DataSetKeys{});
     if (reader) return std::move(*reader);
-    AppError error{ExitCode::bad_data, reader.error().what};
+    AppError error{ExitCode::bad_data, reader.error()};
     const auto files = tum::find_data_set(request.recording.folder);
     if (!files) return unexpected(std::move(error));
     for (const std::string& name : {files->poses, files->images}) {
         if (name.empty()) continue;
         const fs::path file = request.recording.directory / name;
         std::error_code ignored;
-        if (!fs::exists(file, ignored)) error.code = ExitCode::no_input;
+        if (!fs::exists(file, ignored)) error.exit = ExitCode::no_input;
         error = reading_error(file, std::move(error));
     }
     return unexpected(std::move(error));

@@ -49,33 +49,40 @@ std::optional<FilePlace> lone_film(const RecordingPaths& recording) {
 
 Status<AppError> check_film(const PlaybackRequest& request) {
     const auto film = lone_film(request.recording);
-    const std::string name = film ? film->shown().string() : std::string();
+    const std::filesystem::path file = film ? film->shown() : std::filesystem::path();
     if (film) {
         if (auto refused = refused_to_read(*film)) return unexpected(std::move(*refused));
     }
-    if (!request.robot.empty()) return fail(ExitCode::usage, name + ": has no robot: without --robot");
-    if (!request.rig.empty() && !request.camera.empty())
-        return fail(ExitCode::usage, name + ": takes --rig or --camera, not both");
+    if (const auto checked = check_options_of_camera(request, file, "an .oni file on its own"); !checked)
+        return checked;
     if (request.rig.empty() && !request.T_map_camera) {
-        return fail(ExitCode::usage, name +
-                                         ": there is no can.log, and the camera's pose is unknown: give "
-                                         "--pose X,Y,Z,ROLL,PITCH,YAW (metres and degrees, of its optical "
-                                         "frame in the map's), or a --rig whose camera has its pose");
+        return fail(
+            ExitCode::usage,
+            {.code = ErrorCode::bad_argument,
+             .what = "there is no can.log, and the camera's pose is unknown",
+             .remedy = "give --pose X,Y,Z,ROLL,PITCH,YAW (metres and degrees, of its optical frame in "
+                       "the map's), or a --rig whose camera has its pose",
+             .file = file,
+             .key = "--pose"});
     }
     return Done{};
 }
 
 Result<Playback, AppError> play_film(const PlaybackRequest& request, const ReplayReport& report) {
     const auto film = lone_film(request.recording);
-    if (!film)
-        return fail(ExitCode::no_input, request.recording.directory.string() + ": the .oni no longer exists");
+    if (!film) {
+        return fail(ExitCode::no_input, {.code = ErrorCode::not_found,
+                                         .what = "the .oni no longer exists",
+                                         .file = request.recording.directory});
+    }
     const auto camera = camera_of(request);
     if (!camera) return unexpected(camera.error());
     const auto crc32 = crc32_of(std::span(&*film, 1), request.on_checksum);
     if (!crc32) {
         const auto opened = film->open();
         return fail(ExitCode::bad_data,
-                    opened ? film->shown().string() + ": cannot be read" : opened.error().message());
+                    opened ? in_file({ErrorCode::system_error, "cannot be read"}, film->shown())
+                           : to_error(opened.error()));
     }
     auto reader = openni2::OniReader::open_alone(*film);
     if (!reader) return unexpected(unread_depth(reader.error()));

@@ -60,7 +60,7 @@ Result<SavedMaps, AppError> MapFolder::save(const NamedMaps& maps, MapOrigin ori
         for (const char* extension : {".ot", ".bt", ".ply"}) {
             const FilePlace file(files_.draft(), files.emplace_back(name + extension));
             const auto saved = save_map(*map, file);
-            if (!saved) return unexpected(AppError{ExitCode::cannot_create, saved.error().message});
+            if (!saved) return fail(ExitCode::cannot_create, saved.error());
             origin.maps[file.filename()] = *saved;
         }
     }

@@ -94,9 +94,9 @@ Result<std::optional<MapOrigin>, AppError> read_map_origin(const NamedFolder& fo
     if (!file.is_there()) return std::optional<MapOrigin>{};
     try {
         return std::optional(read_checked(file));
-    } catch (const rig::Fault& fault) {
+    } catch (const Error& error) {
         return fail(ExitCode::bad_data,
-                    fault.error.message() + " (replay the recording again, or move this file away)");
+                    with_remedy(error, "replay the recording again, or move this file away"));
     }
 }
 
@@ -105,13 +105,15 @@ std::optional<AppError> fault_of_map(const FilePlace& map, const MapOrigin& orig
     if (described == origin.maps.end()) return std::nullopt;
     const auto found = crc32_of(map);
     if (found == described->second) return std::nullopt;
-    return AppError{ExitCode::bad_data, map.shown().string() + ": is not the map that " + kMapOriginFile +
-                                            " beside it describes (CRC-32 " +
-                                            (found ? crc_text(*found) : "cannot be computed") +
-                                            ", described: " + crc_text(described->second) +
-                                            "): it was changed, or belongs to another replay. Replay " +
-                                            origin.recording.string() + " again, or move " + kMapOriginFile +
-                                            " away to evaluate the map without its origin"};
+    const std::string beside = kMapOriginFile;
+    return AppError{ExitCode::bad_data,
+                    {.code = ErrorCode::mismatch,
+                     .what = "was changed, or belongs to another replay: expected the map that " + beside +
+                             " beside it describes, with the CRC-32 " + crc_text(described->second),
+                     .value = found ? crc_text(*found) : "none that can be computed",
+                     .remedy = "replay " + origin.recording.string() + " again, or move " + beside +
+                               " away to evaluate the map without its origin",
+                     .file = map.shown()}};
 }
 
 }  // namespace octoskin

@@ -15,9 +15,12 @@ Status<AppError> check_same(const fs::path& map, const MapOrigin& origin, const 
     const auto found = crc32_of_recording(RecordingPaths(recording));
     if (found == origin.recording_crc32) return Done{};
     return fail(ExitCode::bad_data,
-                map.string() + ": was made from another recording (" + origin.recording.string() +
-                    ", CRC-32 " + crc_text(origin.recording_crc32) + ") than " + recording.shown().string() +
-                    " (" + describe(found) + "); replay that one again");
+                {.code = ErrorCode::mismatch,
+                 .what = "was made from another recording: expected " + recording.shown().string() + " (" +
+                         describe(found) + ")",
+                 .value = origin.recording.string() + " (" + describe(origin.recording_crc32) + ")",
+                 .remedy = "replay " + recording.shown().string() + " again",
+                 .file = map});
 }
 
 /// The recording that maps.yaml names, if it is below the map's folder and unchanged.

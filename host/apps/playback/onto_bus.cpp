@@ -18,7 +18,10 @@ Status<AppError> send(socketcan::CanSocket& socket, const wire::CanFrame& frame,
     const auto end = std::chrono::steady_clock::now() + kRoomPatience;
     for (bool is_first = true; std::chrono::steady_clock::now() < end; is_first = false) {
         const auto sent = socket.send(frame);
-        if (!sent) return fail(ExitCode::io_failed, sent.error().message());
+        if (!sent) {
+            return fail(ExitCode::io_failed,
+                        in_file({ErrorCode::no_device, sent.error().what}, sent.error().interface));
+        }
         if (*sent) {
             ++played.sent;
             played.waited += is_first ? 0U : 1U;
@@ -26,9 +29,10 @@ Status<AppError> send(socketcan::CanSocket& socket, const wire::CanFrame& frame,
         }
         std::this_thread::sleep_for(kRoomPeriod);
     }
-    return fail(ExitCode::io_failed,
-                socket.interface() +
-                    ": no room for a frame in 2 s: does another node on this bus acknowledge frames?");
+    return fail(ExitCode::io_failed, {.code = ErrorCode::no_answer,
+                                      .what = "no room for a frame in 2 s",
+                                      .remedy = "does another node on this bus acknowledge frames?",
+                                      .file = socket.interface()});
 }
 
 std::string text_of(const candump::LogEntry& entry) {
@@ -64,9 +68,9 @@ Result<OntoBus, AppError> play_onto(const FilePlace& can_log, socketcan::CanSock
     }
     played.lines_refused = reader->inputs().rejected();
     if (played.interface.empty()) {
-        const auto foreign = reader->foreign_file();
-        return fail(ExitCode::bad_data,
-                    foreign ? foreign->message() : can_log.shown().string() + ": it contains no frame");
+        const Error empty{
+            .code = ErrorCode::no_content, .what = "it contains no frame", .file = can_log.shown()};
+        return fail(ExitCode::bad_data, reader->foreign_file().value_or(empty));
     }
     return played;
 }

@@ -29,12 +29,17 @@ std::uint32_t crc32_of_map(const FusedMap& map, decltype(write_ot) write) {
 }
 
 Status<AppError> check_first(const FilePlace& file, std::uint32_t crc) {
-    if (!file.is_there())
-        return fail(ExitCode::no_input,
-                    file.shown().string() + ": does not exist, and this recording began with it");
+    if (!file.is_there()) {
+        return fail(ExitCode::no_input, {.code = ErrorCode::not_found,
+                                         .what = "does not exist, and this recording began with it",
+                                         .remedy = "put it there, or replay with --by-capture-time",
+                                         .file = file.shown()});
+    }
     if (crc32_of(file) == crc) return Done{};
-    return fail(ExitCode::bad_data,
-                file.shown().string() + ": is not the file that this recording began with");
+    return fail(ExitCode::bad_data, {.code = ErrorCode::mismatch,
+                                     .what = "is not the file that this recording began with",
+                                     .remedy = "put that file there, or replay with --by-capture-time",
+                                     .file = file.shown()});
 }
 
 Result<LoadedMap, AppError> read_first_map(const PlaybackRequest& request, std::uint32_t crc) {
@@ -42,10 +47,12 @@ Result<LoadedMap, AppError> read_first_map(const PlaybackRequest& request, std::
     if (const auto checked = check_first(file, crc); !checked) return unexpected(checked.error());
     auto map = load_map_of(request.mapping.map, file);
     if (map) return std::move(map).value();
-    const bool is_of_other_mapping = map.error().is_of_other_voxels || map.error().is_too_large;
-    if (!is_of_other_mapping) return fail(ExitCode::bad_data, map.error().message);
-    return fail(ExitCode::bad_config,
-                map.error().message + "; replay with the recording's own mapping, or with --by-capture-time");
+    const ErrorCode code = map.error().code;
+    const bool is_of_other_mapping = code == ErrorCode::mismatch || code == ErrorCode::too_large;
+    if (!is_of_other_mapping) return fail(ExitCode::bad_data, map.error());
+    return fail(
+        ExitCode::bad_config,
+        with_remedy(map.error(), "replay with the recording's own mapping, or with --by-capture-time"));
 }
 
 Result<MapState, AppError> read_first_state(const PlaybackRequest& request, std::uint32_t crc,
@@ -53,7 +60,7 @@ Result<MapState, AppError> read_first_state(const PlaybackRequest& request, std:
     const auto file = request.recording.first_state();
     if (const auto checked = check_first(file, crc); !checked) return unexpected(checked.error());
     auto snapshot = load_snapshot(file, request.mapping, mapping_crc);
-    if (!snapshot) return fail(ExitCode::bad_data, snapshot.error().what);
+    if (!snapshot) return fail(ExitCode::bad_data, snapshot.error());
     return std::move(snapshot->state);
 }
 
@@ -159,11 +166,14 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
                                                 Pipeline& pipeline, DepthSource* depth,
                                                 std::optional<HostTime> begin, const ReplayReport& report) {
     auto order = orderlog::OrderReader::open(request.recording.order());
-    if (!order) return fail(ExitCode::bad_data, order.error().what);
+    if (!order) return fail(ExitCode::bad_data, order.error());
     if (order->header().joints != rig.joints.joints.size()) {
         return fail(ExitCode::bad_config,
-                    fmt::format("{}: has {} joints, the rig {}", request.recording.order().shown().string(),
-                                order->header().joints, rig.joints.joints.size()));
+                    {.code = ErrorCode::mismatch,
+                     .what = fmt::format("expected {} joints, as in the rig", rig.joints.joints.size()),
+                     .value = std::to_string(order->header().joints),
+                     .remedy = "replay with the recording's own rig",
+                     .file = request.recording.order().shown()});
     }
     const bool has_daemons_mapping =
         order->header().mapping_crc32 == file_checksum(mapping_text(request.mapping));

@@ -87,7 +87,7 @@ void Pace::wait(std::int64_t time_ns, const std::string& what) {
     if (left_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(left_ns));
 }
 
-Result<std::optional<StampedFrame>, CanSourceError> PacedCan::next() {
+Result<std::optional<StampedFrame>, Error> PacedCan::next() {
     auto entry = source_.next();
     if (pace_.waits() && entry && entry->has_value())
         pace_.wait((*entry)->stamp.ns,
@@ -95,7 +95,7 @@ Result<std::optional<StampedFrame>, CanSourceError> PacedCan::next() {
     return entry;
 }
 
-Result<std::optional<DepthFrame>, DepthSourceError> PacedDepth::next() {
+Result<std::optional<DepthFrame>, Error> PacedDepth::next() {
     auto frame = source_.next();
     if (!pace_.waits() || !frame || !frame->has_value()) return frame;
     pace_.wait((*frame)->captured.ns, pace_.steps() ? text_of(**frame, frames_) : std::string());
@@ -103,7 +103,7 @@ Result<std::optional<DepthFrame>, DepthSourceError> PacedDepth::next() {
     return frame;
 }
 
-Result<std::optional<Commit>, CommitSourceError> PacedCommits::next() {
+Result<std::optional<Commit>, Error> PacedCommits::next() {
     auto commit = source_.next();
     if (!pace_.waits() || !commit || !commit->has_value()) return commit;
     const auto time = std::visit(TimeOf{}, **commit);

@@ -44,7 +44,7 @@ class Pace {
 class PacedCan final : public CanSource {
   public:
     PacedCan(candump::LogSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
-    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override;
+    [[nodiscard]] Result<std::optional<StampedFrame>, Error> next() override;
 
   private:
     candump::LogSource& source_;
@@ -55,7 +55,7 @@ class PacedCan final : public CanSource {
 class PacedDepth final : public DepthSource {
   public:
     PacedDepth(DepthSource& source, Pace pace) : source_(source), pace_(std::move(pace)) {}
-    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override;
+    [[nodiscard]] Result<std::optional<DepthFrame>, Error> next() override;
 
   private:
     DepthSource& source_;
@@ -70,7 +70,7 @@ class PacedCommits final : public CommitSource {
   public:
     PacedCommits(CommitSource& source, Pace pace, std::optional<HostTime> begin)
         : source_(source), pace_(std::move(pace)), begin_(begin) {}
-    [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> next() override;
+    [[nodiscard]] Result<std::optional<Commit>, Error> next() override;
 
   private:
     CommitSource& source_;

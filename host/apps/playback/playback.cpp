@@ -57,8 +57,7 @@ Status<AppError> survey_log(const RecordingPaths& recording, LogSurvey& survey) 
         const auto entry = reader->next();
         if (!entry) return unexpected(reading_error(ExitCode::bad_data, entry.error()));
         if (!*entry) {
-            if (const auto foreign = reader->foreign_file())
-                return fail(ExitCode::bad_data, foreign->message());
+            if (const auto foreign = reader->foreign_file()) return fail(ExitCode::bad_data, *foreign);
             break;
         }
         survey.take(**entry);
@@ -76,7 +75,7 @@ Result<candump::LogSource, AppError> open_log(const RecordingPaths& recording, c
 /// nevertheless.
 struct DepthInput {
     std::optional<openni2::OniReader> reader;
-    std::optional<DepthSourceError> error;
+    std::optional<Error> error;
 };
 
 DepthInput open_depth(const RecordingPaths& recording) {
@@ -119,9 +118,10 @@ Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig:
         for (const FilePlace& file : {request.recording.can_log(), request.recording.depth()}) {
             const auto opened = file.open();
             if (!opened && opened.error().fault != FolderFault::absent)
-                return fail(ExitCode::bad_data, opened.error().message());
+                return fail(ExitCode::bad_data, to_error(opened.error()));
         }
-        return fail(ExitCode::bad_data, request.recording.directory.string() + ": cannot be read");
+        return fail(ExitCode::bad_data,
+                    in_file({ErrorCode::system_error, "cannot be read"}, request.recording.directory));
     }
     return MapOrigin{.made_by = program_version(),
                      .recording = absolute(request.recording.directory),
@@ -185,11 +185,11 @@ void find_wrong_sizes(Playback& playback) {
     if (stage == nullptr || stage->wrong_size().frames == 0) return;
     const auto& [frames, width, height] = stage->wrong_size();
     const CameraIntrinsics& camera = stage->camera().intrinsics;
-    playback.warnings.push_back(
-        std::to_string(frames) + " depth images are " + std::to_string(width) + " x " +
-        std::to_string(height) + ", the camera's are " + std::to_string(camera.width) + " x " +
-        std::to_string(camera.height) +
-        " (wrong_size): give a --rig whose camera has their width_px and height_px, and fits them");
+    playback.warnings.push_back(std::to_string(frames) + " depth images are " + std::to_string(width) +
+                                " x " + std::to_string(height) + ", the camera's are " +
+                                std::to_string(camera.width) + " x " + std::to_string(camera.height) +
+                                " (wrong_size): give a --rig whose camera has their width_px and height_px, "
+                                "and intrinsics for that size");
 }
 
 void find_full_maps(Playback& playback) {
@@ -198,9 +198,9 @@ void find_full_maps(Playback& playback) {
         if (no_room == 0) continue;
         const bool is_as_daemons = feed == MapFeed::both && playback.is_as_full_as_daemons;
         playback.is_map_incomplete |= !is_as_daemons;
-        playback.warnings.push_back(std::string(name_of(feed)) + ": " + std::to_string(no_room) +
-                                    " voxel terms had no room" + (is_as_daemons ? ", as in the daemon" : "") +
-                                    "; raise map.memory_max_mib in the mapping file");
+        playback.warnings.push_back(
+            std::string(name_of(feed)) + ": " + std::to_string(no_room) + " updates of voxels found no room" +
+            (is_as_daemons ? ", as in the daemon" : "") + "; raise map.memory_max_mib in the mapping file");
     }
 }
 
@@ -279,9 +279,8 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
     if (!played) return unexpected(played.error());
     const OrderedOutcome& order = played->outcome;
     ReplayOutcome outcome{.progress = {order.commits, order.depth_frames.in(), order.begin, order.now},
-                          .can_error = std::nullopt,
+                          .can_error = order.order_error,
                           .depth_error = order.depth_error};
-    if (order.order_error) outcome.can_error = CanSourceError{order.order_error->what};
     return Playback{.rig = std::move(setup.rig),
                     .pipeline = std::move(*pipeline),
                     .outcome = std::move(outcome),
@@ -294,45 +293,62 @@ Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& set
                     .is_unlike_daemons = played->is_unlike_daemons};
 }
 
-std::string why_nothing(const Playback& playback, std::string_view where_the_counters_are) {
+/// The error of an empty map.
+Error nothing_mapped(const Playback& playback, std::string_view where_the_counters_are) {
+    Error error{ErrorCode::no_content, "no measurement entered the map"};
     const CounterTable& first_table = playback.inputs.front();
-    if (first_table.unit == "log lines" && first_table.in == 0) return ": can.log is empty";
-    if (playback.losses.empty()) return "; " + std::string(where_the_counters_are);
-    const Loss& first = playback.losses.front();
-    return ": " + std::to_string(first.rejected) + " of " + std::to_string(first.of) + " " + first.unit +
-           " are not used, most as " + first.reason + "; see the warnings above";
+    if (first_table.unit == "log lines" && first_table.in == 0) {
+        error.what += ", because can.log is empty";
+    } else if (playback.losses.empty()) {
+        error.remedy = where_the_counters_are;
+    } else {
+        const Loss& first = playback.losses.front();
+        error.what += ": " + std::to_string(first.rejected) + " of " + std::to_string(first.of) + " " +
+                      first.unit + " are not used, most as " + first.reason;
+        error.remedy = "see the warnings above";
+    }
+    return error;
 }
 
 }  // namespace
 
 std::optional<AppError> failure_of(const Playback& playback, std::string_view where_the_counters_are) {
-    if (const auto& failed = playback.outcome.can_error) return AppError{ExitCode::bad_data, failed->what};
+    if (const auto& failed = playback.outcome.can_error) return AppError{ExitCode::bad_data, *failed};
     if (const auto& failed = playback.outcome.depth_error) return unread_depth(*failed);
     const bool is_balanced =
         playback.pipeline.is_balanced() && std::all_of(playback.inputs.begin(), playback.inputs.end(),
                                                        [](const auto& table) { return table.is_balanced; });
-    if (!is_balanced) return AppError{ExitCode::failed, "the input counters do not balance"};
-    if (playback.is_map_incomplete) return AppError{ExitCode::failed, "the map is not complete"};
-    if (playback.pipeline.map().known_voxels() == 0) {
+    if (!is_balanced)
+        return AppError{ExitCode::failed, {ErrorCode::self_check, "the input counters do not balance"}};
+    if (playback.is_map_incomplete) {
         return AppError{ExitCode::failed,
-                        "no measurement entered the map" + why_nothing(playback, where_the_counters_are)};
+                        {.code = ErrorCode::too_large,
+                         .what = "the map is not complete: it had no room for some voxels",
+                         .remedy = "raise map.memory_max_mib in the mapping file"}};
     }
+    if (playback.pipeline.map().known_voxels() == 0)
+        return AppError{ExitCode::failed, nothing_mapped(playback, where_the_counters_are)};
     return std::nullopt;
 }
 
 std::optional<AppError> loss_of(const Playback& playback) {
     const auto lost = std::ranges::find_if(playback.losses, &Loss::is_mendable);
     if (lost == playback.losses.end()) return std::nullopt;
-    return AppError{ExitCode::failed, "most of the " + lost->unit + " is lost (" + lost->reason +
-                                          "): see the warning above for the remedy"};
+    return AppError{ExitCode::failed,
+                    {.code = ErrorCode::no_data,
+                     .what = "most of the " + lost->unit + " is lost (" + lost->reason + ")",
+                     .remedy = "see the warning above for the remedy"}};
 }
 
 Status<AppError> check_playable(const PlaybackRequest& request) {
     const bool is_lone_film = lone_film(request.recording).has_value();
     if (request.T_map_camera && !is_lone_film) {
-        return fail(ExitCode::usage, "--pose: is for an .oni file without a can.log; " +
-                                         request.recording.directory.string() +
-                                         " has camera poses of its own");
+        return fail(ExitCode::usage,
+                    {.code = ErrorCode::bad_argument,
+                     .what = "is for an .oni file without a can.log; this folder has camera poses of its own",
+                     .remedy = "omit --pose",
+                     .file = request.recording.directory,
+                     .key = "--pose"});
     }
     if (is_data_set(request.recording)) return check_data_set(request);
     if (is_lone_film) return check_film(request);
@@ -366,7 +382,7 @@ Result<Playback, AppError> play_robot(const PlaybackRequest& request, const Repl
     if (!playback) return playback;
     if (depth.error) playback->outcome.depth_error = depth.error;
     if (auto& failed = playback->outcome.depth_error)
-        failed->what += " (to map the ranges alone, move depth.oni and depth.epoch.yaml away)";
+        failed = with_remedy(*failed, "to map the ranges alone, move depth.oni and depth.epoch.yaml away");
     if (depth.reader) {
         if (auto loss = depth.reader->loss()) playback->warnings.push_back(std::move(*loss));
     }
@@ -384,7 +400,7 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     const auto play = is_data_set(request.recording) ? play_data_set
                       : lone_film(request.recording) ? play_film
                                                      : play_robot;
-    std::optional<FileLock> lock;  // of a folder: a film can be a file
+    std::optional<FileLock> lock;  // only for a folder: a film can be a file
     if (std::filesystem::is_directory(request.recording.directory)) {
         auto locked = lock_recording(request.recording);
         if (!locked) return unexpected(locked.error());

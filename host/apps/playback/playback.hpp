@@ -25,8 +25,8 @@
 namespace octoskin {
 
 /// The error of unreadable depth frames: `unavailable` if the reader program is missing, else `bad_data`.
-[[nodiscard]] inline AppError unread_depth(const DepthSourceError& error) {
-    return {error.is_reader_missing ? ExitCode::unavailable : ExitCode::bad_data, error.what};
+[[nodiscard]] inline AppError unread_depth(const Error& error) {
+    return {error.code == ErrorCode::no_program ? ExitCode::unavailable : ExitCode::bad_data, error};
 }
 
 struct PlaybackRequest {

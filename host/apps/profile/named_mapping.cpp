@@ -15,9 +15,12 @@ namespace {
 AppError absent(const std::string& name) {
     const std::vector<std::string> built_in(kBuiltInMappings.begin(), kBuiltInMappings.end());
     const auto near = rig::nearest_word(name, built_in);
-    return {ExitCode::no_input, "configuration '" + name +
-                                    "': no such file, and no built-in configuration; built in are " +
-                                    rig::joined(built_in) + (near ? "; did you mean " + *near + "?" : "")};
+    return {ExitCode::no_input,
+            {.code = ErrorCode::not_found,
+             .what = "expected a file or a built-in configuration, one of " + rig::joined(built_in),
+             .value = "'" + name + "'",
+             .remedy = near ? "did you mean " + *near + "?" : std::string(),
+             .key = "configuration"}};
 }
 
 }  // namespace
@@ -34,8 +37,11 @@ Result<NamedMapping, AppError> named_mapping(const std::string& name_or_file) {
     if (!mapping) return unexpected(reading_error(ExitCode::bad_config, mapping.error()));
     const std::string name = is_built_in ? name_or_file : std::filesystem::path(name_or_file).stem().string();
     if (name == kReservedName) {
-        return fail(ExitCode::usage,
-                    "a configuration cannot have the name '" + name + "': rename " + name_or_file);
+        return fail(ExitCode::usage, {.code = ErrorCode::bad_name,
+                                      .what = "a configuration cannot have this name",
+                                      .value = "'" + name + "'",
+                                      .remedy = "rename the file",
+                                      .file = name_or_file});
     }
     return NamedMapping{name, *mapping, is_built_in && name == "paper_noise_free_robot_seen"};
 }

@@ -17,14 +17,20 @@ AppError too_large(const std::string& rig_file, const HostRig& rig, const Mappin
     constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
     const std::string length_key =
         cone.has_range ? "range_limits.max_m of the rig" : "no_return_clear_m of the mapping";
-    return {ExitCode::bad_config,
-            fmt::format("{}: a reading of {} with a half angle of {:.3g} degrees and {:.3g} m ({}) can cover "
-                        "{:.2g} voxels of {} m (map.resolution_m of the mapping), and the limit is {:.0f}: "
-                        "raise map.resolution_m to {:.2g} or more, or lower {}, or half_angle_deg or "
-                        "sigma_deg of the sensor's cone",
-                        rig_file, sensor_text(rig.nodes[cone.node], cone.sensor),
-                        kDegreesPerRad * cone.optics.half_angle_rad, cone.length_m, length_key, cone.voxels,
-                        mapping.map.resolution_m, kConeVoxelsMax, cone.resolution_min_m, length_key)};
+    return {
+        ExitCode::bad_config,
+        {.code = ErrorCode::limit_exceeded,
+         .what =
+             fmt::format("expected a reading with a half angle of {:.3g} degrees and {:.3g} m ({}) to cover "
+                         "at most {:.0f} voxels of {} m (map.resolution_m of the mapping)",
+                         kDegreesPerRad * cone.optics.half_angle_rad, cone.length_m, length_key,
+                         kConeVoxelsMax, mapping.map.resolution_m),
+         .value = fmt::format("{:.2g}", cone.voxels),
+         .remedy = fmt::format("raise map.resolution_m to {:.2g} or more, or lower {}, or half_angle_deg or "
+                               "sigma_deg of the sensor's cone",
+                               cone.resolution_min_m, length_key),
+         .file = rig_file,
+         .key = sensor_text(rig.nodes[cone.node], cone.sensor)}};
 }
 
 }  // namespace
@@ -35,8 +41,10 @@ Result<Pipeline, AppError> build_pipeline(const std::string& rig_file, const Hos
         return unexpected(too_large(rig_file, rig, mapping, *cone));
     auto pipeline = Pipeline::build(rig, std::move(robot), mapping, config);
     if (pipeline) return std::move(pipeline).value();
-    return fail(ExitCode::bad_config,
-                rig_file + ": the robot has no '" + pipeline.error().element + "' that the rig names");
+    return fail(ExitCode::bad_config, {.code = ErrorCode::unknown_name,
+                                       .what = "the rig names a link or joint that the robot does not have",
+                                       .value = "'" + pipeline.error().element + "'",
+                                       .file = rig_file});
 }
 
 }  // namespace octoskin

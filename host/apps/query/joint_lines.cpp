@@ -35,13 +35,15 @@ Result<std::string, AppError> read_bounded(std::istream& stream, const std::stri
         stream.read(block.data(), block.size());
         text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
     }
-    if (stream.bad()) return fail(ExitCode::io_failed, name + ": cannot be read");
+    if (stream.bad())
+        return fail(ExitCode::io_failed, in_file({ErrorCode::system_error, "cannot be read"}, name));
     if (text.size() <= kPathBytesMax) return text;
     return fail(
         ExitCode::bad_data,
-        fmt::format(
-            "{}: has more than {} bytes, more than any valid path: one configuration a line, at most {}",
-            name, kPathBytesMax, kConfigurationsMax));
+        in_file({.code = ErrorCode::too_large,
+                 .what = fmt::format("expected a path of at most {} bytes", kPathBytesMax),
+                 .remedy = fmt::format("give one configuration a line, at most {}", kConfigurationsMax)},
+                name));
 }
 
 }  // namespace
@@ -62,17 +64,18 @@ Result<std::vector<double>, std::string> read_numbers(std::string_view text) {
     return numbers;
 }
 
-std::string describe_field(std::string_view field) {
+Error field_error(std::string_view field) {
     constexpr std::size_t kShown = 40;
     std::string shown(field.substr(0, kShown));
     for (char& c : shown)
         if (c < ' ' || c > '~') c = '?';
-    return (field.empty() ? std::string("a number is missing beside a comma")
-                          : fmt::format("'{}{}' is not a plain, finite number", shown,
-                                        field.size() > kShown ? "..." : "")) +
-           "; expected a joint configuration: one number for each joint of the rig, with commas between "
-           "them, "
-           "such as 0,-0.785,1.5";
+    return {.code = ErrorCode::bad_syntax,
+            .what =
+                "expected a joint configuration: one plain, finite number for each joint of the rig, with "
+                "commas between them",
+            .value = field.empty() ? std::string("no number beside a comma")
+                                   : fmt::format("'{}{}'", shown, field.size() > kShown ? "..." : ""),
+            .remedy = "write it such as 0,-0.785,1.5"};
 }
 
 Result<JointPath, AppError> read_joint_path(std::istream& stream, const std::string& name) {
@@ -87,15 +90,21 @@ Result<JointPath, AppError> read_joint_path(std::istream& stream, const std::str
         auto configuration = read_numbers(line);
         if (!configuration)
             return fail(ExitCode::bad_data,
-                        fmt::format("{}:{}: {}", name, number, describe_field(configuration.error())));
+                        in_file(field_error(configuration.error()), name, static_cast<int>(number)));
         if (path.lines.size() >= kConfigurationsMax)
-            return fail(ExitCode::bad_data,
-                        fmt::format("{}:{}: more than {} configurations: query parts of the path", name,
-                                    number, kConfigurationsMax));
+            return fail(
+                ExitCode::bad_data,
+                in_file({.code = ErrorCode::limit_exceeded,
+                         .what = fmt::format("expected at most {} configurations", kConfigurationsMax),
+                         .value = "one more",
+                         .remedy = "query parts of the path"},
+                        name, static_cast<int>(number)));
         path.configurations.push_back(std::move(*configuration));
         path.lines.push_back(number);
     }
-    if (path.lines.empty()) return fail(ExitCode::bad_data, name + ": no joint configuration in it");
+    if (path.lines.empty())
+        return fail(ExitCode::bad_data,
+                    in_file({ErrorCode::no_content, "no joint configuration in it"}, name));
     return path;
 }
 

@@ -17,8 +17,8 @@ namespace octoskin {
 /// after the last. Any bytes are safe as input. A text of blanks gives no numbers.
 [[nodiscard]] Result<std::vector<double>, std::string> read_numbers(std::string_view text);
 
-/// Text for people: the fault of the field from read_numbers(), and the expected form.
-[[nodiscard]] std::string describe_field(std::string_view field);
+/// The error for the field from read_numbers(), with the expected form.
+[[nodiscard]] Error field_error(std::string_view field);
 
 struct JointPath {
     std::vector<std::vector<double>> configurations;
@@ -29,8 +29,8 @@ struct JointPath {
 inline constexpr std::size_t kPathBytesMax = 1 << 20;
 
 /// One configuration a line; empty lines and lines that begin with # are skipped. Reads at most one block
-/// more than kPathBytesMax. Errors contain `name`, the line and its content: bad_data; io_failed if `stream`
-/// cannot be read.
+/// more than kPathBytesMax. Errors contain `name` as the file, the line and its content: bad_data; io_failed
+/// if `stream` cannot be read.
 [[nodiscard]] Result<JointPath, AppError> read_joint_path(std::istream& stream, const std::string& name);
 
 }  // namespace octoskin

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/time.hpp"
+#include "host/apps/command_line/error_json.hpp"
 #include "host/core/query/own_space.hpp"
 #include "host/core/query/path_query.hpp"
 #include "host/core/query/pocket_views.hpp"
@@ -25,14 +26,21 @@ using Json = nlohmann::ordered_json;
 /// More postures would block the client, and other clients, for minutes.
 constexpr std::size_t kPosturesMax = 50'000;
 
-std::string text_of(const RobotQueryFault& fault) {
+Error error_of(const RobotQueryFault& fault, double padding_m) {
     switch (fault.error) {
         case RobotQueryError::unknown_link:
-            return fmt::format("the robot has no link '{}'", fault.element);
+            return {.code = ErrorCode::unknown_name,
+                    .what = "expected a link of the robot",
+                    .value = "'" + fault.element + "'",
+                    .key = "links_ignored"};
         case RobotQueryError::bad_padding:
-            return "the padding is not within 0 to 1 m";
+            return {.code = ErrorCode::out_of_range,
+                    .what = "expected 0 to 1 m",
+                    .value = fmt::format("{}", padding_m),
+                    .key = "padding_m"};
         case RobotQueryError::no_body:
-            return "the query is empty: no moving link that is not ignored has a <collision>";
+            return {ErrorCode::no_content,
+                    "the query is empty: no moving link that is not ignored has a <collision>"};
     }
     return {};
 }
@@ -43,23 +51,38 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-std::string text_of(const PostureFault& fault, const HostRig& rig, const RobotModel& robot,
-                    std::span<const double> position) {
-    const auto joint = [&] { return rig.joints.joints.at(fault.joint); };
+/// `of`: the posture, such as "configuration 2".
+Error error_of(const PostureFault& fault, const HostRig& rig, const RobotModel& robot,
+               std::span<const double> position, const std::string& of) {
+    const auto of_joint = [&](ErrorCode code, const std::string& expected) {
+        return Error{.code = code,
+                     .what = expected,
+                     .value = fmt::format("{:.6g}", position[fault.joint]),
+                     .key = of + ": " + rig.joints.joints.at(fault.joint)};
+    };
     switch (fault.error) {
         case PostureError::wrong_count:
-            return fmt::format("{} joint positions; the rig has {} joints: {}", position.size(),
-                               robot.joint_count(), listed(rig.joints.joints));
+            return {.code = ErrorCode::mismatch,
+                    .what = fmt::format("expected the positions of {} joints: {}", robot.joint_count(),
+                                        listed(rig.joints.joints)),
+                    .value = fmt::format("{} positions", position.size()),
+                    .key = of};
         case PostureError::not_finite:
-            return fmt::format("{}: not a finite number", joint());
+            return of_joint(ErrorCode::bad_value, "expected a finite number");
         case PostureError::outside_limits:
-            return fmt::format("{} is {:.6g}; its limits are {:.6g} to {:.6g}", joint(),
-                               position[fault.joint], robot.limits()[fault.joint].min,
-                               robot.limits()[fault.joint].max);
+            return of_joint(ErrorCode::out_of_range,
+                            fmt::format("expected a value within the joint's limits, {:.6g} to {:.6g}",
+                                        robot.limits()[fault.joint].min, robot.limits()[fault.joint].max));
         case PostureError::too_far:
-            return "the robot would be further than 1000 km from the map's origin";
+            return {.code = ErrorCode::out_of_range,
+                    .what = "the robot would be further than 1000 km from the map's origin",
+                    .key = of};
     }
     return {};
+}
+
+std::string configuration_text(std::size_t index) {
+    return fmt::format("configuration {}", index + 1);
 }
 
 /// Rounded to a micrometre, with as many digits as that needs.
@@ -93,19 +116,23 @@ class Asking {
                                        {.padding_m = request_.padding_m,
                                         .links_ignored = request_.links_ignored,
                                         .ignores_unmoved = !request_.asks_unmoved_links});
-        if (!robot) return fail(ExitCode::usage, text_of(robot.error()));
+        if (!robot) return fail(ExitCode::usage, error_of(robot.error(), request_.padding_m));
         robot_.emplace(std::move(robot).value());
         if (request_.path.empty() && !ground_.present.empty()) request_.path = {ground_.present};
         if (request_.own_space_m && ground_.is_live && ground_.present.empty())
+            return fail(ExitCode::unavailable, {ErrorCode::no_data,
+                                                "the arm's posture is unknown, so no space counts as its own",
+                                                {},
+                                                "make sure that joint states arrive"});
+        if (request_.path.empty() && (request_.kind == QueryKind::postures || request_.own_space_m))
             return fail(
                 ExitCode::unavailable,
-                "the arm's posture is unknown, so no space counts as its own: see that joint states arrive");
-        if (request_.path.empty() && (request_.kind == QueryKind::postures || request_.own_space_m))
-            return fail(ExitCode::unavailable,
-                        ground_.is_live
-                            ? "the arm's posture is unknown: give its joints, or see that joint states arrive"
-                            : "the arm's posture is unknown: give the posture to ask about as --joints, or "
-                              "its present posture as --stands");
+                {ErrorCode::no_data,
+                 "the arm's posture is unknown",
+                 {},
+                 ground_.is_live ? "give its joints, or make sure that joint states arrive"
+                                 : "give the posture to ask about as --joints, or its present posture "
+                                   "as --stands"});
         if (const auto checked = check_present(); !checked) return unexpected(checked.error());
         if (const auto checked = check_path(); !checked) return unexpected(checked.error());
         if (const auto freed = free_own_space(); !freed) return unexpected(freed.error());
@@ -120,18 +147,22 @@ class Asking {
         return ground_.work_max && thread_time() - begun_ > *ground_.work_max;
     }
 
-    /// The error if `what` was not completed: cancelled, or over the processor time of one query.
+    /// The error of a query that ended before `what`: cancelled, or over the processor time of one query.
     [[nodiscard]] Unexpected<AppError> ended(std::string_view what) const {
         if (!is_over_time())
-            return fail(ExitCode::unavailable, fmt::format("the query was cancelled before {}", what));
+            return fail(ExitCode::unavailable,
+                        {ErrorCode::cancelled, fmt::format("the query was cancelled before {}", what)});
         const char* const remedy =
             request_.kind == QueryKind::postures
                 ? "query parts of the path, or give a larger step or a smaller reach_m or own_space_m"
                 : "give fewer views_tried or pockets_max, or a smaller radius_m or "
                   "own_space_m";
-        return fail(ExitCode::unavailable,
-                    fmt::format("one query may take {:.0f} s of processor time, which ended before {}: {}",
-                                std::chrono::duration<double>(*ground_.work_max).count(), what, remedy));
+        return fail(
+            ExitCode::unavailable,
+            {.code = ErrorCode::time_limit,
+             .what = fmt::format("one query may take {:.0f} s of processor time, which ended before {}",
+                                 std::chrono::duration<double>(*ground_.work_max).count(), what),
+             .remedy = remedy});
     }
 
     /// The present joints of a running daemon were checked before.
@@ -140,7 +171,7 @@ class Asking {
         const auto fault = robot_->fault_of(ground_.present);
         if (!fault) return Done{};
         return fail(ExitCode::usage,
-                    "the present posture: " + text_of(*fault, *ground_.rig, *ground_.robot, ground_.present));
+                    error_of(*fault, *ground_.rig, *ground_.robot, ground_.present, "the present posture"));
     }
 
     /// Checks the path and makes its legs.
@@ -151,8 +182,7 @@ class Asking {
             if (const auto fault = robot_->fault_of(position)) {
                 refused_ = i + 1;
                 return fail(ExitCode::usage,
-                            fmt::format("configuration {}: {}", i + 1,
-                                        text_of(*fault, *ground_.rig, *ground_.robot, position)));
+                            error_of(*fault, *ground_.rig, *ground_.robot, position, configuration_text(i)));
             }
             // From the previous configuration; for the first one, from itself.
             const auto& before = request_.path[i > 0 ? i - 1 : 0];
@@ -165,13 +195,16 @@ class Asking {
         return Done{};
     }
 
-    [[nodiscard]] std::string too_long(std::size_t configurations, double postures) const {
-        return fmt::format(
-            "the path has {:.0f} postures up to configuration {}: between two postures no link moves by more "
-            "than half a voxel of {} m and no joint by more than a step of {}; at most {} are possible in "
-            "one query: query parts of the path (a larger step helps only where the voxels do not require as "
-            "many)",
-            postures, configurations, ground_.map.resolution_m(), request_.step, kPosturesMax);
+    [[nodiscard]] Error too_long(std::size_t configurations, double postures) const {
+        return {
+            .code = ErrorCode::limit_exceeded,
+            .what = fmt::format("expected at most {} postures in one query; between two postures no link "
+                                "moves by more than half a voxel of {} m and no joint by more than a step "
+                                "of {}",
+                                kPosturesMax, ground_.map.resolution_m(), request_.step),
+            .value = fmt::format("{:.0f} postures up to configuration {}", postures, configurations),
+            .remedy = "query parts of the path (a larger step helps only where half a voxel is further)",
+            .key = "path"};
     }
 
     /// Null if no distances are requested, or a search is faster.
@@ -210,11 +243,13 @@ class Asking {
         if (octoskin::free_own_space(ground_.map, {around, certain}, *request_.own_space_m, is_ending_))
             return Done{};
         if (is_ending_()) return ended("the arm's own space was known");
-        return fail(
-            ExitCode::usage,
-            fmt::format("own_space_m {}: around this arm that is more than {} million voxels of {} m; give a "
-                        "smaller value, or query a map with larger voxels",
-                        *request_.own_space_m, kOwnSpaceVoxelsMax >> 20U, ground_.map.resolution_m()));
+        return fail(ExitCode::usage,
+                    {.code = ErrorCode::limit_exceeded,
+                     .what = fmt::format("expected at most {} million voxels of {} m around this arm",
+                                         kOwnSpaceVoxelsMax >> 20U, ground_.map.resolution_m()),
+                     .value = fmt::format("more within {} m", *request_.own_space_m),
+                     .remedy = "give a smaller value, or query a map with larger voxels",
+                     .key = "own_space_m"});
     }
 
     Result<Json, AppError> ask_postures() {
@@ -226,8 +261,8 @@ class Asking {
             const auto answer = ask(*robot_, ground_.map, legs_[i], config);
             if (is_ending_()) return ended("the path was evaluated");
             if (!answer) {
-                return fail(ExitCode::usage,
-                            text_of(answer.error(), *ground_.rig, *ground_.robot, request_.path[i]));
+                return fail(ExitCode::usage, error_of(answer.error(), *ground_.rig, *ground_.robot,
+                                                      request_.path[i], configuration_text(i)));
             }
             worst = std::max(worst, answer->worst.state);
             postures += answer->postures;
@@ -257,13 +292,13 @@ class Asking {
         for (const LinkId link : links) names.push_back(ground_.robot->link_names()[link]);
         return names;
     }
-    /// Includes those that the rig lists.
     [[nodiscard]] Json links_with_borrowed_body() const {
         Json lenders = Json::object();
         for (const LinkWithBorrowedBody& link : ground_.rig->links_with_borrowed_body)
             lenders[link.link] = link.body_of;
         return lenders;
     }
+    /// Includes those that the rig lists.
     [[nodiscard]] Json links_without_body() const {
         Json names = Json::array();
         for (const LinkWithoutBody& link : ground_.rig->links_without_body) names.push_back(link.link);
@@ -303,18 +338,27 @@ class Asking {
         const double voxel_m3 = std::pow(ground_.map.resolution_m(), 3);
         const auto voxels_min = static_cast<std::size_t>(std::ceil(request_.pocket_min_m3 / voxel_m3));
         if (region.z_min_m > base.z() + region.radius_m) {
-            return fail(ExitCode::usage,
-                        fmt::format("nothing of the {} m about the base, which is at {:.3f} m in the map, is "
-                                    "above {} m: query from a lower height (z_min_m, --above)",
-                                    request_.radius_m, base.z(), region.z_min_m));
+            return fail(
+                ExitCode::usage,
+                {.code = ErrorCode::out_of_range,
+                 .what = fmt::format("expected at most {:.3f} m: the region is {} m about the base, which is "
+                                     "at {:.3f} m in the map",
+                                     base.z() + region.radius_m, request_.radius_m, base.z()),
+                 .value = fmt::format("{} m", region.z_min_m),
+                 .remedy = "query from a lower height (z_min_m, --above)",
+                 .key = "z_min_m"});
         }
         const auto found = UnknownPockets::find(ground_.map, region, voxels_min, is_ending_);
         if (is_ending_()) return ended("the pockets were found");
         if (!found) {
             return fail(ExitCode::usage,
-                        fmt::format("a region of {} m about the base has too many voxels of {} m, or extends "
-                                    "beyond the octree; give a smaller radius",
-                                    request_.radius_m, ground_.map.resolution_m()));
+                        {.code = ErrorCode::limit_exceeded,
+                         .what = fmt::format("the region about the base has too many voxels of {} m, or "
+                                             "extends beyond the octree",
+                                             ground_.map.resolution_m()),
+                         .value = fmt::format("{} m", request_.radius_m),
+                         .remedy = "give a smaller radius",
+                         .key = "radius_m"});
         }
         const PocketViewConfig config{.postures = request_.views_tried, .pockets = request_.pockets_max};
         std::vector<std::optional<PocketView>> views;
@@ -389,15 +433,14 @@ class Asking {
 }  // namespace
 
 Json query_refused(const AppError& error) {
-    return {{"ok", false}, {"error", error.message}, {"code", static_cast<int>(error.code)}};
+    return {{"ok", false}, {"exit", static_cast<int>(error.exit)}, {"error", to_json(error.error)}};
 }
 
 std::optional<AppError> refusal_of(const Json& answer) {
     if (!answer.is_object() || answer.value("ok", Json()) != false || !answer.contains("error")) return {};
-    const Json& error = answer.at("error");
-    const Json code = answer.value("code", Json());
-    return AppError{code.is_number_integer() ? static_cast<ExitCode>(code.get<int>()) : ExitCode::unavailable,
-                    error.is_string() ? error.get<std::string>() : error.dump()};
+    const Json exit = answer.value("exit", Json());
+    return AppError{exit.is_number_integer() ? static_cast<ExitCode>(exit.get<int>()) : ExitCode::unavailable,
+                    error_of(answer.at("error"))};
 }
 
 Json answer_query(const QueryRequest& request, QueryGround ground, const std::function<bool()>& is_ending) {

@@ -37,12 +37,12 @@ struct QueryGround {
     std::optional<std::chrono::milliseconds> work_max = std::nullopt;
 };
 
-/// "ok": true, or false with "error" and "code", the exit code for it, and with "configuration" where the
-/// error is one of the path's. "own_space_m": as in the request, or null. Of postures: "state", the worst,
-/// and "legs", one for each configuration: the way to it from the one before. Of pockets: "pockets". All
-/// keys: docs/reference/control-socket.md. About 0.1 ms a posture. `is_ending` is called before each posture
-/// and every few thousand voxels; if it returns true, the query ends with an error. It also ends with an
-/// error after `work_max`; that error states which value to reduce.
+/// "ok": true, or false with "exit", the exit code, and "error", an object as by to_json(), and with
+/// "configuration" where the error is one of the path's. "own_space_m": as in the request, or null. Of
+/// postures: "state", the worst, and "legs", one for each configuration: the way to it from the one before.
+/// Of pockets: "pockets". All keys: docs/reference/control-socket.md. About 0.1 ms a posture. `is_ending` is
+/// called before each posture and every few thousand voxels; if it returns true, the query ends with an
+/// error. It also ends with an error after `work_max`; that error states which value to reduce.
 [[nodiscard]] nlohmann::ordered_json answer_query(
     const QueryRequest& request, QueryGround ground,
     const std::function<bool()>& is_ending = [] { return false; });

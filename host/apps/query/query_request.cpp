@@ -7,7 +7,6 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <stdexcept>
 #include <type_traits>
 
 #include "common/cut_text.hpp"
@@ -24,6 +23,7 @@ constexpr std::string_view kKeys =
     "pockets "
     "radius_m, z_min_m, pocket_min_m3, pockets_max, views_tried";
 constexpr double kPaddingMax_m = 1.0;
+constexpr std::size_t kKeyShown = 40;
 
 bool is_within(double value, double min, double max) {
     return value >= min && value <= max;  // false for a NaN
@@ -58,7 +58,7 @@ std::string shown(const Json& json) {
     return cut_text(json.dump(-1, ' ', true, Json::error_handler_t::replace), kShown);
 }
 
-/// Moves the value of `key` out of `json`; throws std::invalid_argument with the key.
+/// Moves the value of `key` out of `json`; throws Error with the key.
 template <class T>
 void take(Json& json, const char* key, T& value) {
     const auto found = json.find(key);
@@ -70,9 +70,11 @@ void take(Json& json, const char* key, T& value) {
             value = found->template get<T>();
         }
     } catch (const Json::exception&) {
-        throw std::invalid_argument(fmt::format("query: {} is {}{}; expected {}", key, shown(*found),
-                                                found->is_array() && is_list<T> ? " of another kind" : "",
-                                                kExpected<T>));
+        const bool is_other_list = found->is_array() && is_list<T>;
+        throw Error{.code = ErrorCode::wrong_type,
+                    .what = std::string("expected ") + kExpected<T>,
+                    .value = shown(*found) + (is_other_list ? " of another kind" : ""),
+                    .key = key};
     }
     json.erase(found);
 }
@@ -88,25 +90,27 @@ void take(Json& json, const char* key, std::optional<T>& value) {
 Unexpected<AppError> fail_at(std::string_view text, std::size_t byte) {
     constexpr std::size_t kShown = 20;
     const std::size_t at = std::min(byte > 0 ? byte - 1 : 0, text.size());
-    return fail(
-        ExitCode::usage,
-        fmt::format(
-            "query: invalid JSON from byte {} ({}); {}, with finite numbers: JSON has no NaN and no Infinity",
-            at, at < text.size() ? shown(text.substr(at, kShown)) : "its end", kExpectedLine));
+    const std::string found = at < text.size() ? shown(text.substr(at, kShown)) : "the end";
+    return fail(ExitCode::usage, {.code = ErrorCode::bad_syntax,
+                                  .what = std::string("invalid JSON, ") + kExpectedLine,
+                                  .value = fmt::format("{} at byte {}", found, at),
+                                  .remedy = "write finite numbers: JSON has no NaN and no Infinity"});
 }
 
 /// Refuses keys that the request would not use: their sender expects another answer.
 void refuse_unasked(const Json& json, bool asks_pockets) {
-    const auto refuse = [&json](std::initializer_list<const char*> keys, const char* why) {
+    const auto refuse = [&json](std::initializer_list<const char*> keys, const char* why,
+                                const char* remedy) {
         for (const char* key : keys)
             if (json.contains(key))
-                throw std::invalid_argument(fmt::format("query: {} has no effect {}", key, why));
+                throw Error{.code = ErrorCode::conflict, .what = why, .remedy = remedy, .key = key};
     };
     if (asks_pockets) {
-        refuse({"reach_m"}, "in a query about pockets, for which no distances are computed: leave it out");
+        refuse({"reach_m"}, "has no effect in a query about pockets, for which no distances are computed",
+               "leave it out");
     } else {
         refuse({"radius_m", "z_min_m", "pocket_min_m3", "pockets_max", "views_tried"},
-               "without \"pockets\": true: give that, too, or leave it out");
+               "has no effect without \"pockets\": true", "give \"pockets\": true, too, or leave it out");
     }
 }
 
@@ -115,25 +119,28 @@ Json parse_once(std::string_view text) {
     std::set<std::string> keys;
     return Json::parse(text, [&keys](int depth, Json::parse_event_t event, Json& parsed) {
         if (event == Json::parse_event_t::key && depth == 1 && !keys.insert(parsed.get<std::string>()).second)
-            throw std::invalid_argument(fmt::format("query: the key {} comes twice", shown(parsed)));
+            throw Error{.code = ErrorCode::duplicate,
+                        .what = "occurs twice",
+                        .key = cut_text(parsed.get<std::string>(), kKeyShown)};
         return true;
     });
 }
 
 /// The serializer writes null for a number that is not finite; in a long path the message gives the place.
 void check_path(const Json& path) {
-    const auto expected = kExpected<std::vector<std::vector<double>>>;
     if (!path.is_array()) return;
+    const auto refuse = [](const std::string& key, const Json& value) {
+        throw Error{.code = ErrorCode::wrong_type,
+                    .what = std::string("expected ") + kExpected<std::vector<std::vector<double>>>,
+                    .value = shown(value),
+                    .key = key};
+    };
     for (std::size_t i = 0; i < path.size(); ++i) {
         const Json& configuration = path[i];
-        if (!configuration.is_array())
-            throw std::invalid_argument(fmt::format("query: configuration {} of path is {}; expected {}",
-                                                    i + 1, shown(configuration), expected));
+        if (!configuration.is_array()) refuse(fmt::format("path[{}]", i), configuration);
         for (std::size_t joint = 0; joint < configuration.size(); ++joint) {
-            if (configuration[joint].is_number()) continue;
-            throw std::invalid_argument(
-                fmt::format("query: number {} of configuration {} of path is {}; expected {}", joint + 1,
-                            i + 1, shown(configuration[joint]), expected));
+            if (!configuration[joint].is_number())
+                refuse(fmt::format("path[{}][{}]", i, joint), configuration[joint]);
         }
     }
 }
@@ -148,7 +155,10 @@ QueryRequest from_json(Json& json) {
     if (has_path) check_path(json["path"]);
     take(json, "path", request.path);
     if (has_path && request.path.empty())
-        throw std::invalid_argument("query: path is empty; leave it out to query the arm's present posture");
+        throw Error{.code = ErrorCode::no_content,
+                    .what = "is empty",
+                    .remedy = "leave it out to query the arm's present posture",
+                    .key = "path"};
     take(json, "padding_m", request.padding_m);
     take(json, "reach_m", request.reach_m);
     take(json, "step", request.step);
@@ -192,38 +202,50 @@ std::string to_line(const QueryRequest& request) {
 Result<QueryRequest, AppError> read_query(std::string_view line) {
     const std::string_view text = line.substr(std::min(kWord.size() + 1, line.size()));
     if (text.find_first_not_of(' ') == std::string_view::npos)
-        return fail(
-            ExitCode::usage,
-            fmt::format(
-                "query expects an object: query {{}} is about the arm's present posture; it may contain {}",
-                kKeys));
+        return fail(ExitCode::usage,
+                    {.code = ErrorCode::bad_syntax,
+                     .what = "query expects an object",
+                     .remedy = fmt::format("query {{}} is about the arm's present posture; it may contain {}",
+                                           kKeys)});
     try {
         Json json = parse_once(text);
-        if (!json.is_object()) return fail(ExitCode::usage, kExpectedLine);
+        if (!json.is_object())
+            return fail(ExitCode::usage, {ErrorCode::wrong_type, kExpectedLine, shown(json)});
         QueryRequest request = from_json(json);
         if (!json.empty())
-            return fail(ExitCode::usage, fmt::format("query: unknown key {}; the keys are {}",
-                                                     shown(Json(json.begin().key())), kKeys));
-        if (const std::string fault = fault_of(request); !fault.empty()) return fail(ExitCode::usage, fault);
+            return fail(ExitCode::usage, {.code = ErrorCode::unknown_key,
+                                          .what = "unknown key of a query",
+                                          .remedy = fmt::format("the keys are {}", kKeys),
+                                          .key = cut_text(json.begin().key(), kKeyShown)});
+        if (auto fault = fault_of(request)) return fail(ExitCode::usage, std::move(*fault));
         return request;
     } catch (const Json::parse_error& error) {
         return fail_at(text, error.byte);
     } catch (const Json::exception&) {
-        return fail(ExitCode::usage, "query: a number is too large");
-    } catch (const std::invalid_argument& wrong) {
-        return fail(ExitCode::usage, wrong.what());
+        return fail(ExitCode::usage, {ErrorCode::out_of_range, "a number is too large"});
+    } catch (const Error& wrong) {
+        return fail(ExitCode::usage, wrong);
     }
 }
 
-std::string fault_of(const QueryRequest& request) {
+std::optional<Error> fault_of(const QueryRequest& request) {
+    const std::string configurations = fmt::format("{} configurations", request.path.size());
     if (request.path.size() > kConfigurationsMax)
-        return fmt::format("query: {} configurations; at most {} are possible in one query",
-                           request.path.size(), kConfigurationsMax);
+        return Error{.code = ErrorCode::limit_exceeded,
+                     .what = fmt::format("expected at most {} in one query", kConfigurationsMax),
+                     .value = configurations,
+                     .remedy = "query parts of the path",
+                     .key = "path"};
     if (request.kind == QueryKind::pockets && request.path.size() > 1)
-        return fmt::format("query: path has {} configurations; views into pockets are searched from one",
-                           request.path.size());
+        return Error{.code = ErrorCode::conflict,
+                     .what = "expected one configuration, from which views into pockets are searched",
+                     .value = configurations,
+                     .key = "path"};
     const auto not_within = [](const char* key, double value, double min, double max) {
-        return fmt::format("query: {} is {}; expected {} to {}", key, value, min, max);
+        return Error{.code = ErrorCode::out_of_range,
+                     .what = fmt::format("expected {} to {}", min, max),
+                     .value = fmt::format("{}", value),
+                     .key = key};
     };
     if (!is_within(request.padding_m, 0.0, kPaddingMax_m))
         return not_within("padding_m", request.padding_m, 0.0, kPaddingMax_m);
@@ -244,7 +266,7 @@ std::string fault_of(const QueryRequest& request) {
     if (request.views_tried > kViewsTriedMax)
         return not_within("views_tried", static_cast<double>(request.views_tried), 0.0,
                           static_cast<double>(kViewsTriedMax));
-    return {};
+    return std::nullopt;
 }
 
 }  // namespace octoskin

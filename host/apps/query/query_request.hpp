@@ -49,7 +49,7 @@ inline constexpr double kRadiusMax_m = 5.0;
 [[nodiscard]] bool is_query(std::string_view line) noexcept;
 /// Parses the text form. Errors (`usage`) name the key that is unknown, of the wrong type or out of range.
 [[nodiscard]] Result<QueryRequest, AppError> read_query(std::string_view line);
-/// The fault of a request that did not come from read_query(); empty if it is valid.
-[[nodiscard]] std::string fault_of(const QueryRequest& request);
+/// The error of a request that did not come from read_query(); empty if it is valid.
+[[nodiscard]] std::optional<Error> fault_of(const QueryRequest& request);
 
 }  // namespace octoskin

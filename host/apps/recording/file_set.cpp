@@ -23,7 +23,8 @@ constexpr const char* kBeforeFolder =
     ".before";                                ///< in the ready folder: the files that the new ones replace
 constexpr const char* kJournal = ".journal";  ///< in the ready folder: the list of steps
 constexpr const char* kJournalHead = "octoskin-file-set/1";
-constexpr std::size_t kJournalBytesMax = 16'384;  ///< each name once, in `drop` and `put`, needs less
+constexpr const char* kNotFlushed = "cannot be flushed to the disk: ";
+constexpr std::size_t kJournalBytesMax = 16'384;  ///< a journal with each name once is shorter
 
 constexpr std::array<std::string_view, 9> kRecordingFiles{"can.log",   "depth.oni",   "depth.epoch.yaml",
                                                           "rig.yaml",  "robot.urdf",  "scenario.yaml",
@@ -33,43 +34,50 @@ constexpr std::array<std::string_view, 10> kMapFiles{
     "proximity.ply", "fused.ot", "fused.bt",  "fused.ply",    "maps.yaml"};
 
 Unexpected<AppError> busy(const OpenFolder& folder) {
-    return cannot_create(folder.shown(),
-                         "another octoskin is writing here; wait until it ends, or give another directory");
+    return cannot_create(folder.shown(), {.code = ErrorCode::in_use,
+                                          .what = "another octoskin is writing here",
+                                          .remedy = "wait until it ends, or give another directory"});
 }
 
 Unexpected<AppError> of_a_daemon(const OpenFolder& folder) {
     return cannot_create(folder.shown(kDaemonsSnapshot),
-                         "belongs to a daemon's map, which is kept in this folder; give another directory");
+                         {.code = ErrorCode::already_exists,
+                          .what = "belongs to a daemon's map, which is kept in this folder",
+                          .remedy = "give another directory"});
 }
 
-/// Either map can be the only copy.
+/// Nothing is replaced or removed: either map can be the only copy.
 Unexpected<AppError> beside_a_daemons_map(const OpenFolder& folder) {
     const std::string ready = folder.shown(kReady).string();
-    return cannot_create(folder.shown(kDaemonsSnapshot),
-                         "belongs to a daemon's map, and the files of a killed run wait in " + ready +
-                             " to replace it: to keep the daemon's map, move " + ready +
-                             " into an empty folder, where octoskin repair completes it; to replace the map, "
-                             "move fused.ot, fused.bt and fused.snapshot to another folder and run octoskin "
-                             "repair " +
-                             folder.shown().string());
+    return cannot_create(
+        folder.shown(kDaemonsSnapshot),
+        {.code = ErrorCode::unfinished_move,
+         .what =
+             "belongs to a daemon's map, and the files of a killed run wait in " + ready + " to replace it",
+         .remedy = "to keep the daemon's map, move " + ready +
+                   " into an empty folder, where octoskin repair completes it; to replace the map, move "
+                   "fused.ot, fused.bt and fused.snapshot to another folder and run octoskin repair " +
+                   folder.shown().string()});
 }
 
 Unexpected<AppError> cannot_write(const FolderError& error) {
-    if (error.fault == FolderFault::foreign_owner || error.fault == FolderFault::link)
-        return cannot_create(error.path, error.reason());
-    return cannot_create(error.path, "nothing can be written there (" + error.reason() +
-                                         "): " + remedy_of({error.error_number, std::generic_category()}));
+    Error full = to_error(error);
+    if (error.fault != FolderFault::foreign_owner && error.fault != FolderFault::link) {
+        full.what = "nothing can be written there (" + full.what + ")";
+        full.remedy = remedy_of({error.error_number, std::generic_category()});
+    }
+    return fail(ExitCode::cannot_create, std::move(full));
 }
 
-Unexpected<AppError> failed(const FolderError& error) {
-    return cannot_create(error.path, error.reason());
+Unexpected<AppError> failed(const FolderError& error, const std::string& before = {}) {
+    return fail(ExitCode::cannot_create, to_error(error, before));
 }
 
 bool is_there(const OpenFolder& folder, const fs::path& name) {
     return folder.kind_of(name) != EntryKind::absent;
 }
 
-/// For now: a daemon may start later.
+/// Checks only the present: a daemon may start later.
 Status<AppError> check_for_daemon(const OpenFolder& folder) {
     if (!FileLock::take(FilePlace(folder, kDaemonsLock), FileLock::Kind::exclusive)) return busy(folder);
     if (is_there(folder, kDaemonsSnapshot)) return of_a_daemon(folder);
@@ -99,7 +107,11 @@ Status<AppError> write_journal(const OpenFolder& draft, const Journal& journal) 
     for (const fs::path& name : journal.drop) out << "drop " << name.string() << '\n';
     for (const fs::path& name : journal.put) out << "put " << name.string() << '\n';
     out.close();
-    if (!out) return cannot_create(created->shown(), "cannot write; is the disk full?");
+    if (!out) {
+        return cannot_create(
+            created->shown(),
+            {.code = ErrorCode::system_error, .what = "cannot be written", .remedy = "is the disk full?"});
+    }
     return Done{};
 }
 
@@ -120,24 +132,21 @@ Result<Journal, AppError> read_journal(const OpenFolder& ready) {
         (verb == "put" ? journal.put : journal.drop).push_back(name);
     }
     if (!is_sound || journal.put.empty()) {
-        return cannot_create(ready.shown(kJournal), "is not a file that octoskin writes; remove " +
-                                                        ready.shown().string() +
-                                                        " and make the files beside it again");
+        return cannot_create(ready.shown(kJournal), {.code = ErrorCode::foreign_format,
+                                                     .what = "is not a file that octoskin writes",
+                                                     .remedy = "remove " + ready.shown().string() +
+                                                               " and make the files beside it again"});
     }
     return journal;
 }
 
 Status<AppError> flush(const OpenFolder& folder) {
-    if (const auto flushed = folder.flush(); !flushed)
-        return cannot_create(flushed.error().path,
-                             "cannot be flushed to the disk (" + flushed.error().reason() + ")");
+    if (const auto flushed = folder.flush(); !flushed) return failed(flushed.error(), kNotFlushed);
     return Done{};
 }
 
 Status<AppError> flush(const OpenFolder& folder, const fs::path& name) {
-    if (const auto flushed = folder.flush(name); !flushed)
-        return cannot_create(flushed.error().path,
-                             "cannot be flushed to the disk (" + flushed.error().reason() + ")");
+    if (const auto flushed = folder.flush(name); !flushed) return failed(flushed.error(), kNotFlushed);
     return Done{};
 }
 
@@ -155,7 +164,9 @@ Status<AppError> check_place(const OpenFolder& folder, const fs::path& name) {
         if (!opened) return failed(opened.error());
     }
     return cannot_create(folder.shown(name),
-                         "is not a file, and a file of this name is to be written or removed; move it away");
+                         {.code = ErrorCode::wrong_kind_of_file,
+                          .what = "is not a file, and a file of this name is to be written or removed",
+                          .remedy = "move it away"});
 }
 
 /// The steps from the ready folder to the final places. Each step checks the present state, so that the whole
@@ -275,10 +286,22 @@ Status<AppError> carry_out(Move& moving) {
         moving.remove_ready();
         return Done{};
     }
-    if (const auto undone = moving.back(); !undone && undone.error().message != moved.error().message)
-        return fail(ExitCode::cannot_create,
-                    undone.error().message + ": undoing the moves failed, after " + moved.error().message);
+    if (const auto undone = moving.back(); !undone && undone.error().message() != moved.error().message()) {
+        Error error = undone.error().error;
+        error.what.insert(0, "undoing the moves failed: ");
+        error.others = "The first fault: " + moved.error().message();
+        return fail(ExitCode::cannot_create, std::move(error));
+    }
     return moved;
+}
+
+/// The error of moves that are still to be completed.
+Unexpected<AppError> still_waiting(AppError app, const OpenFolder& folder) {
+    Error& error = app.error;
+    error.others.append(error.others.empty() ? "" : ". ")
+        .append("The files of a killed run wait in " + folder.shown(kReady).string() +
+                ", and may be the only copies");
+    return unexpected(std::move(app));
 }
 
 /// True if there was an interrupted operation. No daemon may start meanwhile.
@@ -290,10 +313,10 @@ Result<bool, AppError> finish_interrupted(const OpenFolder& folder) {
     if (!journal) return unexpected(journal.error());
     Move moving(folder, *journal);
     if (const auto moved = carry_out(moving); !moved) {
-        return fail(ExitCode::cannot_create,
-                    moved.error().message + "; the files of a killed run wait in " + ready->shown().string() +
-                        ", and may be the only ones: remedy this, then run octoskin repair " +
-                        folder.shown().string());
+        AppError error = moved.error();
+        error.error.remedy.append(error.error.remedy.empty() ? "remedy this" : "")
+            .append(", then run octoskin repair " + folder.shown().string());
+        return still_waiting(std::move(error), folder);
     }
     return true;
 }
@@ -342,7 +365,7 @@ Result<FileSet, AppError> FileSet::begin(const FilePlace& named) {
         if (const auto finished = finish_interrupted(folder); !finished) return unexpected(finished.error());
     }
     Unfinished unfinished(folder, kDraftFolder, made->is_new);
-    // An existing one is left over from a killed process.
+    // An existing draft is left over from a killed process.
     if (const auto removed = folder.remove_all(kDraftFolder); !removed)
         return give_up(cannot_write(removed.error()));
     if (const auto created = folder.make_folder(kDraftFolder); !created)
@@ -415,16 +438,13 @@ Result<bool, AppError> settle_file_set(const OpenFolder& folder) {
     if (!lock) return busy(folder);
     if (is_there(folder, kDaemonsSnapshot)) return beside_a_daemons_map(folder);
     const auto daemons = keep_daemons_out(folder);
-    if (!daemons) {
-        return fail(daemons.error().code, daemons.error().message + "; the files of a killed run wait in " +
-                                              folder.shown(kReady).string() + ", and may be the only ones");
-    }
+    if (!daemons) return still_waiting(daemons.error(), folder);
     return finish_interrupted(folder);
 }
 
 Result<bool, AppError> settle_file_set_of_daemon(const OpenFolder& folder) {
-    // Who moves files holds the lock of daemons, too: there is no need for that of the folder, which every
-    // user who can read the folder can hold.
+    // A process that moves files also holds the lock of daemons, which this daemon has now. The folder's lock
+    // is not needed, and any user who can read the folder could hold it.
     if (!is_there(folder, kReady)) return false;
     if (is_there(folder, kDaemonsSnapshot)) return beside_a_daemons_map(folder);
     return finish_interrupted(folder);

@@ -19,7 +19,7 @@ Result<std::string, AppError> robot_text(const rig::Rig& rig) {
     auto robot = opened ? opened->read(kRobotBytesMax) : unexpected(opened.error());
     if (robot) return std::move(*robot);
     return unexpected(
-        reading_error(rig.urdf, {ExitCode::bad_config, rig.urdf.shown().string() + ": cannot be read"}));
+        reading_error(rig.urdf, {ExitCode::bad_config, to_error(robot.error(), "cannot be read: ")}));
 }
 
 }  // namespace octoskin

@@ -20,8 +20,11 @@ std::optional<AppError> refused_to_read(const FilePlace& file) {
     if (error != EACCES && error != EPERM) return std::nullopt;
     return AppError{
         ExitCode::no_permission,
-        file.shown().string() + ": cannot be read (" + std::generic_category().message(error) +
-            "): its owner can permit it (chmod, chgrp; also its folders), or run as a user who may read it"};
+        {.code = ErrorCode::no_permission,
+         .what = "cannot be read (" + std::generic_category().message(error) + ")",
+         .remedy =
+             "its owner can permit it (chmod, chgrp; also its folders), or run as a user who may read it",
+         .file = file.shown()}};
 }
 
 AppError reading_error(const FilePlace& file, AppError otherwise) {

@@ -1,9 +1,7 @@
 // Distinguishes files that may not be read from missing and broken ones.
 #pragma once
 
-#include <filesystem>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "host/apps/recording/app_error.hpp"
@@ -19,9 +17,9 @@ namespace octoskin {
 [[nodiscard]] AppError reading_error(const FilePlace& file, AppError otherwise);
 
 /// The same for the error of a reader, which contains the file.
-template <class Error>
-[[nodiscard]] AppError reading_error(ExitCode otherwise, const Error& error) {
-    return reading_error(error.file, {otherwise, error.message()});
+[[nodiscard]] inline AppError reading_error(ExitCode otherwise, Error error) {
+    const FilePlace file(error.file);
+    return reading_error(file, {otherwise, std::move(error)});
 }
 
 }  // namespace octoskin

@@ -14,45 +14,62 @@ namespace {
 constexpr const char* kSchema = "octoskin-recording/1";
 constexpr std::int64_t kCrcMax = 0xFFFF'FFFF;
 constexpr const char* kMetaMissing =
-    "no such file; its minimum content is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
+    "its minimum content is two lines, 'schema: octoskin-recording/1' and 'source: robot'";
 constexpr const char* kDirectoryMissing =
-    "no such directory; `octoskin record` (of a running daemon) and `octoskin-lab simulate` make recordings";
+    "`octoskin record` (of a running daemon) and `octoskin-lab simulate` make recordings";
 constexpr const char* kLogMissing =
-    "no such file: this is not a recording of `octoskin record` (of a running daemon) or `octoskin-lab "
-    "simulate`; by hand, can.log is the output of `candump -L`. A data set has depth.txt, associations.txt "
-    "or frame-*.depth.png, and the poses of its camera (docs/how-to/record-and-replay.md)";
+    "this is not a recording of `octoskin record` (of a running daemon) or `octoskin-lab simulate`; by hand, "
+    "can.log is the output of `candump -L`. A data set has depth.txt, associations.txt or frame-*.depth.png, "
+    "and the poses of its camera (docs/how-to/record-and-replay.md)";
 
-Unexpected<RecordingError> failure(const std::filesystem::path& file, std::string what) {
-    return unexpected(RecordingError{file, std::move(what), 0, ""});
+/// The error of a file that does not exist.
+Error missing_file(const std::string& remedy) {
+    return {.code = ErrorCode::not_found, .what = "no such file", .remedy = remedy};
+}
+
+Unexpected<Error> failure(const std::filesystem::path& file, Error error) {
+    return unexpected(in_file(std::move(error), file));
+}
+
+Unexpected<Error> failure(const FolderError& error) {
+    return unexpected(to_error(error));
 }
 
 /// Checks that it is a folder, and complete.
-Status<RecordingError> check_folder(const RecordingPaths& recording) {
+Status<Error> check_folder(const RecordingPaths& recording) {
     const auto folder = recording.folder.open();
     if (folder) {
         if (folder->kind_of(FileSet::kReadyFolder) == EntryKind::absent) return Done{};
         return failure(recording.directory,
-                       "an octoskin was killed while it put new files into place: `octoskin repair " +
-                           recording.directory.string() + "` completes that");
+                       {.code = ErrorCode::unfinished_move,
+                        .what = "an octoskin was killed while it put new files into place",
+                        .remedy = "`octoskin repair " + recording.directory.string() + "` completes that"});
     }
     if (folder.error().fault == FolderFault::not_a_folder) {
         return failure(recording.directory,
-                       "is a file; give the recording's directory, " +
-                           std::filesystem::absolute(recording.directory).parent_path().string());
+                       {.code = ErrorCode::wrong_kind_of_file,
+                        .what = "is a file",
+                        .remedy = "give the recording's directory, " +
+                                  std::filesystem::absolute(recording.directory).parent_path().string()});
     }
-    if (folder.error().fault == FolderFault::absent) return failure(recording.directory, kDirectoryMissing);
-    return failure(recording.directory, folder.error().reason());
+    if (folder.error().fault == FolderFault::absent) {
+        return failure(
+            recording.directory,
+            {.code = ErrorCode::not_found, .what = "no such directory", .remedy = kDirectoryMissing});
+    }
+    return failure(recording.directory, to_error(folder.error()));
 }
 
 /// Checks that only regular files are at the names of files.
-Status<RecordingError> check_kinds(const RecordingPaths& recording) {
+Status<Error> check_kinds(const RecordingPaths& recording) {
     for (const FilePlace& file : recording.files()) {
         const EntryKind kind = file.kind();
         if (kind == EntryKind::absent || kind == EntryKind::file) continue;
         const auto opened = file.open();
-        if (!opened && opened.error().fault == FolderFault::link)
-            return failure(opened.error().path, opened.error().reason());
-        return failure(file.shown(), "is not a regular file; move it away, or put the recorded file there");
+        if (!opened && opened.error().fault == FolderFault::link) return failure(opened.error());
+        return failure(file.shown(), {.code = ErrorCode::wrong_kind_of_file,
+                                      .what = "is not a regular file",
+                                      .remedy = "move it away, or put the recorded file there"});
     }
     return Done{};
 }
@@ -117,11 +134,7 @@ std::vector<FilePlace> RecordingPaths::meshes() const {
     return meshes;
 }
 
-std::string RecordingError::message() const {
-    return rig::RigError{file, line, key, what}.message();
-}
-
-Status<RecordingError> write_meta(const RecordingPaths& recording, const RecordingMeta& meta) {
+Status<Error> write_meta(const RecordingPaths& recording, const RecordingMeta& meta) {
     YAML::Emitter out;
     out << YAML::BeginMap;
     out << YAML::Key << "schema" << YAML::Value << kSchema;
@@ -139,49 +152,50 @@ Status<RecordingError> write_meta(const RecordingPaths& recording, const Recordi
     out << YAML::Key << "duration_s" << YAML::Value << meta.duration_s;
     out << YAML::EndMap;
     const auto created = recording.meta().create_anew();
-    if (!created) return failure(created.error().path, created.error().reason());
+    if (!created) return failure(created.error());
     std::ofstream file(created->path_for_libraries());
     file << out.c_str() << '\n';
     file.close();
     if (!file)
-        return failure(recording.meta().shown(), "cannot write; is the disk full, do you own the folder?");
+        return failure(recording.meta().shown(), {.code = ErrorCode::system_error,
+                                                  .what = "cannot write",
+                                                  .remedy = "is the disk full, do you own the folder?"});
     return Done{};
 }
 
-Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording) {
+Result<RecordingMeta, Error> read_meta(const RecordingPaths& recording) {
     const FilePlace place = recording.meta();
-    if (!place.is_there()) return failure(place.shown(), kMetaMissing);
+    if (!place.is_there()) return failure(place.shown(), missing_file(kMetaMissing));
     try {
         return read_checked(place);
-    } catch (const rig::Fault& fault) {
-        return unexpected(
-            RecordingError{fault.error.file, fault.error.what, fault.error.line, fault.error.key});
+    } catch (const Error& error) {
+        return unexpected(error);
     }
 }
 
-Status<RecordingError> check_recording(const RecordingPaths& recording, bool is_rig_given) {
+Status<Error> check_recording(const RecordingPaths& recording, bool is_rig_given) {
     if (const auto checked = check_folder(recording); !checked) return checked;
     if (const auto checked = check_kinds(recording); !checked) return checked;
     // An experiment leaves a folder that contains a recording.
     if (!recording.can_log().is_there() && FilePlace(recording.folder, "recording/can.log").is_there()) {
         return failure(recording.can_log().shown(),
-                       "no such file; did you mean " + (recording.directory / "recording").string() + "?");
+                       missing_file("did you mean " + (recording.directory / "recording").string() + "?"));
     }
-    const std::pair<FilePlace, const char*> needed[] = {
-        {recording.can_log(), kLogMissing},
-        {recording.rig(), "no such file; put the rig there, or give --rig"},
-        {recording.meta(), kMetaMissing}};
-    for (const auto& [file, what] : needed) {
+    const std::pair<FilePlace, const char*> needed[] = {{recording.can_log(), kLogMissing},
+                                                        {recording.rig(), "put the rig there, or give --rig"},
+                                                        {recording.meta(), kMetaMissing}};
+    for (const auto& [file, remedy] : needed) {
         if (is_rig_given && file == recording.rig()) continue;
-        if (!file.is_there()) return failure(file.shown(), what);
+        if (!file.is_there()) return failure(file.shown(), missing_file(remedy));
     }
     const bool has_depth = recording.depth().is_there();
     if (has_depth != recording.depth_epoch().is_there()) {
         const auto missing = has_depth ? recording.depth_epoch() : recording.depth();
         const auto lonely = has_depth ? recording.depth() : recording.depth_epoch();
         return failure(missing.shown(),
-                       "no such file, but " + lonely.filename() +
-                           " exists: put it there, too, or move the other file away to map the ranges alone");
+                       {.code = ErrorCode::not_found,
+                        .what = "no such file, but " + lonely.filename() + " exists",
+                        .remedy = "put it there, too, or move the other file away to map the ranges alone"});
     }
     return Done{};
 }

@@ -9,6 +9,7 @@
 
 #include "common/result.hpp"
 #include "host/apps/recording/source_file.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/folder/file_place.hpp"
 
 namespace octoskin {
@@ -73,26 +74,17 @@ struct RecordingMeta {
     [[nodiscard]] bool is_simulated() const { return source == "simulation"; }
 };
 
-struct RecordingError {
-    std::filesystem::path file;
-    std::string what;
-    int line = 0;     ///< from 1; 0 if it concerns the whole file
-    std::string key;  ///< of meta.yaml; empty if it concerns none
-    [[nodiscard]] std::string message() const;
-};
-
-[[nodiscard]] Status<RecordingError> write_meta(const RecordingPaths& recording, const RecordingMeta& meta);
+[[nodiscard]] Status<Error> write_meta(const RecordingPaths& recording, const RecordingMeta& meta);
 
 /// Reads meta.yaml as strictly as a rig: unknown or repeated keys, values of a wrong type or out of range,
 /// anchors and tags are errors with their line.
-[[nodiscard]] Result<RecordingMeta, RecordingError> read_meta(const RecordingPaths& recording);
+[[nodiscard]] Result<RecordingMeta, Error> read_meta(const RecordingPaths& recording);
 
 /// That `directory` holds every file a recording must have (docs/reference/recording-folder.md); names the
 /// one that is missing, and what to put there. rig.yaml may be missing if another one `is_rig_given`; a
 /// recording without a camera has neither depth.oni nor its sidecar. The robot is not looked for: the rig
 /// names it. Refuses a link, pipe, folder or device in the place of any file that a recording may have, and a
 /// recording that a killed process left half moved, with what finishes it. Writes nothing.
-[[nodiscard]] Status<RecordingError> check_recording(const RecordingPaths& recording,
-                                                     bool is_rig_given = false);
+[[nodiscard]] Status<Error> check_recording(const RecordingPaths& recording, bool is_rig_given = false);
 
 }  // namespace octoskin

@@ -32,16 +32,20 @@ Status<AppError> check_replaceable(const RecordingPaths& paths) {
     const auto is_there = [](const FilePlace& file) { return file.is_there(); };
     const auto first = std::find_if(files.begin(), files.end(), is_there);
     if (first == files.end() && is_there(paths.file("depth.txt"))) {
-        return cannot_create(
-            paths.directory,
-            "is a data set (depth.txt), which a recording here would hide; give another directory");
+        return cannot_create(paths.directory,
+                             {.code = ErrorCode::already_exists,
+                              .what = "is a data set (depth.txt), which a recording here would hide",
+                              .remedy = "give another directory"});
     }
     if (first == files.end()) return Done{};
     const auto meta = read_meta(paths);
     if (meta && meta->is_simulated()) return Done{};
-    return cannot_create(paths.directory, "has a " + first->filename() +
-                                              ", and no meta.yaml with 'source: simulation': it is not "
-                                              "overwritten; give another directory, or remove it yourself");
+    return cannot_create(
+        paths.directory,
+        {.code = ErrorCode::already_exists,
+         .what = "is not overwritten: expected a simulated recording (meta.yaml with 'source: simulation')",
+         .value = "a " + first->filename(),
+         .remedy = "give another directory, or remove it yourself"});
 }
 
 /// The maps that replay wrote into the previous recording's directory.
@@ -69,7 +73,9 @@ Result<std::optional<FileLock>, AppError> check_former(const OpenFolder& folder,
     if (!may_replace) {
         return cannot_create(
             paths.directory,
-            "is not empty; give another directory, or --force to replace a simulated recording");
+            {.code = ErrorCode::already_exists,
+             .what = "is not empty",
+             .remedy = "give another directory, or --force to replace a simulated recording"});
     }
     // Checked before any work: an obstacle at the end was there at the beginning.
     if (const auto checked = FileSet::check_places(folder, places_of(paths)); !checked)
@@ -77,9 +83,9 @@ Result<std::optional<FileLock>, AppError> check_former(const OpenFolder& folder,
     if (const auto checked = check_replaceable(paths); !checked) return unexpected(checked.error());
     auto lock = FileLock::take(paths.meta(), FileLock::Kind::exclusive);
     if (!lock) {
-        return cannot_create(
-            paths.directory,
-            "another octoskin is reading this recording; wait until it ends, or give another directory");
+        return cannot_create(paths.directory, {.code = ErrorCode::in_use,
+                                               .what = "another octoskin is reading this recording",
+                                               .remedy = "wait until it ends, or give another directory"});
     }
     return std::optional(std::move(*lock));
 }
@@ -94,7 +100,7 @@ Status<AppError> RecordingDraft::check(const FilePlace& named, bool may_replace)
     if (kind == EntryKind::absent) return Done{};
     auto folder = named.open_folder();
     if (folder) folder = folder->to_write();
-    if (!folder) return cannot_create(folder.error().path, folder.error().reason());
+    if (!folder) return fail(ExitCode::cannot_create, to_error(folder.error()));
     // First completes what a killed octoskin left partly moved.
     if (folder->kind_of(FileSet::kReadyFolder) != EntryKind::absent) return Done{};
     const auto former = check_former(*folder, may_replace);
@@ -134,9 +140,10 @@ Status<AppError> RecordingDraft::commit() {
 Result<FileLock, AppError> lock_recording(const RecordingPaths& recording) {
     auto lock = FileLock::take(recording.meta(), FileLock::Kind::shared);
     if (!lock) {
-        return unexpected(AppError{ExitCode::bad_data,
-                                   recording.directory.string() +
-                                       ": another octoskin is replacing this recording; wait until it ends"});
+        return fail(ExitCode::bad_data, {.code = ErrorCode::in_use,
+                                         .what = "another octoskin is replacing this recording",
+                                         .remedy = "wait until it ends",
+                                         .file = recording.directory});
     }
     return std::move(*lock);
 }

@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace octoskin {
 namespace {
@@ -19,24 +20,28 @@ std::optional<rlim_t> limit_of(__rlimit_resource resource) {
     return limit.rlim_cur;
 }
 
-std::string with_limit(const std::string& what, __rlimit_resource resource, rlim_t unit,
-                       const std::string& unit_name, const std::string& remedy) {
+Error with_limit(const std::string& what, __rlimit_resource resource, rlim_t unit,
+                 const std::string& unit_name, const std::string& remedy) {
     const auto limit = limit_of(resource);
-    if (!limit) return what + ": " + remedy;
-    const std::string most = std::to_string(*limit / unit) + unit_name;
-    return what + ": this process may have " + most + "; " + remedy;
+    const std::string most =
+        limit ? "; this process may have " + std::to_string(*limit / unit) + unit_name : std::string();
+    return {.code = ErrorCode::no_resources, .what = what + most, .remedy = remedy};
 }
 
-std::string no_memory() {
+Error no_memory() {
     if (!limit_of(RLIMIT_AS) && limit_of(RLIMIT_DATA))
         return with_limit("out of memory", RLIMIT_DATA, kMib, " MiB of data", "raise that limit (ulimit -d)");
-    if (!limit_of(RLIMIT_AS)) return "out of memory: end other programs, or give this one more";
+    if (!limit_of(RLIMIT_AS)) {
+        return {.code = ErrorCode::no_resources,
+                .what = "out of memory",
+                .remedy = "end other programs, or give this one more"};
+    }
     return with_limit("out of memory", RLIMIT_AS, kMib, " MiB of addresses", "raise that limit (ulimit -v)");
 }
 
 /// A thread's stack takes from the process's address space and data, and the thread counts as a process of
 /// its user.
-std::string no_thread() {
+Error no_thread() {
     if (limit_of(RLIMIT_AS))
         return with_limit("no thread can be started", RLIMIT_AS, kMib, " MiB of addresses",
                           "raise that limit (ulimit -v), or those of threads (ulimit -u, TasksMax=)");
@@ -47,22 +52,28 @@ std::string no_thread() {
                       "raise that limit (ulimit -u), or the service's TasksMax=");
 }
 
-std::string words(int error_number) {
+/// Empty if it is the number of another fault.
+std::optional<Error> described(int error_number) {
     switch (error_number) {
         case EMFILE:
             return with_limit("no descriptor left", RLIMIT_NOFILE, 1, " open at once",
                               "raise that limit (ulimit -n)");
         case ENFILE:
-            return "the system has no descriptor left: end other programs, or raise fs.file-max";
+            return Error{.code = ErrorCode::no_resources,
+                         .what = "the system has no descriptor left",
+                         .remedy = "end other programs, or raise fs.file-max"};
         case EAGAIN:
             return no_thread();
         case ENOMEM:
             return no_memory();
-        case EFBIG:
-            return with_limit("the file would be too large", RLIMIT_FSIZE, 1, " bytes in one",
-                              "raise that limit (ulimit -f)");
+        case EFBIG: {
+            Error error = with_limit("the file would be too large", RLIMIT_FSIZE, 1, " bytes in one",
+                                     "raise that limit (ulimit -f)");
+            error.code = ErrorCode::too_large;
+            return error;
+        }
         default:
-            return {};
+            return std::nullopt;
     }
 }
 
@@ -75,14 +86,15 @@ std::optional<AppError> shortage_in(const std::exception& thrown) {
     if (failed == nullptr) return std::nullopt;
     const std::error_category& category = failed->code().category();
     if (category != std::generic_category() && category != std::system_category()) return std::nullopt;
-    const std::string what = words(failed->code().value());
-    if (what.empty()) return std::nullopt;
-    return AppError{ExitCode::no_resources, what + " (" + failed->what() + ")"};
+    auto error = described(failed->code().value());
+    if (!error) return std::nullopt;
+    error->what += std::string(" (") + failed->what() + ")";
+    return AppError{ExitCode::no_resources, std::move(*error)};
 }
 
 std::string reason_of(const std::exception& thrown) {
     const auto shortage = shortage_in(thrown);
-    return shortage ? shortage->message : thrown.what();
+    return shortage ? shortage->message() : thrown.what();
 }
 
 }  // namespace octoskin

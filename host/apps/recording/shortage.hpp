@@ -14,7 +14,7 @@ namespace octoskin {
 /// Resources: memory, descriptors, threads, the size of a file.
 [[nodiscard]] std::optional<AppError> shortage_in(const std::exception& thrown);
 
-/// The message of that shortage, or else the exception's own text.
+/// The sentence of that shortage, or else the exception's own text.
 [[nodiscard]] std::string reason_of(const std::exception& thrown);
 
 }  // namespace octoskin

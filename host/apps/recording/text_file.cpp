@@ -62,21 +62,24 @@ Descriptor open_as_it_is(const std::filesystem::path& typed) {
     return Descriptor(::fcntl(number, F_DUPFD_CLOEXEC, 0));
 }
 
-Unexpected<AppError> cannot_write(const FilePlace& file, int error) {
-    return fail(ExitCode::cannot_create, fmt::format("{}: cannot be written ({}): {}", file.shown().string(),
-                                                     std::generic_category().message(error),
-                                                     remedy_of({error, std::generic_category()})));
+Unexpected<AppError> cannot_write(const FilePlace& file, int error,
+                                  ErrorCode code = ErrorCode::system_error) {
+    return cannot_create(
+        file.shown(), {.code = code,
+                       .what = fmt::format("cannot be written ({})", std::generic_category().message(error)),
+                       .remedy = remedy_of({error, std::generic_category()})});
 }
 
 Unexpected<AppError> cannot_write(const FilePlace& file, const FolderError& error) {
     // Faults that another place on the disk would not avoid.
     const bool is_of_folder = error.fault == FolderFault::link || error.fault == FolderFault::foreign_owner ||
                               error.fault == FolderFault::outside;
-    if (is_of_folder) return cannot_create(error.path, error.reason());
     const bool is_typed_itself = file.folder() == nullptr && error.path == file.shown();
-    if (error.fault == FolderFault::is_there && !is_typed_itself)
-        return cannot_create(error.path, error.reason());
-    return cannot_write(file, error.error_number);
+    if (is_of_folder || (error.fault == FolderFault::is_there && !is_typed_itself))
+        return fail(ExitCode::cannot_create, to_error(error));
+    const bool is_in_the_way = error.fault == FolderFault::is_there;  // and is not a regular file
+    return cannot_write(file, error.error_number,
+                        is_in_the_way ? ErrorCode::wrong_kind_of_file : code_of(error.fault));
 }
 
 }  // namespace
@@ -129,10 +132,17 @@ Status<AppError> check_text_place(const FilePlace& file) {
 Status<AppError> copy_file(const FilePlace& from, const FilePlace& to) {
     constexpr std::size_t kBytesMax = std::size_t{64} << 20U;  // four times the size limit of a robot file
     const auto opened = from.open();
-    if (!opened) return cannot_create(to.shown(), opened.error().message());
+    const std::string before = fmt::format("cannot be copied to {}: ", to.shown().string());
+    if (!opened) return fail(ExitCode::cannot_create, to_error(opened.error(), before));
     const auto bytes = opened->read(kBytesMax);
-    if (!bytes) return cannot_create(to.shown(), bytes.error().message());
-    if (bytes->size() > kBytesMax) return cannot_create(to.shown(), from.shown().string() + " is too large");
+    if (!bytes) return fail(ExitCode::cannot_create, to_error(bytes.error(), before));
+    if (bytes->size() > kBytesMax) {
+        return fail(ExitCode::cannot_create,
+                    {.code = ErrorCode::too_large,
+                     .what = fmt::format("{}expected at most {} MiB", before, kBytesMax >> 20U),
+                     .value = "more",
+                     .file = from.shown()});
+    }
     return write_text(to, *bytes);
 }
 

@@ -48,7 +48,7 @@ constexpr std::array kCounterMeanings = {
                    Cause::other_device, kOtherDevices},
     CounterMeaning{"CAN frames", "unknown_type", "an identifier that the protocol does not assign",
                    Cause::other_device, kOtherDevices},
-    CounterMeaning{"CAN frames", "wrong_length", "not the length of its type", Cause::other_device,
+    CounterMeaning{"CAN frames", "wrong_length", "the length is not that of its type", Cause::other_device,
                    kOtherDevices},
     CounterMeaning{"CAN frames", "wrong_crc", "the checksum in the frame does not match its content",
                    Cause::other_device, kOtherDevices},

@@ -2,24 +2,19 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/errors/error.hpp"
 
 namespace octoskin {
-
-/// Why no further frame follows: fault, place and remedy, as text for the user.
-struct DepthSourceError {
-    std::string what;
-    bool is_reader_missing = false;  ///< the program that reads them is missing: nothing is known of them
-};
 
 class DepthSource {
   public:
     virtual ~DepthSource() = default;
     /// The next frame; empty at the regular end and in all later calls. Capture times never decrease.
-    [[nodiscard]] virtual Result<std::optional<DepthFrame>, DepthSourceError> next() = 0;
+    /// ErrorCode::no_program: the program that reads the frames is missing, and nothing is known of them.
+    [[nodiscard]] virtual Result<std::optional<DepthFrame>, Error> next() = 0;
 };
 
 }  // namespace octoskin

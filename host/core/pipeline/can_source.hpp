@@ -2,11 +2,11 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
+#include "host/errors/error.hpp"
 
 namespace octoskin {
 
@@ -15,16 +15,11 @@ struct StampedFrame {
     wire::CanFrame frame;
 };
 
-/// Why no further frame will come: fault, place and remedy, for people.
-struct CanSourceError {
-    std::string what;
-};
-
 class CanSource {
   public:
     virtual ~CanSource() = default;
     /// The next frame in the order of arrival; empty at the regular end and in every later call.
-    [[nodiscard]] virtual Result<std::optional<StampedFrame>, CanSourceError> next() = 0;
+    [[nodiscard]] virtual Result<std::optional<StampedFrame>, Error> next() = 0;
 };
 
 }  // namespace octoskin

@@ -12,19 +12,15 @@
 #include "host/core/pipeline/commit.hpp"
 #include "host/core/pipeline/map_builder.hpp"
 #include "host/core/pipeline/replay.hpp"
+#include "host/errors/error.hpp"
 
 namespace octoskin {
-
-/// Why no further commit will come: fault, place and remedy, for people.
-struct CommitSourceError {
-    std::string what;
-};
 
 class CommitSource {
   public:
     virtual ~CommitSource() = default;
     /// The next commit in the daemon's order; empty at the end and in every later call.
-    [[nodiscard]] virtual Result<std::optional<Commit>, CommitSourceError> next() = 0;
+    [[nodiscard]] virtual Result<std::optional<Commit>, Error> next() = 0;
 };
 
 struct OrderedOutcome {
@@ -36,8 +32,8 @@ struct OrderedOutcome {
     std::optional<HostTime> begin;    ///< of the recording
     std::optional<HostTime> now;      ///< of the newest commit
     /// A source that failed before its end; its inputs until then were used.
-    std::optional<CommitSourceError> order_error;
-    std::optional<DepthSourceError> depth_error;
+    std::optional<Error> order_error;
+    std::optional<Error> depth_error;
 
     /// True if everything that went into the daemon's maps went into these.
     [[nodiscard]] bool took_all() const noexcept {

@@ -31,7 +31,7 @@ class DepthFeed {
         if (source_ == nullptr) {
             return;
         }
-        Result<std::optional<DepthFrame>, DepthSourceError> frame = source_->next();
+        Result<std::optional<DepthFrame>, Error> frame = source_->next();
         if (frame) {
             next_ = std::move(frame).value();
             return;
@@ -46,7 +46,7 @@ class DepthFeed {
 };
 
 std::optional<StampedFrame> next_frame(CanSource& can, ReplayOutcome& outcome) {
-    Result<std::optional<StampedFrame>, CanSourceError> frame = can.next();
+    Result<std::optional<StampedFrame>, Error> frame = can.next();
     if (frame) {
         return std::move(frame).value();
     }

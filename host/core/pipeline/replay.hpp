@@ -25,8 +25,8 @@ struct ReplayProgress {
 struct ReplayOutcome {
     ReplayProgress progress;
     /// A source that failed before its end; its inputs until then were used.
-    std::optional<CanSourceError> can_error;
-    std::optional<DepthSourceError> depth_error;
+    std::optional<Error> can_error;
+    std::optional<Error> depth_error;
     [[nodiscard]] bool is_complete() const { return !can_error && !depth_error; }
 };
 

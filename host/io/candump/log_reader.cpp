@@ -12,13 +12,18 @@
 namespace octoskin::candump {
 namespace {
 
-std::string reason_of(const FolderError& error) {
-    if (error.fault == FolderFault::not_a_file && error.what == "a folder")
-        return "is a directory; give the log file itself";
-    if (error.fault == FolderFault::not_a_file)
-        return "is a pipe or a device; write the log into a regular file first";
-    if (error.fault == FolderFault::link) return error.message();
-    return std::string("cannot open: ") + std::strerror(error.error_number);
+Error cannot_open(const FilePlace& file, const FolderError& error) {
+    Error refused = to_error(error);
+    if (error.fault == FolderFault::link) return refused;
+    refused.file = file.shown();
+    if (error.fault != FolderFault::not_a_file) {
+        refused.what = std::string("cannot open: ") + std::strerror(error.error_number);
+        return refused;
+    }
+    const bool is_folder = error.what == "a directory";
+    refused.what = is_folder ? "is a directory" : "is a pipe or a device";
+    refused.remedy = is_folder ? "give the log file itself" : "write the log into a regular file first";
+    return refused;
 }
 
 /// The beginning of a file: enough to recognise its format and the reference of its times.
@@ -81,13 +86,14 @@ std::string shown(std::string_view line) {
 
 }  // namespace
 
-Result<LogReader, LogError> LogReader::open(const FilePlace& file) {
+Result<LogReader, Error> LogReader::open(const FilePlace& file) {
     const auto opened = file.open();
-    if (!opened) return unexpected(LogError{file.shown(), reason_of(opened.error())});
+    if (!opened) return unexpected(cannot_open(file, opened.error()));
     const auto stream = [&] { return std::ifstream(opened->path_for_libraries(), std::ios::binary); };
     std::ifstream lines = stream();
     if (!lines)
-        return unexpected(LogError{file.shown(), std::string("cannot open: ") + std::strerror(errno)});
+        return unexpected(in_file(
+            {ErrorCode::system_error, std::string("cannot open: ") + std::strerror(errno)}, file.shown()));
     Beginning beginning = beginning_of(stream());
     return LogReader(file.shown(), LineStream(std::move(lines), kLineBytesMax), std::move(beginning.text),
                      beginning.stamps);
@@ -100,12 +106,13 @@ void LogReader::note(LineFault fault) {
         first_fault_ = FirstFault{lines_.number(), fault, shown(lines_.line())};
 }
 
-Result<std::optional<LogEntry>, LogError> LogReader::next() {
+Result<std::optional<LogEntry>, Error> LogReader::next() {
     while (true) {  // until the end of the file
         const LineStream::End end = lines_.next();
         if (lines_.has_failed()) {
-            return unexpected(
-                LogError{file_, "reading failed after line " + std::to_string(lines_.number())});
+            return unexpected(in_file(
+                {ErrorCode::system_error, "reading failed after line " + std::to_string(lines_.number())},
+                file_));
         }
         if (end == LineStream::End::nothing_left) return std::optional<LogEntry>{};
         inputs_.count_in();
@@ -126,25 +133,30 @@ Result<std::optional<LogEntry>, LogError> LogReader::next() {
             inputs_.use();
             return std::optional<LogEntry>(std::move(entry).value());
         }
-        // A line that is cut off may look like a shorter frame; its checksum decides that later. If it cannot
-        // be parsed, it counts as cut off.
+        // A line that is cut off may look like a shorter frame; its checksum is checked later. A line that
+        // cannot be parsed counts as cut off.
         const bool is_cut_off = end == LineStream::End::end_of_file && entry.error() != LineFault::blank;
         note(is_cut_off ? LineFault::truncated : entry.error());
     }
 }
 
-std::optional<LogError> LogReader::foreign_file() const {
+std::optional<Error> LogReader::foreign_file() const {
     if (inputs_.used() > 0 || !first_fault_) return std::nullopt;
     const std::string name = file_.filename().string();
     if (const ForeignFormat* const format = foreign_format_of(begin_)) {
-        return LogError{file_,
-                        "is a log in the format " + std::string(format->name) +
-                            "; make one of candump's of it: " + conversion(*format, name, "candump.log") +
-                            " (docs/reference/recording-folder.md has what each command needs)"};
+        return Error{.code = ErrorCode::foreign_format,
+                     .what = "is a log in the format " + std::string(format->name),
+                     .remedy = "convert it to candump's format: " + conversion(*format, name, "candump.log") +
+                               " (docs/reference/recording-folder.md explains the command)",
+                     .file = file_};
     }
-    return LogError{file_, "no line is a frame in candump's format: line " +
-                               std::to_string(first_fault_->line) + " " + lack(first_fault_->fault) + ": '" +
-                               first_fault_->text + "'; record with `candump -L can0 > can.log`"};
+    return Error{
+        .code = ErrorCode::foreign_format,
+        .what = std::string("no line is a frame in candump's format; this one ") + lack(first_fault_->fault),
+        .value = "'" + first_fault_->text + "'",
+        .remedy = "record with `candump -L can0 > can.log`",
+        .file = file_,
+        .line = static_cast<int>(first_fault_->line)};
 }
 
 }  // namespace octoskin::candump

@@ -8,6 +8,7 @@
 
 #include "common/result.hpp"
 #include "host/core/counters/input_counters.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/candump/log_line.hpp"
 #include "host/io/candump/stamp_kind.hpp"
 #include "host/io/folder/file_place.hpp"
@@ -15,23 +16,16 @@
 
 namespace octoskin::candump {
 
-/// The file itself cannot be read: "can.log: cannot open: No such file or directory".
-struct LogError {
-    std::filesystem::path file;
-    std::string what;
-    [[nodiscard]] std::string message() const { return file.string() + ": " + what; }
-};
-
 /// Holds one line in memory. Speed: about 2 million lines a second. Text may be UTF-8 or UTF-16. Times that
 /// are differences (`candump -t d`) are added up.
 class LogReader {
   public:
     /// Reads the first few thousand lines to find the reference of the times.
-    [[nodiscard]] static Result<LogReader, LogError> open(const FilePlace& file);
+    [[nodiscard]] static Result<LogReader, Error> open(const FilePlace& file);
 
     /// The next line with a frame; empty at the end of the file and at every later call. An error means that
     /// reading failed; earlier entries stay valid.
-    [[nodiscard]] Result<std::optional<LogEntry>, LogError> next();
+    [[nodiscard]] Result<std::optional<LogEntry>, Error> next();
 
     /// Counters of the lines.
     [[nodiscard]] const InputCounters<LineFault>& inputs() const noexcept { return inputs_; }
@@ -42,7 +36,7 @@ class LogReader {
 
     /// For a file that was read to its end and has lines, but no frame: the fault of the first line, and the
     /// remedy. For a log of another program that is the command that converts it.
-    [[nodiscard]] std::optional<LogError> foreign_file() const;
+    [[nodiscard]] std::optional<Error> foreign_file() const;
     [[nodiscard]] StampKind stamps() const noexcept { return stamps_; }
 
   private:

@@ -17,10 +17,10 @@ class LogSource final : public CanSource {
     explicit LogSource(LogReader reader, std::string interface = "")
         : reader_(std::move(reader)), interface_(std::move(interface)) {}
 
-    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override {
+    [[nodiscard]] Result<std::optional<StampedFrame>, Error> next() override {
         for (;;) {
-            Result<std::optional<LogEntry>, LogError> entry = reader_.next();
-            if (!entry) return unexpected(CanSourceError{entry.error().message()});
+            Result<std::optional<LogEntry>, Error> entry = reader_.next();
+            if (!entry) return unexpected(entry.error());
             if (!*entry) return std::optional<StampedFrame>{};
             if (interface_.empty() || (*entry)->interface == interface_) {
                 newest_interface_ = std::move((*entry)->interface);

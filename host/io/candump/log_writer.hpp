@@ -16,15 +16,15 @@ class LogWriter {
   public:
     /// Creates `file` and replaces an existing one. `interface`: the name on every line; an error if it is
     /// not valid (wire::is_interface_name).
-    [[nodiscard]] static Result<LogWriter, LogError> create(const FilePlace& file,
-                                                            std::string interface = "can0");
+    [[nodiscard]] static Result<LogWriter, Error> create(const FilePlace& file,
+                                                         std::string interface = "can0");
 
     /// Appends one line. Buffered: a full disk may be reported only by `close()`. Asserts as `format_line()`
     /// does.
-    [[nodiscard]] Status<LogError> write(WallTime stamp, const wire::CanFrame& frame);
+    [[nodiscard]] Status<Error> write(WallTime stamp, const wire::CanFrame& frame);
 
     /// Flushes and closes. Without this call a write error may remain undetected.
-    [[nodiscard]] Status<LogError> close();
+    [[nodiscard]] Status<Error> close();
 
   private:
     LogWriter(std::filesystem::path file, std::ofstream stream, std::string interface)

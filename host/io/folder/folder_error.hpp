@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "host/errors/error.hpp"
+
 namespace octoskin {
 
 enum class FolderFault : std::uint8_t {
@@ -25,10 +27,14 @@ struct FolderError {
     int error_number = 0;        ///< errno
     std::string what = {};       ///< for not_a_file: "a named pipe"; for foreign_owner: the owner
 
-    /// "rec/maps: is a symbolic link; links are not followed below the named folder: ...".
+    /// "rec/maps: is a symbolic link, and links are not followed below the named folder: ...".
     [[nodiscard]] std::string message() const;
     /// The message without the path.
     [[nodiscard]] std::string reason() const;
 };
+
+[[nodiscard]] ErrorCode code_of(FolderFault fault) noexcept;
+/// `before` begins the sentence: "cannot be read: ".
+[[nodiscard]] Error to_error(const FolderError& error, const std::string& before = {});
 
 }  // namespace octoskin

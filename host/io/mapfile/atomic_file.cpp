@@ -75,13 +75,19 @@ std::string draft_name_of(const std::string& file) {
     return fmt::format(".{}{}", file, kPartialSuffix);
 }
 
-std::string SaveError::message() const {
-    const std::string reason =
-        error_number == 0 ? "the path does not name a file" : std::generic_category().message(error_number);
-    const char* const outcome = step == SaveStep::sync_directory
+Error to_error(const SaveError& error) {
+    const std::string reason = error.error_number == 0 ? "the path does not name a file"
+                                                       : std::generic_category().message(error.error_number);
+    const char* const outcome = error.step == SaveStep::sync_directory
                                     ? "the new file is in place, but may not survive a power failure"
                                     : "the old file, if any, is unchanged";
-    return fmt::format("{}: {} failed ({}); {}", file.string(), name_of(step), reason, outcome);
+    return {.code = error.step == SaveStep::name ? ErrorCode::bad_name : ErrorCode::system_error,
+            .what = fmt::format("{} failed ({}); {}", name_of(error.step), reason, outcome),
+            .file = error.file};
+}
+
+std::string SaveError::message() const {
+    return to_error(*this).message();
 }
 
 /// The temporary file beside the one that it replaces. Each function returns the failed step; errno has the

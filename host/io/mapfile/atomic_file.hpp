@@ -52,6 +52,8 @@ struct SaveError {
     [[nodiscard]] std::string message() const;
 };
 
+[[nodiscard]] Error to_error(const SaveError& error);
+
 /// Which owner and mode the new file gets.
 enum class Attributes : std::uint8_t { of_a_new_file, of_the_old_file };
 

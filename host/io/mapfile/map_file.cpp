@@ -13,7 +13,7 @@
 namespace octoskin {
 namespace {
 
-constexpr float kLogOddsMax = 100.0F;       // the limit of a mapping file
+constexpr float kLogOddsMax = 100.0F;       // the largest log-odds in a mapping file
 constexpr std::uint64_t kBytesPerNode = 5;  ///< in an .ot file: log-odds, and a bit for each child
 constexpr std::size_t kHeaderBytesMax =
     4096;  ///< for a map that octoskin saved, including comments added later
@@ -25,14 +25,35 @@ std::uint64_t file_bytes_max_of(const MapConfig& config) {
     return (std::uint64_t{config.memory_max_mib} << 20U) * 3 / 2 + (std::uint64_t{1} << 20U);
 }
 
-Unexpected<MapFileError> fail(const std::filesystem::path& file, const std::string& what,
-                              bool is_too_large = false) {
-    return unexpected(MapFileError{fmt::format("{}: {}", file.string(), what), is_too_large});
+/// The code of a fault in a map file.
+ErrorCode code_of(MapFault fault) {
+    switch (fault) {
+        case MapFault::no_room:
+        case MapFault::too_many_nodes:
+            return ErrorCode::too_large;
+        case MapFault::truncated:
+        case MapFault::trailing_bytes:
+        case MapFault::node_count_differs:
+        case MapFault::inner_node_empty:
+        case MapFault::too_deep:
+            return ErrorCode::damaged;
+        case MapFault::not_a_map:
+            return ErrorCode::foreign_format;
+        case MapFault::wrong_tree_type:
+            return ErrorCode::unsupported;
+        case MapFault::header_malformed:
+        case MapFault::resolution_not_valid:
+            return ErrorCode::bad_syntax;
+        case MapFault::log_odds_not_finite:
+        case MapFault::log_odds_outside_clamps:
+            break;
+    }
+    return ErrorCode::out_of_range;
 }
 
 }  // namespace
 
-Result<FileDraft, MapFileError> draft_map(const FusedMap& map, const FilePlace& file) {
+Result<FileDraft, Error> draft_map(const FusedMap& map, const FilePlace& file) {
     const std::string extension = file.shown().extension().string();
     ByteSource content;
     if (extension == ".ot") {
@@ -42,35 +63,37 @@ Result<FileDraft, MapFileError> draft_map(const FusedMap& map, const FilePlace& 
     } else if (extension == ".ply") {
         content = [&map](const ByteSink& sink) { (void)sink(encode_ply(map)); };
     } else {
-        return fail(file.shown(), fmt::format("extension \"{}\" is not one of .ot, .bt, .ply", extension));
+        return unexpected(Error{.code = ErrorCode::unknown_word,
+                                .what = "expected one of the extensions .ot, .bt, .ply",
+                                .value = fmt::format("\"{}\"", extension),
+                                .file = file.shown()});
     }
     auto draft = FileDraft::write(file, content);
-    if (!draft) return unexpected(MapFileError{draft.error().message(), false});
+    if (!draft) return unexpected(to_error(draft.error()));
     return std::move(draft).value();
 }
 
-Result<std::uint32_t, MapFileError> save_map(const FusedMap& map, const FilePlace& file) {
+Result<std::uint32_t, Error> save_map(const FusedMap& map, const FilePlace& file) {
     auto draft = draft_map(map, file);
     if (!draft) return unexpected(draft.error());
-    if (const auto put = put_in_place({&*draft, 1}); !put)
-        return unexpected(MapFileError{put.error().message(), false});
+    if (const auto put = put_in_place({&*draft, 1}); !put) return unexpected(to_error(put.error()));
     return draft->crc();
 }
 
-std::string describe_other_voxels(const std::filesystem::path& file, double map_m, double mapping_m) {
-    return file.string() + ": its voxels are " + std::to_string(map_m) + " m, the mapping's are " +
-           std::to_string(mapping_m) + " m";
+Error other_voxels(const std::filesystem::path& file, double map_m, double mapping_m) {
+    return {.code = ErrorCode::mismatch,
+            .what = "expected voxels of " + std::to_string(mapping_m) + " m, those of the mapping",
+            .value = std::to_string(map_m) + " m",
+            .file = file};
 }
 
-Result<LoadedMap, MapFileError> load_map(const FilePlace& file, const MapReadLimits& limits,
-                                         std::uint64_t file_bytes_max) {
+Result<LoadedMap, Error> load_map(const FilePlace& file, const MapReadLimits& limits,
+                                  std::uint64_t file_bytes_max) {
     const auto bytes = read_whole_file(file, file_bytes_max);
-    if (!bytes) return unexpected(MapFileError{bytes.error().message, bytes.error().is_too_large});
+    if (!bytes) return unexpected(bytes.error());
     auto map = decode_octomap(*bytes, limits);
     if (!map) {
-        const MapFault fault = map.error().fault;
-        return fail(file.shown(), map.error().what,
-                    fault == MapFault::no_room || fault == MapFault::too_many_nodes);
+        return unexpected(in_file({code_of(map.error().fault), map.error().what}, file.shown()));
     }
     for (std::string& warning : map->warnings)
         warning = fmt::format("{}: {}", file.shown().string(), warning);
@@ -86,29 +109,29 @@ bool is_saved_by_octoskin(const FilePlace& file) {
     return header && header->is_octoskins;
 }
 
-Result<LoadedMap, MapFileError> load_map_of(const MapConfig& config, const FilePlace& file) try {
+Result<LoadedMap, Error> load_map_of(const MapConfig& config, const FilePlace& file) try {
     const std::uint64_t bytes_max = file_bytes_max_of(config);
     MapConfig any_clamps = config;
     any_clamps.log_odds_min = -kLogOddsMax;
     any_clamps.log_odds_max = kLogOddsMax;
     auto loaded = load_map(file, {.map = any_clamps, .nodes_max = bytes_max / kBytesPerNode}, bytes_max);
-    if (!loaded && loaded.error().is_too_large) {
-        return fail(file.shown(),
-                    fmt::format("it was saved with more memory than the {} MiB of map.memory_max_mib: raise "
-                                "that in the mapping file ({})",
-                                config.memory_max_mib, loaded.error().message),
-                    true);
+    if (!loaded && loaded.error().code == ErrorCode::too_large) {
+        return unexpected(Error{
+            .code = ErrorCode::too_large,
+            .what = fmt::format("it was saved with more memory than the {} MiB of map.memory_max_mib ({})",
+                                config.memory_max_mib, loaded.error().reason()),
+            .remedy = "raise that in the mapping file",
+            .file = file.shown()});
     }
     if (!loaded) return loaded;
     if (loaded->map.resolution_m() != config.resolution_m) {
-        return unexpected(MapFileError{
-            .message = describe_other_voxels(file.shown(), loaded->map.resolution_m(), config.resolution_m),
-            .is_of_other_voxels = true});
+        return unexpected(other_voxels(file.shown(), loaded->map.resolution_m(), config.resolution_m));
     }
     loaded->map.limit(config);
     return loaded;
 } catch (const std::bad_alloc&) {
-    return fail(file.shown(), "there is not enough memory to read it");
+    return unexpected(
+        in_file({ErrorCode::no_resources, "there is not enough memory to read it"}, file.shown()));
 }
 
 }  // namespace octoskin

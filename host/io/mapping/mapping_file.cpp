@@ -58,60 +58,76 @@ void check_map(const Table& table, const MappingConfig& config) {
     const MapConfig& map = config.map;
     if (map.log_odds_occupied <= map.log_odds_min || map.log_odds_occupied > map.log_odds_max) {
         table.fail("log_odds_occupied",
-                   "expected a value above log_odds_min and up to log_odds_max: otherwise no voxel could be "
-                   "free, or none occupied");
+                   {ErrorCode::conflict,
+                    "expected a value above log_odds_min and up to log_odds_max, because "
+                    "otherwise no voxel could be free, or none occupied"});
     }
 }
 
 void check_age(const Table& table, const MappingConfig& config) {
     const AgeModel& age = config.map.age;
     if (age.unknown_after_s > 0 && age.unknown_after_s <= age.stale_after_s) {
-        table.fail("unknown_after_s", fmt::format("expected more than stale_after_s, {}, or 0 (never), found "
-                                                  "{}: an unknown voxel cannot be stale",
-                                                  age.stale_after_s, age.unknown_after_s));
+        table.fail(
+            "unknown_after_s",
+            {ErrorCode::conflict,
+             fmt::format("expected more than stale_after_s, {}, or 0 (never), because an unknown voxel "
+                         "cannot be stale",
+                         age.stale_after_s),
+             fmt::format("{}", age.unknown_after_s)});
     }
 }
 
 void check_filter(const Table& table, const MappingConfig& config) {
     const DepthFilterConfig& filter = config.depth_filter;
     if (filter.window % 2 == 0) {
-        table.fail("window_px", fmt::format("expected an odd number, found {}", filter.window));
+        table.fail("window_px",
+                   {ErrorCode::bad_value, "expected an odd number", std::to_string(filter.window)});
     }
     for (const auto& [key, gate_m] :
          {std::pair("gate_sigmas", filter.gate_m()), {"mean_sigmas", filter.mean_gate_m()}}) {
         if (gate_m > DepthFilterConfig::kGateMax_m)
-            table.fail(key, fmt::format("times sigma_m it is {} m; at most {} m", gate_m,
-                                        DepthFilterConfig::kGateMax_m));
+            table.fail(key,
+                       {ErrorCode::out_of_range,
+                        fmt::format("expected at most {} m times sigma_m", DepthFilterConfig::kGateMax_m),
+                        fmt::format("{} m", gate_m)});
     }
     const std::uint32_t pixels = filter.window * filter.window;
     if (filter.is_enabled && filter.min_support >= pixels) {
-        table.fail("min_support",
-                   fmt::format("expected at most {} with window_px {}, found {}: a value needs more pixels "
-                               "than that, its window has {}, so none would remain; lower it, widen "
-                               "window_px, or set is_enabled: false",
-                               pixels - 1, filter.window, filter.min_support, pixels));
+        table.fail(
+            "min_support",
+            {ErrorCode::conflict,
+             fmt::format("expected at most {} with window_px {}, because its window has {} pixels and a "
+                         "value needs more than this number of them",
+                         pixels - 1, filter.window, pixels),
+             std::to_string(filter.min_support), "lower it, widen window_px, or set is_enabled: false"});
     }
 }
 
 void check_standing(const Table& table, const MappingConfig& config) {
     if (config.standing.readings == 1)
-        table.fail("readings", "expected 2 or more, or 0 (never), found 1: a single reading may be wrong");
+        table.fail("readings",
+                   {ErrorCode::out_of_range,
+                    "expected 2 or more, or 0 (never), because a single reading may be wrong", "1"});
 }
 
 void check_counts(const Table& table, const MappingConfig& config) {
     const CountModel& counts = config.map.counts;
     if (counts.hits_min >= counts.counts_max)
-        table.fail("hits_min", "expected less than counts_max: no voxel could have so many hits");
+        table.fail("hits_min", {ErrorCode::conflict,
+                                "expected less than counts_max, because no voxel could have so many hits",
+                                std::to_string(counts.hits_min)});
     if (counts.misses_min >= counts.counts_max)
-        table.fail("misses_min", "expected less than counts_max: no voxel could have so many misses");
+        table.fail("misses_min", {ErrorCode::conflict,
+                                  "expected less than counts_max, because no voxel could have so many misses",
+                                  std::to_string(counts.misses_min)});
 }
 
 void check_top(const Table& table, const MappingConfig& config) {
     if (config.refuses_contradicting_sensors && !config.reports_contradicting_sensors)
-        table.fail(
-            "refuses_contradicting_sensors",
-            "expected false because reports_contradicting_sensors is: a sensor is refused only after it "
-            "was reported");
+        table.fail("refuses_contradicting_sensors",
+                   {ErrorCode::conflict,
+                    "expected false because reports_contradicting_sensors is: a sensor is refused "
+                    "only after it was reported"});
 }
 
 /// The rules between the keys of one table, which hold where the file has the table.
@@ -158,8 +174,9 @@ MappingConfig read_checked(const FilePlace& file) {
     for (const std::string_view key : {"nodes", "robot", "sensor_defaults", "extends"}) {
         if (const rig::Value* found = document.find(key)) {
             rig::fail(*found, std::string(key),
-                      "not a key of a mapping file, but of a rig, which this looks like: give a mapping file "
-                      "(`octoskin mapping` prints one)");
+                      {.code = ErrorCode::foreign_format,
+                       .what = "not a key of a mapping file, but of a rig, which this looks like",
+                       .remedy = "give a mapping file (`octoskin mapping` prints one)"});
         }
     }
     const std::vector<std::string_view> names = names_at_top();
@@ -178,7 +195,7 @@ MappingConfig read_checked(const FilePlace& file) {
 
 }  // namespace
 
-Result<MappingConfig, MappingFileError> read_mapping(const std::string& name_or_file) {
+Result<MappingConfig, Error> read_mapping(const std::string& name_or_file) {
     for (const auto& [name, depth_update] : depth_update_words()) {
         if (name_or_file == name) return configuration_of(depth_update);
     }
@@ -190,11 +207,11 @@ Result<MappingConfig, MappingFileError> read_mapping(const std::string& name_or_
     return read_mapping_file(name_or_file);
 }
 
-Result<MappingConfig, MappingFileError> read_mapping_file(const FilePlace& file) {
+Result<MappingConfig, Error> read_mapping_file(const FilePlace& file) {
     try {
         return read_checked(file);
-    } catch (const rig::Fault& fault) {
-        return unexpected(fault.error);
+    } catch (const Error& error) {
+        return unexpected(error);
     }
 }
 

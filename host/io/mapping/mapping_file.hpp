@@ -12,9 +12,6 @@
 
 namespace octoskin {
 
-/// "my.yaml:12: depth_filter.window_px: expected an odd number, found 4".
-using MappingFileError = rig::RigError;
-
 /// The built-in configurations. `paper`: the paper's equations on noisy depth. `paper_noise_free_robot_seen`:
 /// the same with the robot left in the image; on depth without noise this matches what the paper's figures
 /// suggest. `fast`: depth filtered, each voxel looked up in the image. `robust`: depth filtered, each voxel
@@ -29,10 +26,10 @@ inline constexpr const char* kDefaultMapping = "fast";
 /// file starts from the configuration in its key `base` (default: kDefaultMapping) and overrides the keys it
 /// contains; host/config/ has all of them in full. Errors: an unknown key, a value of a wrong type or out of
 /// range.
-[[nodiscard]] Result<MappingConfig, MappingFileError> read_mapping(const std::string& name_or_file);
+[[nodiscard]] Result<MappingConfig, Error> read_mapping(const std::string& name_or_file);
 
 /// As above for a file, without built-in names.
-[[nodiscard]] Result<MappingConfig, MappingFileError> read_mapping_file(const FilePlace& file);
+[[nodiscard]] Result<MappingConfig, Error> read_mapping_file(const FilePlace& file);
 
 /// The whole configuration as YAML. Reading it back gives an equal one, and equal ones give equal text.
 [[nodiscard]] std::string mapping_text(const MappingConfig& config);

@@ -11,10 +11,6 @@ namespace {
 
 constexpr const char* kSchema = "octoskin-depth-epoch/1";
 
-Unexpected<DepthSourceError> failure(const std::filesystem::path& file, const std::string& what) {
-    return unexpected(DepthSourceError{file.string() + ": " + what});
-}
-
 DepthEpoch read_checked(const FilePlace& file) {
     const rig::Value document = rig::load_document(file);
     const rig::Table table(document, "", {"schema", "first_frame_us", "frames"});
@@ -28,9 +24,9 @@ DepthEpoch read_checked(const FilePlace& file) {
 
 }  // namespace
 
-Status<DepthSourceError> write_epoch(const FilePlace& file, const DepthEpoch& epoch) {
+Status<Error> write_epoch(const FilePlace& file, const DepthEpoch& epoch) {
     const auto created = file.create_anew();
-    if (!created) return unexpected(DepthSourceError{created.error().message()});
+    if (!created) return unexpected(to_error(created.error()));
     std::ofstream out(created->path_for_libraries());
     out << "# depth.oni counts its time from its first frame; this is when that was, on the host's monotonic "
            "clock.\n"
@@ -38,17 +34,23 @@ Status<DepthSourceError> write_epoch(const FilePlace& file, const DepthEpoch& ep
         << "first_frame_us: " << epoch.first_frame.ns / 1000 << '\n'
         << "frames: " << epoch.frames << '\n';
     out.close();
-    if (!out) return failure(file.shown(), "cannot write; is the disk full?");
+    if (!out) {
+        return unexpected(Error{.code = ErrorCode::system_error,
+                                .what = "cannot write",
+                                .remedy = "is the disk full?",
+                                .file = file.shown()});
+    }
     return Done{};
 }
 
-Result<DepthEpoch, DepthSourceError> read_epoch(const FilePlace& file) {
+Result<DepthEpoch, Error> read_epoch(const FilePlace& file) {
     if (const EntryKind kind = file.kind(); kind != EntryKind::file && kind != EntryKind::link)
-        return failure(file.shown(), "no such file; without it the depth frames have no time");
+        return unexpected(in_file(
+            {ErrorCode::not_found, "no such file; without it the depth frames have no time"}, file.shown()));
     try {
         return read_checked(file);
-    } catch (const rig::Fault& fault) {
-        return unexpected(DepthSourceError{fault.error.message()});
+    } catch (const Error& error) {
+        return unexpected(error);
     }
 }
 

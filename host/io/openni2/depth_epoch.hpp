@@ -16,7 +16,7 @@ struct DepthEpoch {
     std::uint64_t frames = 0;  ///< number of frames that the recording must have
 };
 
-[[nodiscard]] Status<DepthSourceError> write_epoch(const FilePlace& file, const DepthEpoch& epoch);
-[[nodiscard]] Result<DepthEpoch, DepthSourceError> read_epoch(const FilePlace& file);
+[[nodiscard]] Status<Error> write_epoch(const FilePlace& file, const DepthEpoch& epoch);
+[[nodiscard]] Result<DepthEpoch, Error> read_epoch(const FilePlace& file);
 
 }  // namespace octoskin::openni2

@@ -17,8 +17,8 @@ std::string with_end(std::string what, const std::optional<std::string>& how_it_
 
 }  // namespace
 
-Result<OniReader, DepthSourceError> OniReader::open(const FilePlace& oni, const FilePlace& epoch_file,
-                                                    std::optional<std::filesystem::path> helper) {
+Result<OniReader, Error> OniReader::open(const FilePlace& oni, const FilePlace& epoch_file,
+                                         std::optional<std::filesystem::path> helper) {
     const auto epoch = read_epoch(epoch_file);
     auto reader = start(oni, std::move(helper));
     if (!reader) return reader;
@@ -28,25 +28,23 @@ Result<OniReader, DepthSourceError> OniReader::open(const FilePlace& oni, const 
     return reader;
 }
 
-Result<OniReader, DepthSourceError> OniReader::open_alone(const FilePlace& oni,
-                                                          std::optional<std::filesystem::path> helper) {
+Result<OniReader, Error> OniReader::open_alone(const FilePlace& oni,
+                                               std::optional<std::filesystem::path> helper) {
     return start(oni, std::move(helper));
 }
 
-Result<OniReader, DepthSourceError> OniReader::start(const FilePlace& oni,
-                                                     std::optional<std::filesystem::path> helper) {
-    const auto failure = [&oni](const std::string& what) {
-        return unexpected(DepthSourceError{oni.shown().string() + ": " + what});
-    };
+Result<OniReader, Error> OniReader::start(const FilePlace& oni, std::optional<std::filesystem::path> helper) {
     const auto opened = oni.open();
     if (!opened) {
+        Error error = to_error(opened.error());
         const FolderFault fault = opened.error().fault;
         const bool is_clear = fault == FolderFault::link || fault == FolderFault::not_a_file;
-        return failure(is_clear ? opened.error().reason() : "no such file, or not a regular one");
+        if (!is_clear) error.what = "no such file, or not a regular one";
+        return unexpected(in_file(std::move(error), oni.shown()));
     }
     const auto program = find_helper(kReadHelper, helper);
     const auto without_reader = [&oni](const std::string& what) {
-        return unexpected(DepthSourceError{oni.shown().string() + ": " + what, true});
+        return unexpected(in_file({ErrorCode::no_program, what}, oni.shown()));
     };
     if (!program) return without_reader(program.error());
     auto process = HelperProcess::start(
@@ -58,20 +56,22 @@ Result<OniReader, DepthSourceError> OniReader::start(const FilePlace& oni,
     const auto patience = kReadPatience + time_to_check(error ? 0 : size);
     const auto header = FramePipe(process->descriptor(), patience).read_header();
     if (!header) {
-        return failure(
-            with_end("not a recording with depth that OpenNI2 can read", process->wait(kEndPatience)));
+        return unexpected(in_file(
+            {ErrorCode::foreign_format,
+             with_end("not a recording with depth that OpenNI2 can read", process->wait(kEndPatience))},
+            oni.shown()));
     }
     return OniReader(oni.shown(), std::move(*process), *header);
 }
 
-Unexpected<DepthSourceError> OniReader::fail(const std::string& what) {
+Unexpected<Error> OniReader::fail(const std::string& what) {
     const std::string of_all = frames_reported_ ? " of " + std::to_string(*frames_reported_) : "";
-    failure_ = DepthSourceError{file_.string() + ": " + what + " after " + std::to_string(frames_read_) +
-                                of_all + " frames"};
+    failure_ = in_file(
+        {ErrorCode::damaged, what + " after " + std::to_string(frames_read_) + of_all + " frames"}, file_);
     return unexpected(*failure_);
 }
 
-Result<std::optional<DepthFrame>, DepthSourceError> OniReader::next() {
+Result<std::optional<DepthFrame>, Error> OniReader::next() {
     if (failure_) return unexpected(*failure_);
     if (is_ended_) return std::optional<DepthFrame>{};
     auto piped = FramePipe(helper_.descriptor(), kReadPatience).read_frame(header_.size);

@@ -14,38 +14,38 @@ constexpr const char* kWriteHelper = "octoskin-oni-write";
 
 }  // namespace
 
-Unexpected<DepthSourceError> OniWriter::failure(const std::string& what) const {
-    return unexpected(DepthSourceError{oni_.shown().string() + ": " + what});
+Unexpected<Error> OniWriter::failure(const std::string& what) const {
+    return unexpected(in_file({ErrorCode::system_error, what}, oni_.shown()));
 }
 
-Result<OniWriter, DepthSourceError> OniWriter::create(const FilePlace& oni, const FilePlace& epoch,
-                                                      FrameSize size,
-                                                      std::optional<std::filesystem::path> helper) {
-    const auto failure = [&oni](const std::string& what) {
-        return unexpected(DepthSourceError{oni.shown().string() + ": " + what});
+Result<OniWriter, Error> OniWriter::create(const FilePlace& oni, const FilePlace& epoch, FrameSize size,
+                                           std::optional<std::filesystem::path> helper) {
+    const auto failure = [&oni](ErrorCode code, const std::string& what) {
+        return unexpected(in_file({code, what}, oni.shown()));
     };
     if (size.pixels() == 0 || size.pixels() > kPixelsMax || size.width > kSideMax || size.height > kSideMax) {
-        return failure("OpenNI2 cannot record images of " + std::to_string(size.width) + " x " +
-                       std::to_string(size.height) + " pixels, only up to 1600 x 1200");
+        return failure(ErrorCode::limit_exceeded,
+                       "OpenNI2 cannot record images of " + std::to_string(size.width) + " x " +
+                           std::to_string(size.height) + " pixels, only up to 1600 x 1200");
     }
     const auto program = find_helper(kWriteHelper, helper);
-    if (!program) return failure(program.error());
+    if (!program) return failure(ErrorCode::no_program, program.error());
     // An old sidecar must not make an unfinished recording look complete.
     const auto sidecar = epoch.parent_to_write();
-    if (!sidecar) return failure(sidecar.error().message());
+    if (!sidecar) return unexpected(to_error(sidecar.error()));
     if (const auto removed = sidecar->remove(epoch.filename()); !removed)
-        return failure(removed.error().message());
+        return unexpected(to_error(removed.error()));
     const auto created = oni.create_anew();
-    if (!created) return failure(created.error().reason());
+    if (!created) return unexpected(in_file(to_error(created.error()), oni.shown()));
     // The helper opens this file itself, even if the name of file or folder changes meanwhile, and continues
     // with it if this process is killed.
     const auto file = path_of_descriptor(HelperProcess::kInherited);
     auto process = HelperProcess::start(*program, {file.string(), oni.shown().string()},
                                         HelperPipe::its_input, HelperComplaints::kept, created->descriptor());
-    if (!process) return failure(process.error());
+    if (!process) return failure(ErrorCode::no_program, process.error());
     if (const auto written = FramePipe(process->descriptor(), kWritePatience).write_header({.size = size});
         !written) {
-        return failure(name(written.error()));
+        return failure(ErrorCode::system_error, name(written.error()));
     }
     return OniWriter(oni, epoch, size, std::move(*process));
 }
@@ -56,7 +56,7 @@ std::string OniWriter::why(const std::string& how) {
     return complaint.empty() ? how : complaint;
 }
 
-Status<DepthSourceError> OniWriter::write(HostTime captured, std::span<const std::uint16_t> depth_mm) {
+Status<Error> OniWriter::write(HostTime captured, std::span<const std::uint16_t> depth_mm) {
     assert(depth_mm.size() == size_.pixels());
     const HostTime whole_us{captured.ns / 1000 * 1000};
     if (epoch_.frames == 0) epoch_.first_frame = whole_us;
@@ -72,7 +72,7 @@ Status<DepthSourceError> OniWriter::write(HostTime captured, std::span<const std
     return Done{};
 }
 
-Status<DepthSourceError> OniWriter::close() {
+Status<Error> OniWriter::close() {
     if (const auto written = FramePipe(helper_.descriptor(), kWritePatience).write_end(); !written) {
         return failure(why(name(written.error())));
     }

@@ -24,20 +24,20 @@ class OniWriter {
     /// Creates `oni` and, on `close`, its sidecar `epoch`; existing ones are removed. Errors: a missing
     /// helper, images of more than 1600 x 1200 pixels. `helper`: a program to use instead of the installed
     /// octoskin-oni-write.
-    [[nodiscard]] static Result<OniWriter, DepthSourceError> create(
+    [[nodiscard]] static Result<OniWriter, Error> create(
         const FilePlace& oni, const FilePlace& epoch, FrameSize size,
         std::optional<std::filesystem::path> helper = std::nullopt);
     /// Frames must come in the order of their times. Asserts the size.
-    [[nodiscard]] Status<DepthSourceError> write(HostTime captured, std::span<const std::uint16_t> depth_mm);
+    [[nodiscard]] Status<Error> write(HostTime captured, std::span<const std::uint16_t> depth_mm);
     /// Waits for the recorder (3 ms for each of up to the last 600 frames of 512 x 424, fewer if larger) and
     /// writes the sidecar. Without this call the recording is incomplete. The bytes of the .oni depend on the
     /// frames only.
-    [[nodiscard]] Status<DepthSourceError> close();
+    [[nodiscard]] Status<Error> close();
 
   private:
     OniWriter(FilePlace oni, FilePlace epoch, FrameSize size, HelperProcess helper)
         : oni_(std::move(oni)), epoch_file_(std::move(epoch)), size_(size), helper_(std::move(helper)) {}
-    [[nodiscard]] Unexpected<DepthSourceError> failure(const std::string& what) const;
+    [[nodiscard]] Unexpected<Error> failure(const std::string& what) const;
     [[nodiscard]] std::string why(const std::string& how);
 
     FilePlace oni_;

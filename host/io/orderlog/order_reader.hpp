@@ -18,11 +18,11 @@ namespace octoskin::orderlog {
 class OrderReader final : public CommitSource {
   public:
     /// Errors name the file: it is missing, or does not begin like an order.log of this version.
-    [[nodiscard]] static Result<OrderReader, CommitSourceError> open(const FilePlace& file);
+    [[nodiscard]] static Result<OrderReader, Error> open(const FilePlace& file);
 
     /// An error names file and line: not a commit, a line after the end, or fewer commits than the end
     /// states. A file without an end, from a daemon that was killed, ends with its last complete line.
-    [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> next() override;
+    [[nodiscard]] Result<std::optional<Commit>, Error> next() override;
 
     [[nodiscard]] const Header& header() const noexcept { return header_; }
     /// After the end; empty if the recording was cut off.
@@ -35,8 +35,8 @@ class OrderReader final : public CommitSource {
         : file_(std::move(file)), stream_(std::move(stream)) {}
     /// False at the end of the file, or at an incomplete last line.
     [[nodiscard]] bool read_line();
-    [[nodiscard]] Unexpected<CommitSourceError> failure(const std::string& what) const;
-    [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> end(const Trailer& trailer);
+    [[nodiscard]] Unexpected<Error> failure(Error error) const;
+    [[nodiscard]] Result<std::optional<Commit>, Error> end(const Trailer& trailer);
 
     std::filesystem::path file_;
     std::ifstream stream_;

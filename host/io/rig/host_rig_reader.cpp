@@ -120,7 +120,7 @@ HostCamera host_camera(const rig::Camera& camera) {
     return host;
 }
 
-Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
+Result<HostSetup, Error> make_host_setup(const rig::Rig& rig) {
     auto robot = read_robot_model(rig.urdf, rig.base_link, rig.joints.joints);
     if (!robot) return unexpected(robot.error());
     const auto capsules = rig::padded_body(rig);
@@ -128,9 +128,12 @@ Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig) {
     HostRig host = to_host(rig);
     for (const rig::Capsule& capsule : *capsules) {
         if (!robot->find_link(capsule.link)) {
-            return unexpected(rig::RigError{rig.urdf.shown(), 0, "link " + capsule.link,
-                                            "has a <collision> but is not below the rig's base link '" +
-                                                rig.base_link + "': remove it, or use another base_link"});
+            return unexpected(Error{
+                .code = ErrorCode::conflict,
+                .what = "has a <collision> but is not below the rig's base link '" + rig.base_link + "'",
+                .remedy = "remove it, or use another base_link",
+                .file = rig.urdf.shown(),
+                .key = "link " + capsule.link});
         }
         host.body.push_back({capsule.link, capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
     }

@@ -25,6 +25,6 @@ struct HostSetup {
 
 /// Converts what the host core needs, and reads the robot's body and kinematics from `rig.urdf`. Errors:
 /// those of the URDF, and a body capsule on a link that is not below the rig's base link.
-[[nodiscard]] Result<HostSetup, rig::RigError> make_host_setup(const rig::Rig& rig);
+[[nodiscard]] Result<HostSetup, Error> make_host_setup(const rig::Rig& rig);
 
 }  // namespace octoskin

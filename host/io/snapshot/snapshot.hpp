@@ -13,6 +13,7 @@
 #include "common/time.hpp"
 #include "host/core/mapping/map_state.hpp"
 #include "host/core/mapping/mapping_config.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/mapfile/byte_sink.hpp"
 
 namespace octoskin {
@@ -38,29 +39,18 @@ struct Snapshot {
     MapState state;
 };
 
-enum class SnapshotFault : std::uint8_t {
-    no_snapshot,    ///< not a snapshot of any version
-    other_version,  ///< a snapshot of another version
-    damaged,        ///< cut off, changed, or not a possible state of a map
-    other_mapping,  ///< it belongs to another configuration, or to voxels of another size
-    no_room,        ///< it needs more memory than the configuration allows
-};
-
-struct SnapshotError {
-    SnapshotFault fault{};
-    std::string what;  ///< for the user
-};
-
 /// Passes all bytes to the sink. Equal states and origins give equal bytes. Needs memory for one block
 /// besides the state. Throws std::bad_alloc.
 void write_snapshot(const MapState& state, const SnapshotOrigin& origin, const ByteSink& sink);
 [[nodiscard]] std::string encode_snapshot(const MapState& state, const SnapshotOrigin& origin);
 
-/// Decodes any bytes. `mapping_crc32`: of mapping_text(mapping), to which the snapshot must belong. The map
-/// equals the written one bit for bit, except for its counters and memory. Throws std::bad_alloc.
-[[nodiscard]] Result<Snapshot, SnapshotError> decode_snapshot(std::string_view bytes,
-                                                              const MappingConfig& mapping,
-                                                              std::uint32_t mapping_crc32);
+/// Decodes any bytes. Errors, without file: ErrorCode::foreign_format (not a snapshot), unsupported
+/// (another version), damaged (cut off, changed, or not a possible state of a map), mismatch (another
+/// configuration or voxel size), too_large (more memory than the configuration allows). `mapping_crc32`: of
+/// mapping_text(mapping), to which the snapshot must belong. The map equals the written one bit for bit,
+/// except for its counters and memory. Throws std::bad_alloc.
+[[nodiscard]] Result<Snapshot, Error> decode_snapshot(std::string_view bytes, const MappingConfig& mapping,
+                                                      std::uint32_t mapping_crc32);
 
 /// The origin, from the first bytes (kSnapshotHeadMax are enough); empty if they are not of a snapshot.
 [[nodiscard]] std::optional<SnapshotOrigin> origin_of_snapshot(std::string_view bytes);

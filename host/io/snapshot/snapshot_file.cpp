@@ -1,6 +1,5 @@
 #include "host/io/snapshot/snapshot_file.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
@@ -31,22 +30,16 @@ Result<std::uint32_t, SaveError> save_snapshot(const MapState& state, const Snap
     return save_atomically(file, [&](const ByteSink& sink) { write_snapshot(state, origin, sink); });
 }
 
-Result<Snapshot, SnapshotError> load_snapshot(const FilePlace& file, const MappingConfig& mapping,
-                                              std::uint32_t mapping_crc32) try {
+Result<Snapshot, Error> load_snapshot(const FilePlace& file, const MappingConfig& mapping,
+                                      std::uint32_t mapping_crc32) try {
     const auto bytes = read_whole_file(file, file_bytes_max_of(mapping.map));
-    if (!bytes) {
-        const bool is_too_large = bytes.error().is_too_large;
-        return unexpected(SnapshotError{is_too_large ? SnapshotFault::no_room : SnapshotFault::no_snapshot,
-                                        bytes.error().message});
-    }
+    if (!bytes) return unexpected(bytes.error());
     auto snapshot = decode_snapshot(*bytes, mapping, mapping_crc32);
-    if (!snapshot)
-        return unexpected(SnapshotError{snapshot.error().fault,
-                                        fmt::format("{}: {}", file.shown().string(), snapshot.error().what)});
+    if (!snapshot) return unexpected(in_file(snapshot.error(), file.shown()));
     return snapshot;
 } catch (const std::bad_alloc&) {
-    return unexpected(SnapshotError{SnapshotFault::no_room,
-                                    file.shown().string() + ": there is not enough memory to read it"});
+    return unexpected(
+        in_file({ErrorCode::no_resources, "there is not enough memory to read it"}, file.shown()));
 }
 
 std::optional<SnapshotOrigin> origin_of_snapshot_file(const FilePlace& file) {

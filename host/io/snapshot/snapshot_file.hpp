@@ -22,9 +22,8 @@ namespace octoskin {
 /// As decode_snapshot; errors begin with the file's name. Needs memory of the file's size besides the map's.
 /// A file that cannot be read is `no_snapshot`. If there is not enough memory for it, or it is larger than
 /// any file saved with this configuration, the error is `no_room`.
-[[nodiscard]] Result<Snapshot, SnapshotError> load_snapshot(const FilePlace& file,
-                                                            const MappingConfig& mapping,
-                                                            std::uint32_t mapping_crc32);
+[[nodiscard]] Result<Snapshot, Error> load_snapshot(const FilePlace& file, const MappingConfig& mapping,
+                                                    std::uint32_t mapping_crc32);
 
 /// As origin_of_snapshot, without checks of the rest; also empty if the file cannot be read.
 [[nodiscard]] std::optional<SnapshotOrigin> origin_of_snapshot_file(const FilePlace& file);

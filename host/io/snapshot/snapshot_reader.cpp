@@ -14,7 +14,7 @@ namespace {
 
 using namespace snapshot;
 
-/// The limit of a mapping file.
+/// The largest log-odds in a mapping file.
 constexpr float kLogOddsMax = 100.0F;
 
 bool is_log_odds(float value) {
@@ -35,7 +35,7 @@ std::size_t known_voxels_of(const BrickTree& log_odds) {
     return known;
 }
 
-/// All counts have the same bricks; other layers have some of them.
+/// Hits and misses have the same bricks; the prior has some of these, and no others.
 bool are_of_one_layer(const CountLayer& counts) {
     bool are = counts.hits.bricks() == counts.misses.bricks();
     counts.misses.for_each([&](MortonCode brick, const BrickView&) { are = are && counts.has(brick); });
@@ -82,30 +82,30 @@ class Decoder {
     Decoder(std::string_view bytes, const MappingConfig& mapping, std::uint32_t mapping_crc32)
         : bytes_(bytes), mapping_(mapping), mapping_crc32_(mapping_crc32), blocks_(bytes) {}
 
-    Result<Snapshot, SnapshotError> decode() {
+    Result<Snapshot, Error> decode() {
         if (!blocks_.has_magic()) return no_snapshot();
         while (!is_done_) {
             const auto block = blocks_.next();
-            if (!block) return fail(SnapshotFault::damaged, blocks_.at(), "no complete and undamaged block");
+            if (!block) return fail(ErrorCode::damaged, blocks_.at(), "no complete and undamaged block");
             if (has_head_ == (block->kind == BlockKind::head))
-                return fail(SnapshotFault::damaged, block->at, "not exactly one head at the beginning");
+                return fail(ErrorCode::damaged, block->at, "not exactly one head at the beginning");
             if (const auto taken = take(*block); !taken) return unexpected(taken.error());
         }
-        if (!blocks_.is_over()) return fail(SnapshotFault::damaged, blocks_.at(), "bytes after the end");
+        if (!blocks_.is_over()) return fail(ErrorCode::damaged, blocks_.at(), "bytes after the end");
         FusedMap map(mapping_.map, std::move(layers_), has_undated_);
         return Snapshot{origin_, {std::move(map), std::move(histories_)}};
     }
 
   private:
-    using Taken = Status<SnapshotError>;
+    using Taken = Status<Error>;
 
-    static Unexpected<SnapshotError> fail(SnapshotFault fault, std::size_t at, std::string_view what) {
-        return unexpected(SnapshotError{fault, fmt::format("byte {}: {}", at, what)});
+    static Unexpected<Error> fail(ErrorCode code, std::size_t at, std::string_view what) {
+        return unexpected(Error{code, fmt::format("byte {}: {}", at, what)});
     }
-    Unexpected<SnapshotError> no_snapshot() const {
+    Unexpected<Error> no_snapshot() const {
         const std::string_view name = kMagic.substr(0, kMagic.size() - 1);
         const bool is_other = bytes_.size() >= kMagic.size() && bytes_.starts_with(name);
-        return fail(is_other ? SnapshotFault::other_version : SnapshotFault::no_snapshot, 0,
+        return fail(is_other ? ErrorCode::unsupported : ErrorCode::foreign_format, 0,
                     fmt::format("does not begin with '{}'", kMagic));
     }
 
@@ -131,16 +131,16 @@ class Decoder {
             case BlockKind::done:
                 return take_done(block);
         }
-        return fail(SnapshotFault::damaged, block.at, "a block of an unknown kind");
+        return fail(ErrorCode::damaged, block.at, "a block of an unknown kind");
     }
     static Taken records(const Block& block, bool are_taken) {
         if (are_taken) return Done{};
-        return fail(SnapshotFault::damaged, block.at,
+        return fail(ErrorCode::damaged, block.at,
                     fmt::format("the block {} has an invalid record", tag_of(block.kind)));
     }
     Taken bricks(const Block& block, BricksRead read) const {
         if (read != BricksRead::no_room) return records(block, read == BricksRead::all);
-        return fail(SnapshotFault::no_room, block.at,
+        return fail(ErrorCode::too_large, block.at,
                     fmt::format("it needs more memory than the {} MiB of map.memory_max_mib",
                                 mapping_.map.memory_max_mib));
     }
@@ -153,12 +153,12 @@ class Decoder {
         clock_ = head->clock;
         has_head_ = true;
         if (head->resolution_m != mapping_.map.resolution_m)
-            return fail(SnapshotFault::other_mapping, block.at,
+            return fail(ErrorCode::mismatch, block.at,
                         fmt::format("its voxels are {} m, the mapping's are {} m", head->resolution_m,
                                     mapping_.map.resolution_m));
         if (origin_.mapping_crc32 != mapping_crc32_)
             return fail(
-                SnapshotFault::other_mapping, block.at,
+                ErrorCode::mismatch, block.at,
                 fmt::format("it belongs to the mapping with CRC-32 {:08x}, the present one has {:08x}",
                             origin_.mapping_crc32, mapping_crc32_));
         return Done{};
@@ -209,8 +209,8 @@ class Decoder {
 
 }  // namespace
 
-Result<Snapshot, SnapshotError> decode_snapshot(std::string_view bytes, const MappingConfig& mapping,
-                                                std::uint32_t mapping_crc32) {
+Result<Snapshot, Error> decode_snapshot(std::string_view bytes, const MappingConfig& mapping,
+                                        std::uint32_t mapping_crc32) {
     return Decoder(bytes, mapping, mapping_crc32).decode();
 }
 

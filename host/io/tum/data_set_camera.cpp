@@ -41,27 +41,28 @@ std::optional<CameraIntrinsics> data_set_camera(std::string_view name) {
     return std::nullopt;
 }
 
-Result<CameraIntrinsics, DepthSourceError> calibrated_camera(const FilePlace& calibration,
-                                                             const FilePlace& image) {
+Result<CameraIntrinsics, Error> calibrated_camera(const FilePlace& calibration, const FilePlace& image) {
     constexpr std::size_t kRow = 4;
     constexpr std::size_t kMatrix = 9;
-    const std::string file = calibration.shown().string();
+    const std::filesystem::path file = calibration.shown();
     const auto text = read_small_file(calibration);
     if (!text) return unexpected(text.error());
     const auto numbers = parse_numbers(*text, kMatrix);
-    if (!numbers) return unexpected(DepthSourceError{file + ": " + numbers.error()});
+    if (!numbers) return unexpected(in_file({ErrorCode::bad_syntax, numbers.error()}, file));
     if (numbers->size() != kRow && numbers->size() != kMatrix) {
-        return unexpected(DepthSourceError{file + ": expected fx fy cx cy, or a 3 x 3 matrix, found " +
-                                           std::to_string(numbers->size()) + " numbers"});
+        return unexpected(in_file({ErrorCode::bad_syntax, "expected fx fy cx cy, or a 3 x 3 matrix",
+                                   std::to_string(numbers->size()) + " numbers"},
+                                  file));
     }
     const auto first = read_depth_png(image);
-    if (!first) return unexpected(DepthSourceError{image.shown().string() + ": " + first.error()});
+    if (!first) return unexpected(in_file({ErrorCode::bad_syntax, first.error()}, image.shown()));
     const std::vector<double>& n = *numbers;
     CameraIntrinsics camera =
         n.size() == kRow ? intrinsics(n[0], n[1], n[2], n[3]) : intrinsics(n[0], n[4], n[2], n[5]);
     camera.width = first->width;
     camera.height = first->height;
-    if (const char* const fault = fault_of(camera)) return unexpected(DepthSourceError{file + ": " + fault});
+    if (const char* const fault = fault_of(camera))
+        return unexpected(in_file({ErrorCode::out_of_range, fault}, file));
     return camera;
 }
 

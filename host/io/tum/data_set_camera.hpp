@@ -23,7 +23,7 @@ inline constexpr std::array<std::string_view, 6> kDataSetCameras{"kinect",    "f
 
 /// Reads `calibration`: the four numbers fx fy cx cy, or a 3 x 3 matrix; in both, pixel centres are whole
 /// numbers. The size is that of `image`. Errors name the file.
-[[nodiscard]] Result<CameraIntrinsics, DepthSourceError> calibrated_camera(const FilePlace& calibration,
-                                                                           const FilePlace& image);
+[[nodiscard]] Result<CameraIntrinsics, Error> calibrated_camera(const FilePlace& calibration,
+                                                                const FilePlace& image);
 
 }  // namespace octoskin::tum

@@ -98,7 +98,7 @@ std::optional<std::string> depth_images_of(const NamedFolder& folder) {
     return has_frames ? std::optional<std::string>(kFrameImages) : std::nullopt;
 }
 
-Result<DataSetFiles, DepthSourceError> find_data_set(const NamedFolder& folder) {
+Result<DataSetFiles, Error> find_data_set(const NamedFolder& folder) {
     const std::vector<std::string> names = names_in(folder);
     DataSetFiles files{.layout = &kLayouts.front(),
                        .images = first_there(folder, kImageLists),
@@ -114,9 +114,10 @@ Result<DataSetFiles, DepthSourceError> find_data_set(const NamedFolder& folder) 
     for (const DataSetLayout& layout : kLayouts) {
         const auto found = trajectories(names, layout.poses);
         if (found.size() > 1) {
-            return unexpected(DepthSourceError{folder.shown().string() + ": has " + found[0] + " and " +
-                                               found[1] +
-                                               ": move away those that do not belong to these images"});
+            return unexpected(Error{.code = ErrorCode::conflict,
+                                    .what = "has " + found[0] + " and " + found[1],
+                                    .remedy = "move away those that do not belong to these images",
+                                    .file = folder.shown()});
         }
         if (found.empty()) continue;
         files.layout = &layout;

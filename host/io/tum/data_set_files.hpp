@@ -49,6 +49,6 @@ struct DataSetFiles {
 [[nodiscard]] std::optional<std::string> depth_images_of(const NamedFolder& folder);
 
 /// The files of a folder that has depth images. An error names what is missing or ambiguous.
-[[nodiscard]] Result<DataSetFiles, DepthSourceError> find_data_set(const NamedFolder& folder);
+[[nodiscard]] Result<DataSetFiles, Error> find_data_set(const NamedFolder& folder);
 
 }  // namespace octoskin::tum

@@ -15,12 +15,12 @@ namespace {
 
 /// Why a file cannot belong to the data set: its name leads out of the folder, or to a link. Whether it
 /// exists and is an image is checked later.
-std::optional<std::string> elsewhere_fault(const FilePlace& image) {
+std::optional<Error> elsewhere_fault(const FilePlace& image) {
     const auto opened = image.open();
     if (opened) return std::nullopt;
     const FolderFault fault = opened.error().fault;
     if (fault != FolderFault::link && fault != FolderFault::outside) return std::nullopt;
-    return opened.error().reason();
+    return to_error(opened.error());
 }
 
 }  // namespace
@@ -37,8 +37,8 @@ std::vector<std::uint16_t> depth_mm_table(const rig::DataSetDepth& scale) {
     return table;
 }
 
-Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesystem::path& folder,
-                                                            const rig::DataSetKeys& keys) {
+Result<DataSetReader, Error> DataSetReader::open(const std::filesystem::path& folder,
+                                                 const rig::DataSetKeys& keys) {
     const NamedFolder opened(folder);
     auto files = find_data_set(opened);
     if (!files) return unexpected(files.error());
@@ -56,7 +56,7 @@ Result<DataSetReader, DepthSourceError> DataSetReader::open(const std::filesyste
     return reader;
 }
 
-Status<DepthSourceError> DataSetReader::read_list() {
+Status<Error> DataSetReader::read_list() {
     for (const NumberedFrame& frame : files_.frames) images_.push_back({0, {frame.captured, frame.image}});
     if (files_.images.empty()) return Done{};
     const FilePlace list(folder_, files_.images);
@@ -66,7 +66,8 @@ Status<DepthSourceError> DataSetReader::read_list() {
         const bool is_unordered = !images_.empty() && image->captured < images_.back().named.captured;
         if (is_unordered && counts_.unordered++ == 0)
             counts_.disorder =
-                line_error(list.shown(), number, "its time is before that of the image above it");
+                line_error(list.shown(), number,
+                           {ErrorCode::bad_value, "its time is before that of the image above it"});
         images_.push_back({number, std::move(*image)});
         return Done{};
     };
@@ -75,27 +76,28 @@ Status<DepthSourceError> DataSetReader::read_list() {
     if (images_.empty() && bad->first) return unexpected(*bad->first);
     if (images_.empty()) {
         return unexpected(
-            DepthSourceError{list.shown().string() + ": it names no image: expected lines of TIME FILE"});
+            in_file({ErrorCode::no_content, "it names no image: expected lines of TIME FILE"}, list.shown()));
     }
     counts_.bad = std::move(*bad);
     std::ranges::stable_sort(images_, {}, [](const Image& image) { return image.named.captured; });
     return Done{};
 }
 
-DepthSourceError DataSetReader::about(const Image& image, const std::string& what) const {
+Error DataSetReader::about(const Image& image, Error error) const {
     const std::filesystem::path& folder = folder_.shown();
-    if (image.line == 0) return {(folder / image.named.file).string() + ": " + what};
-    return line_error(folder / files_.images, image.line, image.named.file + ": " + what);
+    if (image.line == 0) return in_file(std::move(error), folder / image.named.file);
+    error.key = image.named.file;
+    return line_error(folder / files_.images, image.line, std::move(error));
 }
 
 void DataSetReader::count_without_pose(const Image& image) {
     if (counts_.without_pose++ > 0) return;
     const HostTime captured = image.named.captured;
-    counts_.first_without_pose =
-        FirstWithoutPose{about(image, "no pose near its time"), captured, trajectory_.gap_about(captured)};
+    counts_.first_without_pose = FirstWithoutPose{about(image, {ErrorCode::no_data, "no pose near its time"}),
+                                                  captured, trajectory_.gap_about(captured)};
 }
 
-Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
+Result<std::optional<DepthFrame>, Error> DataSetReader::next() {
     for (; next_ < images_.size(); ++next_) {
         const Image& next = images_[next_];
         const auto T_map_camera = trajectory_.at(next.named.captured);
@@ -104,7 +106,7 @@ Result<std::optional<DepthFrame>, DepthSourceError> DataSetReader::next() {
             continue;
         }
         const auto image = read_depth_png({folder_, next.named.file});
-        if (!image) return unexpected(about(next, image.error()));
+        if (!image) return unexpected(about(next, {ErrorCode::bad_syntax, image.error()}));
         ++next_;
         ++counts_.read;
         values_.add(image->values);
@@ -133,16 +135,20 @@ std::vector<FilePlace> DataSetReader::files() const {
     return files;
 }
 
-std::optional<DepthSourceError> DataSetReader::missing_image() const {
+std::optional<Error> DataSetReader::missing_image() const {
     for (const Image& image : images_) {
         const auto opened = FilePlace(folder_, image.named.file).open();
         if (opened) continue;
         const FolderFault fault = opened.error().fault;
-        std::string what = opened.error().reason();
-        if (fault == FolderFault::not_permitted) what = "may not be read: get the permission to read it";
-        if (fault == FolderFault::absent)
-            what = "does not exist: unpack the data set again, or remove the line";
-        return about(image, what);
+        Error error = to_error(opened.error());
+        if (fault == FolderFault::not_permitted) {
+            error.what = "there is no permission to read it";
+            error.remedy = "change its permissions";
+        } else if (fault == FolderFault::absent) {
+            error.what = "does not exist";
+            error.remedy = "unpack the data set again, or remove the line";
+        }
+        return about(image, std::move(error));
     }
     return std::nullopt;
 }

@@ -22,7 +22,7 @@ namespace octoskin::tum {
 
 /// The first image without a pose.
 struct FirstWithoutPose {
-    DepthSourceError image;  ///< the image, with its line
+    Error image;  ///< the image, with its line
     HostTime captured;
     std::optional<Nanoseconds>
         gap;  ///< gap between the poses around it; empty: it is before the first or after the last pose
@@ -34,8 +34,8 @@ struct ImageCounts {
     std::uint64_t without_pose = 0;
     std::optional<FirstWithoutPose> first_without_pose;
     BadLines bad;
-    std::uint64_t unordered = 0;  ///< of all: with a time before that of the previous line; they are sorted
-    std::optional<DepthSourceError> disorder;  ///< the first of them
+    std::uint64_t unordered = 0;    ///< of all: with a time before that of the previous line; they are sorted
+    std::optional<Error> disorder;  ///< the first of them
 };
 
 class DataSetReader final : public DepthSource {
@@ -43,12 +43,12 @@ class DataSetReader final : public DepthSource {
     /// Reads lists and poses. `keys` override the layout's conventions. The folder is opened once; all files
     /// are below it, and links are not followed. Errors name file and line: no images, no poses, an image
     /// whose name leads out of the folder.
-    [[nodiscard]] static Result<DataSetReader, DepthSourceError> open(const std::filesystem::path& folder,
-                                                                      const rig::DataSetKeys& keys = {});
+    [[nodiscard]] static Result<DataSetReader, Error> open(const std::filesystem::path& folder,
+                                                           const rig::DataSetKeys& keys = {});
 
     /// The next image with a pose, in order of time; images without one are counted. The frame contains the
     /// camera's pose. An error names the image and its line; every later call returns the same error.
-    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override;
+    [[nodiscard]] Result<std::optional<DepthFrame>, Error> next() override;
 
     [[nodiscard]] const DataSetLayout& layout() const noexcept { return *files_.layout; }
     /// The scale of the image values.
@@ -70,7 +70,7 @@ class DataSetReader final : public DepthSource {
     [[nodiscard]] std::vector<FilePlace> files() const;
     /// The first image, with its line and a remedy, that does not exist or may not be read; empty if none is
     /// missing.
-    [[nodiscard]] std::optional<DepthSourceError> missing_image() const;
+    [[nodiscard]] std::optional<Error> missing_image() const;
 
   private:
     struct Image {
@@ -84,8 +84,8 @@ class DataSetReader final : public DepthSource {
           trajectory_(std::move(trajectory)),
           scale_(scale),
           depth_mm_(depth_mm_table(scale)) {}
-    [[nodiscard]] Status<DepthSourceError> read_list();
-    [[nodiscard]] DepthSourceError about(const Image& image, const std::string& what) const;
+    [[nodiscard]] Status<Error> read_list();
+    [[nodiscard]] Error about(const Image& image, Error error) const;
     void count_without_pose(const Image& image);
 
     NamedFolder folder_;  ///< the folder of all files

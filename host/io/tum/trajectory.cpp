@@ -30,8 +30,7 @@ Eigen::Isometry3d with_y_down(const Eigen::Isometry3d& T_map_camera) {
 
 }  // namespace
 
-Result<Trajectory, DepthSourceError> Trajectory::read(const FilePlace& file, Nanoseconds gap_max,
-                                                      CameraAxes axes) {
+Result<Trajectory, Error> Trajectory::read(const FilePlace& file, Nanoseconds gap_max, CameraAxes axes) {
     Trajectory trajectory(gap_max);
     PoseCounts& counts = trajectory.counts_;
     std::vector<PoseLine>& poses = trajectory.poses_;
@@ -41,8 +40,8 @@ Result<Trajectory, DepthSourceError> Trajectory::read(const FilePlace& file, Nan
         if (axes == CameraAxes::y_up && pose->T_map_camera)
             pose->T_map_camera = with_y_down(*pose->T_map_camera);
         if (!poses.empty() && pose->at < poses.back().at && counts.unordered++ == 0)
-            counts.disorder =
-                line_error(file.shown(), number, "its time is before that of the pose above it");
+            counts.disorder = line_error(
+                file.shown(), number, {ErrorCode::bad_value, "its time is before that of the pose above it"});
         poses.push_back(*pose);
         return Done{};
     };
@@ -68,7 +67,7 @@ Trajectory Trajectory::read_frames(const NamedFolder& folder, const std::vector<
         if (pose) {
             trajectory.poses_.push_back({frame.captured, *pose});
         } else {
-            trajectory.counts_.bad.add(text ? DepthSourceError{file.shown().string() + ": " + pose.error()}
+            trajectory.counts_.bad.add(text ? in_file({ErrorCode::bad_syntax, pose.error()}, file.shown())
                                             : text.error());
         }
     }

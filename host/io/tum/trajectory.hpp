@@ -22,8 +22,8 @@ struct PoseCounts {
     std::uint64_t no_pose = 0;   ///< marked as unknown, or missing files
     std::uint64_t repeated = 0;  ///< dropped, because a previous one has the same time
     BadLines bad;
-    std::uint64_t unordered = 0;  ///< of all: with a time before the previous one; they are sorted
-    std::optional<DepthSourceError> disorder;  ///< the first of them
+    std::uint64_t unordered = 0;    ///< of all: with a time before the previous one; they are sorted
+    std::optional<Error> disorder;  ///< the first of them
 };
 
 /// A pose within this time of an instant is used without interpolation. Programs that store present-day
@@ -34,8 +34,8 @@ class Trajectory {
   public:
     /// `gap_max`: no interpolation between poses farther apart. Errors name the file, and the line if no line
     /// has a pose.
-    [[nodiscard]] static Result<Trajectory, DepthSourceError> read(const FilePlace& file, Nanoseconds gap_max,
-                                                                   CameraAxes axes = CameraAxes::y_down);
+    [[nodiscard]] static Result<Trajectory, Error> read(const FilePlace& file, Nanoseconds gap_max,
+                                                        CameraAxes axes = CameraAxes::y_down);
     /// The pose files named in `frames`, one each, at the times of their images.
     [[nodiscard]] static Trajectory read_frames(const NamedFolder& folder,
                                                 const std::vector<NumberedFrame>& frames,

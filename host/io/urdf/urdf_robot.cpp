@@ -36,16 +36,18 @@ std::optional<JointKind> kind_of(const urdf::Joint& joint) {
 }
 
 /// The kinematics refuse such an axis, too; but here the text of the file is known.
-std::string axis_fault_of(const urdf::Vector3& axis) {
+std::optional<Error> axis_fault_of(const urdf::Vector3& axis) {
     constexpr double kUnitTolerance = 1e-6;
     const double length = std::hypot(axis.x, axis.y, axis.z);
-    if (std::abs(length - 1.0) <= kUnitTolerance) return "";
-    const std::string found =
-        fmt::format("expected an axis of length 1, found <axis xyz=\"{} {} {}\">", axis.x, axis.y, axis.z);
+    if (std::abs(length - 1.0) <= kUnitTolerance) return std::nullopt;
+    Error error{ErrorCode::bad_value, "expected an axis of length 1",
+                fmt::format("<axis xyz=\"{} {} {}\">", axis.x, axis.y, axis.z)};
     // Also true for a NaN.
-    if (!(length > 0.0) || !std::isfinite(length)) return found;
-    return fmt::format("{} of length {:.4g}: scale it to \"{:.6g} {:.6g} {:.6g}\"", found, length,
-                       axis.x / length, axis.y / length, axis.z / length);
+    if (!(length > 0.0) || !std::isfinite(length)) return error;
+    error.value += fmt::format(" of length {:.4g}", length);
+    error.remedy = fmt::format("scale it to \"{:.6g} {:.6g} {:.6g}\"", axis.x / length, axis.y / length,
+                               axis.z / length);
+    return error;
 }
 
 const char* name_of_other(const urdf::Joint& joint) {
@@ -55,34 +57,34 @@ const char* name_of_other(const urdf::Joint& joint) {
 
 /// Why a joint cannot be used, also in short; empty if it can.
 struct Refusal {
-    std::string what;
+    Error error;
     std::string kind;
 };
 
 std::optional<Refusal> refusal_of(const rig::UrdfDocument& document, const urdf::Joint& joint) {
     const auto kind = kind_of(joint);
     if (!kind) {
-        return Refusal{
-            "expected a fixed, revolute, continuous or prismatic joint, found another kind: make it "
-            "type=\"fixed\"",
-            name_of_other(joint)};
+        return Refusal{{ErrorCode::unsupported, "expected a fixed, revolute, continuous or prismatic joint",
+                        "another kind", "make it type=\"fixed\""},
+                       name_of_other(joint)};
     }
     if (*kind == JointKind::fixed) return std::nullopt;  // a <mimic> on a fixed joint has no effect
     if (joint.mimic) {
         return Refusal{
-            "expected a joint with a position of its own, found a mimic joint: make it type=\"fixed\", or "
-            "remove <mimic> and name the joint in the rig",
+            {ErrorCode::unsupported, "expected a joint with a position of its own", "a mimic joint",
+             "make it type=\"fixed\", or remove <mimic> and name the joint in the rig"},
             "mimic"};
     }
     const bool needs_limits = *kind == JointKind::revolute || *kind == JointKind::prismatic;
-    if (needs_limits && !joint.limits) return Refusal{"expected <limit>, found none", "no limit"};
+    if (needs_limits && !joint.limits)
+        return Refusal{{ErrorCode::missing_key, "expected <limit>, found none"}, "no limit"};
     if (needs_limits && document.is_upper_missing(joint.name)) {
-        return Refusal{
-            "expected <limit> with lower and upper, found no upper, which URDF treats as 0: write it",
-            "no upper limit"};
+        return Refusal{{ErrorCode::missing_key, "expected <limit> with lower and upper",
+                        "no upper, which URDF treats as 0", "write it"},
+                       "no upper limit"};
     }
-    auto fault = axis_fault_of(joint.axis);
-    return fault.empty() ? std::nullopt : std::optional(Refusal{std::move(fault), "its axis"});
+    auto error = axis_fault_of(joint.axis);
+    return error ? std::optional(Refusal{*std::move(error), "its axis"}) : std::nullopt;
 }
 
 JointDescription to_description(const urdf::Joint& joint) {
@@ -102,8 +104,8 @@ JointDescription to_description(const urdf::Joint& joint) {
 }
 
 /// The joints below `base`, breadth first. urdfdom has checked that they form a tree, so each appears once.
-Result<std::vector<JointDescription>, rig::RigError> joints_below(const rig::UrdfDocument& document,
-                                                                  const urdf::Link& base) {
+Result<std::vector<JointDescription>, Error> joints_below(const rig::UrdfDocument& document,
+                                                          const urdf::Link& base) {
     std::vector<JointDescription> descriptions;
     std::vector<rig::ElementFault> faults;
     std::vector<const urdf::Link*> links = {&base};
@@ -111,7 +113,7 @@ Result<std::vector<JointDescription>, rig::RigError> joints_below(const rig::Urd
         const urdf::Link& link = *links[i];
         for (const auto& joint : link.child_joints) {
             if (auto refusal = refusal_of(document, *joint)) {
-                faults.push_back({document.error("joint", joint->name, std::move(refusal->what)),
+                faults.push_back({document.error("joint", joint->name, std::move(refusal->error)),
                                   std::move(refusal->kind)});
             } else {
                 descriptions.push_back(to_description(*joint));
@@ -125,14 +127,15 @@ Result<std::vector<JointDescription>, rig::RigError> joints_below(const rig::Urd
 
 }  // namespace
 
-Result<RobotModel, rig::RigError> read_robot_model(const FilePlace& urdf, const std::string& base_link,
-                                                   std::span<const std::string> moved) {
+Result<RobotModel, Error> read_robot_model(const FilePlace& urdf, const std::string& base_link,
+                                           std::span<const std::string> moved) {
     const auto document = rig::UrdfDocument::read(urdf);
     if (!document) return unexpected(document.error());
     const auto base = document->model().getLink(base_link);
     if (!base)
-        return unexpected(
-            document->error("link", base_link, "expected this base link, found no link with its name"));
+        return unexpected(document->error(
+            "link", base_link,
+            {ErrorCode::unknown_name, "expected this base link, found no link with its name"}));
     const auto joints = joints_below(*document, *base);
     if (!joints) return unexpected(joints.error());
     auto model = RobotModel::build(base_link, *joints, moved);
@@ -140,7 +143,8 @@ Result<RobotModel, rig::RigError> read_robot_model(const FilePlace& urdf, const 
         const RobotModelFault& fault = model.error();
         const bool is_link =
             fault.error == RobotModelError::two_parents || fault.error == RobotModelError::unreachable;
-        return unexpected(document->error(is_link ? "link" : "joint", fault.element, describe(fault.error)));
+        return unexpected(document->error(is_link ? "link" : "joint", fault.element,
+                                          {ErrorCode::bad_value, describe(fault.error)}));
     }
     return std::move(model).value();
 }

@@ -16,8 +16,7 @@ namespace octoskin {
 /// joint without its link, a loop); an unknown base link or joint; a moving joint that is not in `moved`; a
 /// joint other than fixed, revolute, continuous and prismatic; a mimic joint; an axis whose length is not 1.
 /// One error contains all joints that cannot be used.
-[[nodiscard]] Result<RobotModel, rig::RigError> read_robot_model(const FilePlace& urdf,
-                                                                 const std::string& base_link,
-                                                                 std::span<const std::string> moved);
+[[nodiscard]] Result<RobotModel, Error> read_robot_model(const FilePlace& urdf, const std::string& base_link,
+                                                         std::span<const std::string> moved);
 
 }  // namespace octoskin

@@ -1,5 +1,7 @@
 #include "host/lab/evaluation/region.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -45,21 +47,22 @@ std::optional<Extents> extents_of(const RegionConfig& config, double resolution_
 
 }  // namespace
 
-std::optional<std::string> region_fault(const RegionConfig& config, double resolution_m,
-                                        const Eigen::Isometry3d& T_map_base) {
-    const auto fault = [&](const char* what) {
-        return "the judged region " + std::string(what) + " at a resolution of " +
-               std::to_string(resolution_m) + " m";
+std::optional<Error> region_fault(const RegionConfig& config, double resolution_m,
+                                  const Eigen::Isometry3d& T_map_base) {
+    const auto fault = [&](ErrorCode code, const char* what) {
+        return Error{.code = code,
+                     .what = fmt::format("the judged region {} at a resolution of {} m", what, resolution_m),
+                     .remedy = "change the region, or the resolution"};
     };
     const auto box = extents_of(config, resolution_m, T_map_base);
-    if (!box) return fault("has its floor outside the map");
+    if (!box) return fault(ErrorCode::out_of_range, "has its floor outside the map");
     double voxels = 1.0;
     for (const Extent& extent : *box) {
-        if (!(extent.count() >= 1.0)) return fault("holds no voxel above its floor");
-        if (!extent.is_within_map()) return fault("is not within the map");
+        if (!(extent.count() >= 1.0)) return fault(ErrorCode::no_content, "holds no voxel above its floor");
+        if (!extent.is_within_map()) return fault(ErrorCode::out_of_range, "is not within the map");
         voxels *= extent.count();
     }
-    if (voxels > kRegionVoxelsMax) return fault("has more than 50 million voxels");
+    if (voxels > kRegionVoxelsMax) return fault(ErrorCode::limit_exceeded, "has more than 50 million voxels");
     return std::nullopt;
 }
 

@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <optional>
-#include <string>
 
+#include "host/errors/error.hpp"
 #include "host/lab/evaluation/voxel_grid.hpp"
 
 namespace octoskin::evaluation {
@@ -19,9 +19,9 @@ struct RegionConfig {
 };
 
 /// Why the box cannot be judged at this resolution; empty if it can. Reasons: no voxel above the floor, a box
-/// outside the map's keys, or more than 50 million voxels (too slow). The text has the remedy.
-[[nodiscard]] std::optional<std::string> region_fault(const RegionConfig& config, double resolution_m,
-                                                      const Eigen::Isometry3d& T_map_base);
+/// outside the map's keys, or more than 50 million voxels (too slow).
+[[nodiscard]] std::optional<Error> region_fault(const RegionConfig& config, double resolution_m,
+                                                const Eigen::Isometry3d& T_map_base);
 
 /// The voxels whose centres lie in the box and whose layer is above the floor's. `T_map_base` transforms the
 /// world into the map frame. `region_fault` must return empty (asserted).

@@ -70,17 +70,19 @@ VoxelMask seen_mask(const sim::World& world, const TruthConfig& config, const Ke
     return seen;
 }
 
-/// Why surface_truth() would take hours, as a message; empty if it would not.
-std::optional<std::string> surface_fault(const sim::World& world, const TruthConfig& config,
-                                         const KeyBox& region, const Eigen::Isometry3d& T_map_base) {
+/// Why surface_truth() would take hours; empty if it would not.
+std::optional<Error> surface_fault(const sim::World& world, const TruthConfig& config, const KeyBox& region,
+                                   const Eigen::Isometry3d& T_map_base) {
     const auto bounds =
         base_bounds(with_margins(region, config), VoxelLattice(config.resolution_m), T_map_base);
     const double points = world.samples_within(config.surface_pitch_m, bounds);
     if (points <= kSurfacePointsMax) return std::nullopt;
-    return fmt::format(
-        "{:.2g} points of the world's surfaces lie in the judged region; expected at most {:.0g}: "
-        "make the region smaller, or the world's meshes coarser",
-        points, kSurfacePointsMax);
+    return Error{.code = ErrorCode::limit_exceeded,
+                 .what = fmt::format("expected at most {:.0g} points of the world's surfaces in the judged "
+                                     "region",
+                                     kSurfacePointsMax),
+                 .value = fmt::format("{:.2g}", points),
+                 .remedy = "make the region smaller, or the world's meshes coarser"};
 }
 
 }  // namespace
@@ -110,8 +112,8 @@ VoxelGrid<SurfaceVoxel> surface_truth(const sim::World& world, const TruthConfig
     return truth;
 }
 
-Result<Truth, std::string> build_truth(const sim::World& world, const Survey& survey,
-                                       const TruthConfig& config, const Eigen::Isometry3d& T_map_base) {
+Result<Truth, Error> build_truth(const sim::World& world, const Survey& survey, const TruthConfig& config,
+                                 const Eigen::Isometry3d& T_map_base) {
     const KeyBox region = region_of(config.region, config.resolution_m, T_map_base);
     if (auto fault = surface_fault(world, config, region, T_map_base)) return unexpected(std::move(*fault));
     return Truth{config.resolution_m,

@@ -74,8 +74,8 @@ struct Truth {
 
 /// Both truths for a world placed at `T_map_base` in the map. Error: the region has 1e9 surface points or
 /// more, which would take hours.
-[[nodiscard]] Result<Truth, std::string> build_truth(const sim::World& world, const Survey& survey,
-                                                     const TruthConfig& config,
-                                                     const Eigen::Isometry3d& T_map_base);
+[[nodiscard]] Result<Truth, Error> build_truth(const sim::World& world, const Survey& survey,
+                                               const TruthConfig& config,
+                                               const Eigen::Isometry3d& T_map_base);
 
 }  // namespace octoskin::evaluation

@@ -24,8 +24,10 @@ Result<NodeConfig, AppError> read_block(const std::filesystem::path& file) {
     const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
     const auto config = decode_node_config(bytes);
     if (!config) {
-        return fail(ExitCode::bad_data, fmt::format("{}: not a configuration block (error {})", file.string(),
-                                                    static_cast<int>(config.error())));
+        return fail(ExitCode::bad_data,
+                    in_file({ErrorCode::damaged, fmt::format("not a configuration block (error {})",
+                                                             static_cast<int>(config.error()))},
+                            file));
     }
     return *config;
 }
@@ -37,13 +39,18 @@ Result<NodeConfig, AppError> config_of_rig(const std::filesystem::path& file, co
         if (wanted.empty() || node.name == wanted || std::to_string(node.config.node_id) == wanted)
             return node.config;
     }
-    return fail(ExitCode::bad_config, fmt::format("{}: no node '{}'", file.string(), wanted));
+    return fail(ExitCode::bad_config, {.code = ErrorCode::unknown_name,
+                                       .what = "expected the name or number of a node of the rig",
+                                       .value = "'" + wanted + "'",
+                                       .file = file,
+                                       .key = "--node"});
 }
 
 Result<NodeConfig, AppError> read_config(const Arguments& arguments) {
     if (!arguments.config.empty()) return read_block(arguments.config);
     if (!arguments.rig.empty()) return config_of_rig(arguments.rig, arguments.node);
-    return fail(ExitCode::usage, "a configuration is needed: --config or --rig");
+    return fail(ExitCode::usage,
+                {ErrorCode::bad_argument, "a configuration is needed", {}, "give --config or --rig"});
 }
 
 NucleoOptions options_of(const Arguments& arguments, const NodeConfig& config, const sim::BoardParts& parts) {
@@ -70,7 +77,7 @@ Result<std::unique_ptr<Bench>, AppError> Bench::build(const Arguments& arguments
     const auto config = read_config(arguments);
     if (!config) return unexpected(config.error());
     const auto image = ElfImage::load(arguments.elf);
-    if (!image) return unexpected(reading_error(arguments.elf, {ExitCode::bad_data, image.error().what}));
+    if (!image) return unexpected(reading_error(arguments.elf, {ExitCode::bad_data, image.error()}));
     sim::PartsReel reel{.seed = arguments.seed, .slow_clocks = arguments.slow_clocks};
     for (const std::string& text : arguments.sensor_traits) {
         if (auto traits = sim::parse_traits(text)) reel.traits.push_back(std::move(*traits));
@@ -83,7 +90,7 @@ Result<std::unique_ptr<Bench>, AppError> Bench::build(const Arguments& arguments
         bench->board_ = std::make_unique<NucleoBoard>(options_of(arguments, *config, parts), *image,
                                                       encode(*config, block));
     } catch (const std::runtime_error& error) {
-        return fail(ExitCode::bad_data, error.what());
+        return fail(ExitCode::bad_data, in_file({ErrorCode::damaged, error.what()}, arguments.elf));
     }
     bench->sensors_ =
         std::make_unique<sim::stm32::SensorCarrier>(*bench->board_, *config, parts.sensors, scene);

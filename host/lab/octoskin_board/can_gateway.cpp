@@ -38,7 +38,8 @@ Status<AppError> CanGateway::poll() {
         if (frame.is_error) continue;
         ++(seat_->send(frame) ? counts_.received : counts_.not_received);
     }
-    if (fault_) return unexpected(AppError{ExitCode::io_failed, fault_->message()});
+    if (fault_)
+        return fail(ExitCode::io_failed, in_file({ErrorCode::no_device, fault_->what}, fault_->interface));
     return Done{};
 }
 
@@ -47,7 +48,9 @@ Result<socketcan::CanSocket, AppError> open_interface(const std::string& interfa
     if (socket) return std::move(*socket);
     const int error = socket.error().error_number;
     const bool is_forbidden = error == EPERM || error == EACCES;
-    return fail(is_forbidden ? ExitCode::no_permission : ExitCode::unavailable, socket.error().message());
+    return fail(is_forbidden ? ExitCode::no_permission : ExitCode::unavailable,
+                in_file({is_forbidden ? ErrorCode::no_permission : ErrorCode::no_device, socket.error().what},
+                        interface));
 }
 
 }  // namespace octoskin::board

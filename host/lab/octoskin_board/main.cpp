@@ -22,8 +22,8 @@ constexpr HostTime kHostAtStart{4'321'000'000'000};
 constexpr Microseconds kSyncPeriod{1'000'000};
 
 int report(const AppError& error) {
-    fmt::print(stderr, "octoskin_board: {}\n", error.message);
-    return static_cast<int>(error.code);
+    fmt::print(stderr, "octoskin_board: {}\n", error.message());
+    return static_cast<int>(error.exit);
 }
 
 double cpu_seconds() {
@@ -43,16 +43,16 @@ Status<AppError> run(const Arguments& arguments, Bench& bench) {
     std::optional<candump::LogWriter> log;
     if (!arguments.can_log.empty()) {
         auto created = candump::LogWriter::create(arguments.can_log);
-        if (!created) return unexpected(AppError{ExitCode::cannot_create, created.error().message()});
+        if (!created) return fail(ExitCode::cannot_create, created.error());
         log.emplace(std::move(*created));
     }
     sim::SyncMaster master(sim::SimulatedHostClock(kHostAtStart), kSyncPeriod);
-    std::optional<std::string> write_error;
+    std::optional<Error> write_error;
     bus.tap([&](const wire::CanFrame& frame, sim::SimTime end) {
         master.on_frame(frame, end);
         if (!log || write_error) return;
         if (const auto written = log->write(WallTime{kLogEpoch.ns + end.us * 1000}, frame); !written)
-            write_error = written.error().message();
+            write_error = written.error();
     });
     std::optional<CanGateway> gateway;
     if (!arguments.can_interface.empty()) {
@@ -76,9 +76,9 @@ Status<AppError> run(const Arguments& arguments, Bench& bench) {
     if (!tied) return tied;
     if (gateway) fmt::print("{}\n", gateway_report(arguments.can_interface, gateway->counts()));
     if (log && !write_error) {
-        if (const auto closed = log->close(); !closed) write_error = closed.error().message();
+        if (const auto closed = log->close(); !closed) write_error = closed.error();
     }
-    if (write_error) return unexpected(AppError{ExitCode::cannot_create, *write_error});
+    if (write_error) return fail(ExitCode::cannot_create, *write_error);
     return Done{};
 }
 
@@ -103,7 +103,7 @@ int run_for_simulator(const Arguments& arguments) {
         const bool is_clean = (*bench)->board().log().count() == 0 || arguments.allows_violations;
         return static_cast<int>(is_clean ? ExitCode::ok : ExitCode::failed);
     } catch (const sim::BoardLinkError& error) {
-        return report({ExitCode::bad_data, error.what()});
+        return report({ExitCode::bad_data, {ErrorCode::damaged, error.what()}});
     }
 }
 

@@ -43,9 +43,11 @@ struct EvaluateOptions {
 
 /// A data set has no world file to judge its maps against.
 [[noreturn]] void refuse_data_set(const std::filesystem::path& data_set) {
-    throw CommandFailure({ExitCode::usage, data_set.string() +
-                                               ": a data set has no ground truth of its world, so its maps "
-                                               "cannot be judged; look at them (octovis, or the .ply)"});
+    throw CommandFailure(ExitCode::usage,
+                         {.code = ErrorCode::unsupported,
+                          .what = "a data set has no ground truth of its world, so its maps cannot be judged",
+                          .remedy = "look at them (octovis, or the .ply)",
+                          .file = data_set});
 }
 
 Scene judged(Scene scene) {
@@ -66,13 +68,12 @@ evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resoluti
     evaluation::TruthConfig config = truth_config_of(scene.scenario, resolution_m);
     config.external_camera = rig.camera;
     if (const auto fault = evaluation::region_fault(config.region, resolution_m, rig.T_map_base))
-        throw CommandFailure({ExitCode::bad_config, scene.scenario.error("region", *fault).message()});
+        throw CommandFailure(ExitCode::bad_config, scene.scenario.error("region", *fault));
     spdlog::info("ground truth: rendering the tour of a noise-free camera");
     auto truth = evaluation::build_truth(
         scene.world, evaluation::render_survey(scene.world, survey_config_of(scene.scenario)), config,
         rig.T_map_base);
-    if (!truth)
-        throw CommandFailure({ExitCode::bad_config, scene.scenario.error("region", truth.error()).message()});
+    if (!truth) throw CommandFailure(ExitCode::bad_config, scene.scenario.error("region", truth.error()));
     return std::move(*truth);
 }
 
@@ -173,8 +174,11 @@ std::string rig_to_give(const MapProvenance& provenance) {
 rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provenance) {
     if (options.rig.empty()) {
         throw CommandFailure(
-            {ExitCode::usage, "a map does not contain the poses of robot and camera: give --rig " +
-                                  rig_to_give(provenance) + ", which has the map's shift (T_map_base)"});
+            ExitCode::usage,
+            {.code = ErrorCode::bad_argument,
+             .what = "is required: a map does not contain the poses of robot and camera",
+             .remedy = "give --rig " + rig_to_give(provenance) + ", which has the map's shift (T_map_base)",
+             .key = "--rig"});
     }
     rig::Rig rig = value_or_fail(read_given_rig(options.rig, options.robot));
     doubt_rig(options, rig, provenance);
@@ -184,11 +188,14 @@ rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provena
 Scene scene_of_map(const EvaluateOptions& options, const std::optional<FilePlace>& recording) {
     if (recording) return recorded_scene(*recording, options);
     if (options.scenario.empty()) {
-        throw CommandFailure({ExitCode::usage,
-                              "no recording is beside this map, and a map does not name its world: give "
-                              "--scenario (shipped: " +
-                                  shipped_file("hw/worlds/experiment.scenario.yaml").string() +
-                                  "), or --recording, the recording that it was made from"});
+        throw CommandFailure(ExitCode::usage,
+                             {.code = ErrorCode::bad_argument,
+                              .what = "no recording is beside this map, and a map does not name its world",
+                              .remedy = "give --scenario (shipped: " +
+                                        shipped_file("hw/worlds/experiment.scenario.yaml").string() +
+                                        "), or --recording, the recording that it was made from",
+                              .file = options.input,
+                              .key = "--scenario"});
     }
     auto scene = read_scene(options.scenario, options.world);
     if (!scene) throw CommandFailure(scene.error());
@@ -203,8 +210,7 @@ Judged judge_map(const EvaluateOptions& options) {
     limits.map.log_odds_min = -20.0F;
     limits.map.log_odds_max = 20.0F;
     const auto loaded = load_map(options.input, limits);
-    if (!loaded)
-        throw CommandFailure(reading_error(options.input, {ExitCode::bad_data, loaded.error().message}));
+    if (!loaded) throw CommandFailure(reading_error(options.input, {ExitCode::bad_data, loaded.error()}));
     for (const std::string& warning : loaded->warnings) spdlog::warn("{}", warning);
     const FusedMap& map = loaded->map;
     const auto provenance = provenance_of_map(options.input, options.recording);
@@ -226,8 +232,11 @@ void check_output(const std::filesystem::path& json) {
     // A link such as /dev/stdout is not a file that would be overwritten.
     const bool is_file = std::filesystem::is_regular_file(std::filesystem::symlink_status(json, error));
     if (json.extension() != ".json" && is_file) {
-        throw CommandFailure({ExitCode::cannot_create,
-                              json.string() + ": exists and is not a .json file; it is not overwritten"});
+        throw CommandFailure(ExitCode::cannot_create,
+                             {.code = ErrorCode::already_exists,
+                              .what = "exists and is not a .json file; it is not overwritten",
+                              .file = json,
+                              .key = "--json"});
     }
     if (const auto checked = check_text_place(json); !checked) throw CommandFailure(checked.error());
 }
@@ -235,8 +244,11 @@ void check_output(const std::filesystem::path& json) {
 void evaluate_input(const EvaluateOptions& options) {
     const bool is_recording = std::filesystem::is_directory(options.input);
     if (is_recording && !options.recording.empty()) {
-        throw CommandFailure({ExitCode::usage, "--recording applies to a map, and " + options.input.string() +
-                                                   " is a recording: leave it out"});
+        throw CommandFailure(ExitCode::usage, {.code = ErrorCode::conflict,
+                                               .what = "applies to a map, and this is a recording",
+                                               .remedy = "leave --recording out",
+                                               .file = options.input,
+                                               .key = "--recording"});
     }
     if (!options.json.empty()) check_output(options.json);
     const Judged judged = is_recording ? judge_recording(options) : judge_map(options);

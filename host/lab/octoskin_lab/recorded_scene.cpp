@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// CRC-32 of a file's content, or why the file cannot be used.
-using Checksum = std::function<Result<std::uint32_t, std::string>(const FilePlace&)>;
+using Checksum = std::function<Result<std::uint32_t, Error>(const FilePlace&)>;
 
 /// A kind of file that the evaluation of a recording needs.
 struct Part {
@@ -50,23 +50,27 @@ FilePlace take_given(const Part& part, std::vector<std::string>& warnings) {
 /// Why `file`, which has the recorded name, is not the recorded file.
 AppError other_file(const Part& part, const RecordingPaths& recording, const FilePlace& file) {
     const auto crc32 = part.checksum_of(file);
-    const std::string begin = recording.directory.string() + ": recorded in " +
-                              describe(part.recorded.file, part.recorded.crc32) + ", ";
-    const std::string end = ": give --" + part.kind;
-    if (!crc32)
-        return {ExitCode::bad_data,
-                begin + "and the file of that name cannot be used (" + crc32.error() + ")" + end};
-    return {ExitCode::bad_data, begin + "judging in " + file.shown().string() + " (CRC-32 " +
-                                    crc_text(*crc32) + "), which is another" + end};
+    Error error{.code = ErrorCode::mismatch,
+                .what = "expected the " + part.kind + " that it was recorded in, " +
+                        describe(part.recorded.file, part.recorded.crc32),
+                .value = file.shown().string(),
+                .remedy = "give --" + part.kind,
+                .file = recording.directory};
+    error.value += crc32 ? " (CRC-32 " + crc_text(*crc32) + ")"
+                         : ", which cannot be used (" + crc32.error().message() + ")";
+    return {ExitCode::bad_data, std::move(error)};
 }
 
 Result<FilePlace, AppError> find(const Part& part, const RecordingPaths& recording,
                                  std::vector<std::string>& warnings) {
     if (!part.given.empty()) return take_given(part, warnings);
-    const std::string remedy = ": give --" + part.kind;
+    const std::string remedy = "give --" + part.kind;
     if (part.recorded.file.empty()) {
-        return unexpected(
-            AppError{ExitCode::usage, recording.meta().shown().string() + " names no " + part.kind + remedy});
+        return fail(ExitCode::usage, {.code = ErrorCode::missing_key,
+                                      .what = "does not name the " + part.kind,
+                                      .remedy = remedy,
+                                      .file = recording.meta().shown(),
+                                      .key = part.kind});
     }
     const fs::path name = part.recorded.file.filename();
     // The path in meta.yaml is never opened: a recording from an untrusted source could name any file.
@@ -77,31 +81,38 @@ Result<FilePlace, AppError> find(const Part& part, const RecordingPaths& recordi
     for (const FilePlace& candidate : {FilePlace(recording.folder, name), shipped}) {
         if (!candidate.is_there()) continue;
         if (const auto opened = candidate.open(); !opened)
-            return unexpected(AppError{ExitCode::bad_data, opened.error().message()});
+            return fail(ExitCode::bad_data, to_error(opened.error()));
         if (is_recorded(part, candidate)) return candidate;
         if (!other) other = candidate;
     }
     if (other) return unexpected(other_file(part, recording, *other));
-    return unexpected(AppError{ExitCode::no_input,
-                               recording.directory.string() + ": recorded in " + part.recorded.file.string() +
-                                   ", and no file of that name is in it or shipped" + remedy + " " +
-                                   part.recorded.file.string() + ", if that is yours"});
+    const std::string recorded = part.recorded.file.string();
+    return fail(ExitCode::no_input,
+                {.code = ErrorCode::not_found,
+                 .what = "recorded in " + recorded + ", and no file of that name is in it or shipped",
+                 .remedy = remedy + " " + recorded + ", if that is yours",
+                 .file = recording.directory,
+                 .key = part.kind});
 }
 
-Result<std::uint32_t, std::string> scenario_checksum(const FilePlace& file) {
+Error unreadable(const FilePlace& file) {
+    return in_file({ErrorCode::system_error, "cannot be read"}, file.shown());
+}
+
+Result<std::uint32_t, Error> scenario_checksum(const FilePlace& file) {
     // Its world is found separately.
     const auto scenario = sim::read_scenario(file, sim::WorldOf::others);
-    if (!scenario) return unexpected(scenario.error().message());
+    if (!scenario) return unexpected(scenario.error());
     const auto crc32 = source_file(file, scenario->extended_files).crc32;
-    if (!crc32) return unexpected(file.shown().string() + " cannot be read");
+    if (!crc32) return unexpected(unreadable(file));
     return *crc32;
 }
 
-Result<std::uint32_t, std::string> world_checksum(const FilePlace& file) {
+Result<std::uint32_t, Error> world_checksum(const FilePlace& file) {
     const auto crc32 = crc32_of(file);
     if (crc32) return *crc32;
     const auto opened = file.open();
-    return unexpected(opened ? file.shown().string() + " cannot be read" : opened.error().message());
+    return unexpected(opened ? unreadable(file) : to_error(opened.error()));
 }
 
 /// The world file. Empty: the scenario's own; only the recording of a real robot may leave it out, with a
@@ -123,12 +134,13 @@ Result<bool, AppError> has_scene(const RecordingMeta& meta, const RecordingPaths
     const auto found = crc32_of_scene(recording);
     if (found && *found == *meta.scene_crc32) return true;
     return fail(ExitCode::bad_data,
-                recording.directory.string() +
-                    ": its scene (scenario.yaml, world.sdf and what they name) is " +
-                    (found ? "not what `octoskin-lab simulate` put there (CRC-32 " + crc_text(*found) +
-                                 ", in meta.yaml " + crc_text(*meta.scene_crc32) + ")"
-                           : "missing, or cannot be read") +
-                    ": put it there again, or give --scenario and --world");
+                {.code = found ? ErrorCode::mismatch : ErrorCode::not_found,
+                 .what = "expected the scene (scenario.yaml, world.sdf and what they name) that "
+                         "`octoskin-lab simulate` put there, CRC-32 " +
+                         crc_text(*meta.scene_crc32) + " in meta.yaml",
+                 .value = found ? "CRC-32 " + crc_text(*found) : "files that are missing or cannot be read",
+                 .remedy = "put it there again, or give --scenario and --world",
+                 .file = recording.directory});
 }
 
 }  // namespace

@@ -35,18 +35,22 @@ sim::EmulatedBoards emulated_boards(const SimulateOptions& options) {
     const sim::EmulatedBoards boards{board_program(), options.image, options.cycles_per_instruction};
     if (!std::filesystem::exists(boards.program)) {
         throw CommandFailure(
-            {ExitCode::unavailable,
-             boards.program.string() +
-                 ": not found; no package contains it. In octoskin's sources: sudo apt install "
-                 "libunicorn-dev, "
-                 "then cmake --preset host-release -DOCTOSKIN_EMULATED_BOARD=ON && cmake --build --preset "
-                 "host-release --target octoskin_board. Without --board, the node core is simulated"});
+            ExitCode::unavailable,
+            {.code = ErrorCode::no_program,
+             .what = "not found; no package contains it",
+             .remedy = "in octoskin's sources: sudo apt install libunicorn-dev, then cmake --preset "
+                       "host-release -DOCTOSKIN_EMULATED_BOARD=ON && cmake --build --preset host-release "
+                       "--target octoskin_board",
+             .file = boards.program,
+             .others = "Without --board, the node core is simulated"});
     }
     if (!std::filesystem::exists(boards.image)) {
-        throw CommandFailure({ExitCode::no_input,
-                              boards.image.string() +
-                                  ": no such image; give one with --image: octoskin's sources build it with "
-                                  "the preset firmware-release"});
+        throw CommandFailure(ExitCode::no_input,
+                             {.code = ErrorCode::not_found,
+                              .what = "no such image",
+                              .remedy = "give one with --image: octoskin's sources build it with the preset "
+                                        "firmware-release",
+                              .file = boards.image});
     }
     return boards;
 }
@@ -71,7 +75,8 @@ void simulate(const SimulationRequest& request, bool allows_violations) {
         100.0 * *std::max_element(summary->i2c_busy_fraction.begin(), summary->i2c_busy_fraction.end()));
     if (summary->violations.empty() || allows_violations) return;
     throw CommandFailure(
-        {ExitCode::failed, "the image breaks rules of the chip's manuals:\n" + summary->violations});
+        ExitCode::failed,
+        {ErrorCode::self_check, "the image breaks rules of the chip's manuals:\n" + summary->violations});
 }
 
 }  // namespace

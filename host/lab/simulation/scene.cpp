@@ -15,13 +15,14 @@ Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePla
         confined_to_recording(world_instead.empty() ? scenario->world : world_instead);
     auto world = sim::World::read(world_file);
     if (!world) {
-        const bool is_unread = world.error().is_reader_missing;
+        const bool is_unread = world.error().code == ErrorCode::no_program;
         return unexpected(
             reading_error(is_unread ? ExitCode::unavailable : ExitCode::bad_data, world.error()));
     }
     if (const auto checked = sim::check_hidden_models(*scenario, *world); !checked) {
-        return unexpected(AppError{ExitCode::bad_config,
-                                   checked.error().message() + " (" + world_file.shown().string() + ")"});
+        Error error = checked.error();
+        error.others = "The world is " + world_file.shown().string();
+        return fail(ExitCode::bad_config, std::move(error));
     }
     std::vector<sim::ModelMotion> motions;
     if (!scenario->world_motion.empty()) {
@@ -36,14 +37,12 @@ Result<Scene, AppError> read_scene(const FilePlace& scenario_file, const FilePla
 
 Status<AppError> check_stands_still(const Scene& scene) {
     if (scene.motions.empty()) return Done{};
-    return unexpected(
-        AppError{ExitCode::bad_config,
-                 scene.scenario
-                     .error("world_motion",
-                            "a model that moves has no single place to judge a map by: `octoskin "
-                            "simulate` and `replay` accept such a scenario, evaluate and experiment "
-                            "do not")
-                     .message()});
+    return fail(ExitCode::bad_config,
+                scene.scenario.error("world_motion",
+                                     {.code = ErrorCode::unsupported,
+                                      .what = "a model that moves has no single place to judge a map by",
+                                      .remedy = "`octoskin-lab simulate` and `octoskin replay` accept such a "
+                                                "scenario, evaluate and experiment do not"}));
 }
 
 }  // namespace octoskin

@@ -32,7 +32,7 @@ std::string bytes_of(const sim::World& world) {
 /// The difference between the scene and the scene read back from its files; empty: none.
 SceneGap difference(const Scene& scene, const RecordingPaths& recording) {
     const auto again = read_scene(recording.scenario(), {});
-    if (!again) return again.error().message;
+    if (!again) return again.error().message();
     if (again->scenario.standalone_text != scene.scenario.standalone_text)
         return "its scenario reads back differently from there";
     if (bytes_of(again->world) != bytes_of(scene.world)) return "its world reads back differently from there";
@@ -41,12 +41,12 @@ SceneGap difference(const Scene& scene, const RecordingPaths& recording) {
 
 Status<AppError> remove_files(const RecordingPaths& recording, const sim::WorldCopy& world) {
     const auto folder = recording.folder.open();
-    if (!folder) return fail(ExitCode::cannot_create, folder.error().message());
+    if (!folder) return fail(ExitCode::cannot_create, to_error(folder.error()));
     std::vector<FilePlace> files{recording.scenario(), recording.world(), recording.motion()};
     for (const sim::MeshCopy& mesh : world.meshes) files.push_back(recording.file(mesh.name));
     for (const FilePlace& file : files) {
         if (const auto removed = folder->remove(file.name()); !removed)
-            return fail(ExitCode::cannot_create, removed.error().message());
+            return fail(ExitCode::cannot_create, to_error(removed.error()));
     }
     return Done{};
 }

@@ -42,9 +42,11 @@ Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     return Inputs{std::move(*scene), std::move(*rig), std::move(*arm), std::move(*body)};
 }
 
-std::string describe(const sim::ExperimentError& error, const sim::Scenario& scenario) {
-    if (error.scenario_key.empty()) return error.what;
-    return scenario.error(error.scenario_key, error.what).message();
+/// The error with the place of its key, if it has one.
+Error located(Error error, const sim::Scenario& scenario) {
+    if (error.key.empty()) return error;
+    const std::string key = error.key;
+    return scenario.error(key, std::move(error));
 }
 
 /// Writes the files of the recording. After the first error it writes nothing more and keeps the error.
@@ -57,12 +59,12 @@ class Recorder {
         if (const auto written = write_text(paths.rig(), rig_text); !written)
             return unexpected(written.error());
         auto log = candump::LogWriter::create(paths.can_log());
-        if (!log) return fail(ExitCode::cannot_create, log.error().message());
+        if (!log) return fail(ExitCode::cannot_create, log.error());
         Recorder recorder(std::move(*log));
         if (rig.camera) {
             auto depth = openni2::OniWriter::create(paths.depth(), paths.depth_epoch(),
                                                     {rig.camera->width, rig.camera->height});
-            if (!depth) return fail(ExitCode::cannot_create, depth.error().what);
+            if (!depth) return fail(ExitCode::cannot_create, depth.error());
             recorder.depth_.emplace(std::move(*depth));
         }
         return recorder;
@@ -70,18 +72,18 @@ class Recorder {
 
     void write(const wire::CanFrame& frame, WallTime stamp) {
         if (error_) return;
-        if (const auto written = log_.write(stamp, frame); !written) error_ = written.error().message();
+        if (const auto written = log_.write(stamp, frame); !written) error_ = written.error();
     }
     void write(HostTime captured, std::span<const std::uint16_t> depth_mm) {
         if (error_) return;
-        if (const auto written = depth_->write(captured, depth_mm); !written) error_ = written.error().what;
+        if (const auto written = depth_->write(captured, depth_mm); !written) error_ = written.error();
     }
     Status<AppError> close() {
         if (!error_) {
-            if (const auto closed = log_.close(); !closed) error_ = closed.error().message();
+            if (const auto closed = log_.close(); !closed) error_ = closed.error();
         }
         if (!error_ && depth_) {
-            if (const auto closed = depth_->close(); !closed) error_ = closed.error().what;
+            if (const auto closed = depth_->close(); !closed) error_ = closed.error();
         }
         if (error_) return fail(ExitCode::cannot_create, *error_);
         return Done{};
@@ -92,7 +94,7 @@ class Recorder {
 
     candump::LogWriter log_;
     std::optional<openni2::OniWriter> depth_;
-    std::optional<std::string> error_;
+    std::optional<Error> error_;
 };
 
 /// The checksum of the scene's files; empty: the recording does not contain the scene.
@@ -143,7 +145,7 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
         .on_progress = on_progress};
     if (on_progress) on_progress(0.0);
     const auto summary = sim::run_experiment(input, output);
-    if (!summary) return fail(ExitCode::bad_config, describe(summary.error(), inputs->scene.scenario));
+    if (!summary) return fail(ExitCode::bad_config, located(summary.error(), inputs->scene.scenario));
     if (const auto closed = recorder->close(); !closed) return unexpected(closed.error());
 
     const RecordingMeta meta{.made_by = program_version(),
@@ -158,7 +160,7 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
                              .depth_frames = summary->depth_frames,
                              .duration_s = summary->duration_s};
     if (const auto written = write_meta(draft->paths(), meta); !written) {
-        return fail(ExitCode::cannot_create, written.error().message());
+        return fail(ExitCode::cannot_create, written.error());
     }
     if (const auto committed = draft->commit(); !committed) return unexpected(committed.error());
     return *summary;

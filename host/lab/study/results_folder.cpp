@@ -115,7 +115,7 @@ Status<AppError> check_places(const OpenFolder& folder) {
         const FilePlace place(folder, name);
         if (const auto checked = check_text_place(place); !checked) return checked;
         if (place.kind() == EntryKind::link)
-            return cannot_create(place.shown(), place.open().error().reason());
+            return cannot_create(place.shown(), to_error(place.open().error()));
     }
     if (const auto checked = check_map_places(folder); !checked) return checked;
     return RecordingDraft::check({folder, kRecording}, true);
@@ -138,9 +138,10 @@ Status<AppError> check_results_folder(const OpenFolder& folder) {
     if (foreign) {
         return cannot_create(
             folder.shown(),
-            fmt::format("contains {}, which is not an unchanged result of an experiment: nothing is "
-                        "overwritten; move it away, or give another directory",
-                        *foreign));
+            {.code = ErrorCode::already_exists,
+             .what = "expected only unchanged results of an experiment, because nothing else is overwritten",
+             .value = "'" + *foreign + "'",
+             .remedy = "move it away, or give another directory"});
     }
     return check_places(folder);
 }

@@ -43,7 +43,7 @@ Status<AppError> simulate(const SeedRequest& request, bool is_noise_free, const 
     if (!summary) return unexpected(summary.error());
     if (request.keeps_recording && !is_noise_free) {
         const auto results = request.recording.parent_to_write();
-        if (!results) return fail(ExitCode::cannot_create, results.error().message());
+        if (!results) return fail(ExitCode::cannot_create, to_error(results.error()));
         if (const auto noted = note_result(*results, request.recording.filename()); !noted) return noted;
     }
     outcome.times.push_back(timer.stop());
@@ -129,11 +129,9 @@ Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const 
     evaluation::TruthConfig config = ground.truth;
     config.external_camera = rig.camera;
     if (auto fault = evaluation::region_fault(config.region, config.resolution_m, rig.T_map_base))
-        return fail(ExitCode::bad_config, ground.scenario.error("region", std::move(*fault)).message());
+        return fail(ExitCode::bad_config, ground.scenario.error("region", std::move(*fault)));
     auto truth = evaluation::build_truth(ground.world, ground.survey, config, rig.T_map_base);
-    if (!truth)
-        return fail(ExitCode::bad_config,
-                    ground.scenario.error("region", std::move(truth.error())).message());
+    if (!truth) return fail(ExitCode::bad_config, ground.scenario.error("region", std::move(truth.error())));
     outcome.times.push_back(timer.stop());
     return std::move(*truth);
 }

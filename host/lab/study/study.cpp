@@ -49,7 +49,7 @@ Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double 
     // valid.
     if (auto fault =
             evaluation::region_fault(truth.region, truth.resolution_m, Eigen::Isometry3d::Identity()))
-        return fail(ExitCode::bad_config, scene->scenario.error("region", *fault).message());
+        return fail(ExitCode::bad_config, scene->scenario.error("region", std::move(*fault)));
     return StudyWorld{std::move(*scene), source_file(inputs.rig, rig->extended_files), std::move(truth)};
 }
 
@@ -57,14 +57,21 @@ Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double 
 Status<AppError> check_next(const std::vector<NamedMapping>& before, const NamedMapping& next) {
     for (const NamedMapping& one : before) {
         if (one.name == next.name)
-            return fail(ExitCode::usage, fmt::format("configuration '{}' is given twice", next.name));
+            return fail(ExitCode::usage, {.code = ErrorCode::duplicate,
+                                          .what = "expected each configuration once",
+                                          .value = fmt::format("'{}' again", next.name),
+                                          .key = "--configurations"});
         if (one.mapping.map.resolution_m != next.mapping.map.resolution_m) {
-            return fail(
-                ExitCode::usage,
-                fmt::format("configurations '{}' and '{}' have voxels of {} m and {} m: their figures cannot "
-                            "be compared; run one at a time",
-                            one.name, next.name, one.mapping.map.resolution_m,
-                            next.mapping.map.resolution_m));
+            return fail(ExitCode::usage,
+                        {.code = ErrorCode::conflict,
+                         .what = fmt::format(
+                             "the figures of '{}' and '{}' cannot be compared: expected voxels of one "
+                             "size",
+                             one.name, next.name),
+                         .value = fmt::format("{} m and {} m", one.mapping.map.resolution_m,
+                                              next.mapping.map.resolution_m),
+                         .remedy = "run one at a time",
+                         .key = "--configurations"});
         }
     }
     return Done{};
@@ -86,8 +93,10 @@ Status<AppError> check_seeds(const std::vector<std::uint64_t>& seeds) {
     std::set<std::uint64_t> seen;
     for (const std::uint64_t seed : seeds) {
         if (!seen.insert(seed).second)
-            return fail(ExitCode::usage,
-                        fmt::format("--seeds: {} is given twice; each seed counts once", seed));
+            return fail(ExitCode::usage, {.code = ErrorCode::duplicate,
+                                          .what = "expected each seed once",
+                                          .value = fmt::format("{} again", seed),
+                                          .key = "--seeds"});
     }
     return Done{};
 }

@@ -15,7 +15,9 @@ Result<WorkFolder, AppError> WorkFolder::create(const OpenFolder& parent) {
     const auto failed = [&parent](int error_number) {
         const std::error_code error(error_number, std::generic_category());
         return cannot_create(parent.shown(),
-                             "nothing can be written there (" + error.message() + "): " + remedy_of(error));
+                             {.code = ErrorCode::system_error,
+                              .what = "nothing can be written there (" + error.message() + ")",
+                              .remedy = remedy_of(error)});
     };
     std::string name = (parent.path_for_libraries() / ".octoskin-work-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) return failed(errno);

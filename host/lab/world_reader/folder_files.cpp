@@ -6,9 +6,9 @@ namespace octoskin::sim {
 
 namespace fs = std::filesystem;
 
-Result<std::unique_ptr<FolderFiles>, std::string> FolderFiles::open(const fs::path& folder) {
+Result<std::unique_ptr<FolderFiles>, Error> FolderFiles::open(const fs::path& folder) {
     auto opened = OpenFolder::open(folder, FolderAccess::read);
-    if (!opened) return unexpected(opened.error().message());
+    if (!opened) return unexpected(to_error(opened.error()));
     return std::unique_ptr<FolderFiles>(new FolderFiles(std::move(*opened)));
 }
 

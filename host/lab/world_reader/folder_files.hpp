@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/folder/open_folder.hpp"
 #include "hw/sim/world/sdf/world_files.hpp"
 
@@ -14,7 +15,7 @@ namespace octoskin::sim {
 
 class FolderFiles final : public WorldFiles {
   public:
-    [[nodiscard]] static Result<std::unique_ptr<FolderFiles>, std::string> open(
+    [[nodiscard]] static Result<std::unique_ptr<FolderFiles>, Error> open(
         const std::filesystem::path& folder);
 
     /// `file`: relative to the folder. Opened files stay open.

@@ -51,7 +51,7 @@ bool write_all(int descriptor, std::string_view bytes) {
 SolidsOrError read(const std::filesystem::path& sdf, bool is_beneath) {
     if (!is_beneath) return load_solids(sdf, nullptr);
     const auto files = FolderFiles::open(".");
-    if (!files) return unexpected(WorldError{{}, "", files.error()});
+    if (!files) return unexpected(files.error());
     return load_solids(sdf, files->get());
 }
 

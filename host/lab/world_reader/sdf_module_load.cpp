@@ -55,30 +55,37 @@ std::filesystem::path place_of(std::string_view uri, const std::filesystem::path
 
 /// Why a file is not SDF at all; empty if it may be. sdformat would only report that it cannot read the file,
 /// after trying to read it as a robot description.
-std::optional<std::string> xml_error_of(const std::filesystem::path& file, bool may_include) {
+/// The key has the line: the reader's answer has no other place for it.
+std::optional<Error> xml_error_of(const std::filesystem::path& file, bool may_include) {
     tinyxml2::XMLDocument document;
     if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
-        return "line " + std::to_string(document.ErrorLineNum()) + ": not well-formed XML (" +
-               document.ErrorName() + ")";
+        return Error{.code = ErrorCode::bad_syntax,
+                     .what = "not well-formed XML (" + std::string(document.ErrorName()) + ")",
+                     .key = "line " + std::to_string(document.ErrorLineNum())};
     }
     const std::string root = document.RootElement() == nullptr ? "" : document.RootElement()->Name();
-    if (root != "sdf") return "not an SDF file: expected the root element 'sdf', found '" + root + "'";
+    if (root != "sdf")
+        return Error{ErrorCode::foreign_format, "not an SDF file: expected the root element 'sdf'",
+                     "'" + root + "'"};
     Includes includes;
     document.Accept(&includes);
     for (const Include& include : includes.found()) {
         const std::string line = "line " + std::to_string(include.line);
         // sdformat also searches included files in folders of its own choice.
         if (!may_include)
-            return line +
-                   ": <include> is not read in a world inside a recording: give the world by its own option, "
-                   "or write the model out";
+            return Error{.code = ErrorCode::unsupported,
+                         .what = "<include> is not read in a world inside a recording",
+                         .remedy = "give the world by its own option, or write the model out",
+                         .key = line};
         const auto place = place_of(include.uri, file);
         std::error_code error;
         const bool is_model = std::filesystem::is_directory(place, error);
         const auto kind = rig::other_than_a_file(is_model ? place / "model.config" : place);
         if (!kind.empty())
-            return line + ": <include> of '" + include.uri + "', which is " + std::string(kind) +
-                   ", not an ordinary file or a model's folder";
+            return Error{.code = ErrorCode::wrong_kind_of_file,
+                         .what = "<include> expects an ordinary file or a model's folder",
+                         .value = "'" + include.uri + "', which is " + std::string(kind),
+                         .key = line};
     }
     return std::nullopt;
 }
@@ -87,15 +94,15 @@ struct SdfModule {
     ReadSolids read_solids = nullptr;
 };
 
-/// The error says why the module cannot be loaded.
-Result<SdfModule, std::string> sdf_module() {
+Result<SdfModule, Error> sdf_module() {
     void* const module = ::dlopen(kSdfModule, RTLD_NOW | RTLD_LOCAL);
     void* const symbol = module == nullptr ? nullptr : ::dlsym(module, kReadSolidsSymbol);
     if (symbol == nullptr) {
         const char* const reason = ::dlerror();
-        return unexpected("the reader of SDF files cannot be loaded: " +
-                          std::string(reason == nullptr ? kReadSolidsSymbol : reason) +
-                          "; build octoskin_programs, or install octoskin anew");
+        return unexpected(Error{.code = ErrorCode::no_program,
+                                .what = "the reader of SDF files cannot be loaded (" +
+                                        std::string(reason == nullptr ? kReadSolidsSymbol : reason) + ")",
+                                .remedy = "build octoskin_programs, or install octoskin anew"});
     }
     return SdfModule{reinterpret_cast<ReadSolids>(symbol)};
 }
@@ -103,24 +110,24 @@ Result<SdfModule, std::string> sdf_module() {
 }  // namespace
 
 SolidsOrError load_solids(const std::filesystem::path& sdf, const WorldFiles* files) {
-    const auto failed = [](const std::string& what) { return unexpected(WorldError{{}, "", what}); };
+    const auto failed = [](ErrorCode code, const std::string& what) { return unexpected(Error{code, what}); };
     std::filesystem::path path = sdf;
     if (files != nullptr) {
         auto checked = files->openable(sdf);
-        if (!checked) return failed(checked.error());
+        if (!checked) return failed(ErrorCode::outside_folder, checked.error());
         path = std::move(*checked);
     }
     std::error_code error;
-    if (!std::filesystem::exists(path, error)) return failed("no such file");
+    if (!std::filesystem::exists(path, error)) return failed(ErrorCode::not_found, "no such file");
     if (const auto kind = rig::other_than_a_file(path); !kind.empty())
-        return failed("is " + std::string(kind) + ", not an ordinary file");
-    if (const auto xml_error = xml_error_of(path, files == nullptr)) return failed(*xml_error);
+        return failed(ErrorCode::wrong_kind_of_file, "is " + std::string(kind) + ", not an ordinary file");
+    if (auto xml_error = xml_error_of(path, files == nullptr)) return unexpected(std::move(*xml_error));
     const auto module = sdf_module();
-    if (!module) return failed(module.error());
+    if (!module) return unexpected(module.error());
     SolidsOrError solids = SolidsOfFile{};
     module->read_solids({.file = sdf, .path = path, .files = files}, &solids);
     if (const std::string refused = refused_file(); !refused.empty()) {
-        if (!solids) return failed("needs " + refused + ", not an ordinary file");
+        if (!solids) return unexpected(Error{ErrorCode::wrong_kind_of_file, "needs ordinary files", refused});
         solids->warnings.push_back("needs " + refused + ", not an ordinary file; it is left out");
     }
     return solids;

@@ -45,8 +45,8 @@ struct Arm::Builder {
     void build(const std::string& base_link) {
         const auto base = urdf.model().getLink(base_link);
         if (!base) {
-            return fail("robot", urdf.model().getName(), "has no link '" + base_link + "' to be its base",
-                        "");
+            return fail("robot", urdf.model().getName(),
+                        {ErrorCode::unknown_name, "has no link '" + base_link + "' to be its base"}, "");
         }
         arm.joints_.assign(joints.size(), Limits{"", 0.0, 0.0});
         arm.links_.push_back({.name = base_link});
@@ -62,8 +62,8 @@ struct Arm::Builder {
         for (std::size_t i = 0; i < joints.size(); ++i) {
             if (arm.joints_[i].joint.empty()) {
                 return fail("joint", joints[i],
-                            "expected a moving joint beyond link '" + base_link +
-                                "', each named once; there is none of this name",
+                            {ErrorCode::unknown_name, "expected a moving joint beyond link '" + base_link +
+                                                          "', each named once; there is none of this name"},
                             "");
             }
         }
@@ -76,9 +76,11 @@ struct Arm::Builder {
         link.axis = Eigen::Vector3d(joint.axis.x, joint.axis.y, joint.axis.z);
         const auto motion = motion_of(joint);
         if (!link.T_parent_joint.matrix().allFinite()) {
-            fail("joint", joint.name, "expected an origin of finite numbers", "its origin");
+            fail("joint", joint.name, {ErrorCode::bad_value, "expected an origin of finite numbers"},
+                 "its origin");
         } else if (!motion) {
-            fail("joint", joint.name, "expected a fixed, revolute, continuous or prismatic joint",
+            fail("joint", joint.name,
+                 {ErrorCode::unsupported, "expected a fixed, revolute, continuous or prismatic joint"},
                  "of another kind");
         } else {
             link.motion = *motion;
@@ -92,13 +94,16 @@ struct Arm::Builder {
     void add_moving(const urdf::Joint& joint, Link& link) {
         const auto named = std::find(joints.begin(), joints.end(), joint.name);
         if (named == joints.end() || joint.mimic) {
-            return fail("joint", joint.name, "moves, but the rig's joint states do not contain its position",
-                        joint.mimic ? "mimic" : "not named");
+            return fail(
+                "joint", joint.name,
+                {ErrorCode::missing_key, "moves, but the rig's joint states do not contain its position"},
+                joint.mimic ? "mimic" : "not named");
         }
         const double length = link.axis.norm();
         if (!(std::abs(length - 1.0) <= 1e-6)) {
             return fail("joint", joint.name,
-                        "expected an axis of length 1, found one of length " + std::to_string(length),
+                        {ErrorCode::bad_value, "expected an axis of length 1",
+                         "one of length " + std::to_string(length)},
                         "its axis");
         }
         link.axis /= length;
@@ -126,14 +131,13 @@ struct Arm::Builder {
         return std::nullopt;
     }
 
-    void fail(const std::string& tag, const std::string& name, const std::string& what,
-              const std::string& kind) {
-        faults.push_back({urdf.error(tag, name, what), kind});
+    void fail(const std::string& tag, const std::string& name, Error error, const std::string& kind) {
+        faults.push_back({urdf.error(tag, name, std::move(error)), kind});
     }
 };
 
-Result<Arm, rig::RigError> Arm::read(const FilePlace& urdf, const std::string& base_link,
-                                     const std::vector<std::string>& joints) {
+Result<Arm, Error> Arm::read(const FilePlace& urdf, const std::string& base_link,
+                             const std::vector<std::string>& joints) {
     const auto document = rig::UrdfDocument::read(urdf);
     if (!document) {
         return unexpected(document.error());

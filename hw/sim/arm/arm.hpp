@@ -19,8 +19,8 @@ class Arm {
     /// The part of the robot that `base_link` carries. `joints`: its moving joints in the order of every
     /// joint vector. Errors name file and element: the URDF cannot be read; no such base link; a named joint
     /// is missing, named twice, fixed, or neither revolute nor prismatic; a moving joint is not named.
-    [[nodiscard]] static Result<Arm, rig::RigError> read(const FilePlace& urdf, const std::string& base_link,
-                                                         const std::vector<std::string>& joints);
+    [[nodiscard]] static Result<Arm, Error> read(const FilePlace& urdf, const std::string& base_link,
+                                                 const std::vector<std::string>& joints);
 
     [[nodiscard]] std::size_t joint_count() const noexcept { return joints_.size(); }
     [[nodiscard]] bool has_link(const std::string& link) const;

@@ -5,6 +5,11 @@
 #include <numbers>
 
 namespace octoskin::sim {
+namespace {
+
+constexpr const char* kMoveCircle = "move the circle or the start posture";
+
+}  // namespace
 
 Eigen::Isometry3d CircleMotion::T_base_link(std::uint32_t tick) const {
     const double angle = 2.0 * std::numbers::pi * tick / ticks_per_revolution;
@@ -15,41 +20,44 @@ Eigen::Isometry3d CircleMotion::T_base_link(std::uint32_t tick) const {
     return T_base_link;
 }
 
-Result<Trajectory, MotionError> Trajectory::circle(const Arm& arm, const CircleMotion& motion,
-                                                   SimTime start) {
+Result<Trajectory, Error> Trajectory::circle(const Arm& arm, const CircleMotion& motion, SimTime start) {
     assert(motion.ticks() > 0 && motion.tick_rate_hz > 0.0);
-    const auto failure = [](const char* key, std::string what) {
-        return unexpected(MotionError{key, std::move(what)});
+    const auto failure = [](const char* key, Error error) {
+        error.key = key;
+        return unexpected(std::move(error));
     };
     if (!arm.has_link(motion.link)) {
         std::string links;
         for (const std::string& link : arm.links()) links.append(links.empty() ? "" : ", ").append(link);
-        return failure("motion.circle.link", "the scenario moves link '" + motion.link +
-                                                 "', but the robot's links are " + links +
-                                                 ": give --scenario a file for this robot");
+        return failure("motion.circle.link",
+                       {ErrorCode::unknown_name, "expected a link of the robot, which has " + links,
+                        "'" + motion.link + "'", "give --scenario a file for this robot"});
     }
     if (static_cast<std::size_t>(motion.start_position.size()) != arm.joint_count()) {
-        return failure("motion.circle.start_position_rad",
-                       "the start posture has " + std::to_string(motion.start_position.size()) +
-                           " joints, the robot " + std::to_string(arm.joint_count()) +
-                           ": give one number for each");
+        return failure("motion.circle.start_position_rad", {ErrorCode::mismatch,
+                                                            "expected one number for each of the robot's " +
+                                                                std::to_string(arm.joint_count()) + " joints",
+                                                            std::to_string(motion.start_position.size())});
     }
     Trajectory trajectory(start, motion.tick_rate_hz);
     Eigen::VectorXd position = motion.start_position;
     for (std::uint32_t tick = 0; tick <= motion.ticks(); ++tick) {
         const auto solved = arm.inverse(motion.link, motion.T_base_link(tick), position);
         if (!solved) {
-            return failure("motion.circle", "'" + motion.link + "' does not reach its place at tick " +
-                                                std::to_string(tick) +
-                                                "; move the circle or the start posture");
+            return failure(
+                "motion.circle",
+                {.code = ErrorCode::out_of_range,
+                 .what = "'" + motion.link + "' does not reach its place at tick " + std::to_string(tick),
+                 .remedy = kMoveCircle});
         }
         position = *solved;
         if (const auto joint = arm.joint_outside_limits(position)) {
-            return failure("motion.circle",
-                           "joint '" + joint->joint + "' is outside its limits at tick " +
-                               std::to_string(tick) + ": at " + std::to_string(joint->position) +
-                               ", allowed are " + std::to_string(joint->lower) + " to " +
-                               std::to_string(joint->upper) + "; move the circle or the start posture");
+            return failure(
+                "motion.circle",
+                {ErrorCode::out_of_range,
+                 "expected joint '" + joint->joint + "' at tick " + std::to_string(tick) + " from " +
+                     std::to_string(joint->lower) + " to " + std::to_string(joint->upper),
+                 std::to_string(joint->position), kMoveCircle});
         }
         trajectory.ticks_.push_back(position);
     }

@@ -32,21 +32,16 @@ struct CircleMotion {
     [[nodiscard]] std::uint32_t ticks() const noexcept { return ticks_per_revolution * revolutions; }
 };
 
-/// Why an arm cannot perform a motion: the fault, its place, the remedy.
-struct MotionError {
-    std::string scenario_key;  ///< of the value at fault: "motion.circle.link"
-    std::string what;
-};
-
 /// Joint positions at rest before the motion, through the inverse kinematics of each tick during it, and at
 /// rest after it. Between two ticks each joint moves at constant speed: on the experiment's circle the link
 /// then deviates from the arc by 16 um.
 class Trajectory {
   public:
-    /// Solves every tick from the one before. Errors: no such link; a tick out of reach (residual over 2e-7 m
-    /// or rad); a joint outside its limits; each with the tick. About 10 ms for 300 ticks.
-    [[nodiscard]] static Result<Trajectory, MotionError> circle(const Arm& arm, const CircleMotion& motion,
-                                                                SimTime start);
+    /// Solves every tick from the one before. Errors, with the scenario's key but without its file: no such
+    /// link; a tick out of reach (residual over 2e-7 m or rad); a joint outside its limits; each with the
+    /// tick. About 10 ms for 300 ticks.
+    [[nodiscard]] static Result<Trajectory, Error> circle(const Arm& arm, const CircleMotion& motion,
+                                                          SimTime start);
 
     /// N joints, radians, continuous in time. < 1 us.
     [[nodiscard]] Eigen::VectorXd at(SimTime time) const;

@@ -202,11 +202,11 @@ class RigInOneProcess {
 
 namespace {
 
-Result<ExperimentSummary, ExperimentError> run(const ExperimentInput& input, const ExperimentOutput& output) {
+Result<ExperimentSummary, Error> run(const ExperimentInput& input, const ExperimentOutput& output) {
     const SimTime start = from_seconds(input.scenario.rest_s);
     const auto trajectory = Trajectory::circle(input.arm, input.scenario.motion, start);
     if (!trajectory) {
-        return unexpected(ExperimentError{trajectory.error().scenario_key, trajectory.error().what});
+        return unexpected(trajectory.error());
     }
     const SimTime end = trajectory->end();
 
@@ -246,12 +246,12 @@ Result<ExperimentSummary, ExperimentError> run(const ExperimentInput& input, con
 
 }  // namespace
 
-Result<ExperimentSummary, ExperimentError> run_experiment(const ExperimentInput& input,
-                                                          const ExperimentOutput& output) {
+Result<ExperimentSummary, Error> run_experiment(const ExperimentInput& input,
+                                                const ExperimentOutput& output) {
     try {
         return run(input, output);
     } catch (const BoardLinkError& error) {
-        return unexpected(ExperimentError{"", error.what()});
+        return unexpected(Error{ErrorCode::no_device, error.what()});
     }
 }
 

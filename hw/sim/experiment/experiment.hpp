@@ -68,14 +68,10 @@ struct ExperimentSummary {
     std::string violations;                 ///< of emulated boards, one a line
 };
 
-struct ExperimentError {
-    std::string scenario_key;  ///< of the value at fault; empty: the scenario is not at fault
-    std::string what;
-};
-
-/// Runs it from power-up to the STOP mark. Same input, same output, to the bit. About 1 s for the sensors and
+/// Runs it from power-up to the STOP mark. An error has the key of the scenario, if that is at fault, and no
+/// file. Same input, same output, to the bit. About 1 s for the sensors and
 /// 0.1 s for each depth frame.
-[[nodiscard]] Result<ExperimentSummary, ExperimentError> run_experiment(const ExperimentInput& input,
-                                                                        const ExperimentOutput& output);
+[[nodiscard]] Result<ExperimentSummary, Error> run_experiment(const ExperimentInput& input,
+                                                              const ExperimentOutput& output);
 
 }  // namespace octoskin::sim

@@ -7,14 +7,14 @@
 
 namespace octoskin::sim {
 
-Status<rig::RigError> check_hidden_models(const Scenario& scenario, const World& world) {
+Status<Error> check_hidden_models(const Scenario& scenario, const World& world) {
     std::set<std::string> models;
     for (const Solid& solid : world.solids()) models.insert(solid.model);
     for (const std::string& hidden : scenario.hidden_models) {
         if (models.contains(hidden)) continue;
-        return unexpected(scenario.error(
-            keys::kHiddenModels.path,
-            "expected models of the world, found '" + hidden + "'; it has " + rig::joined(models)));
+        return unexpected(
+            scenario.error(keys::kHiddenModels.path, {ErrorCode::unknown_name, "expected models of the world",
+                                                      "'" + hidden + "'", "it has " + rig::joined(models)}));
     }
     return Done{};
 }

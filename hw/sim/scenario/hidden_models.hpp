@@ -9,6 +9,6 @@ namespace octoskin::sim {
 
 /// Checks that every hidden model of the scenario is a model of the world. The error lists the models of the
 /// world.
-[[nodiscard]] Status<rig::RigError> check_hidden_models(const Scenario& scenario, const World& world);
+[[nodiscard]] Status<Error> check_hidden_models(const Scenario& scenario, const World& world);
 
 }  // namespace octoskin::sim

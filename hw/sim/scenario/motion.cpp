@@ -21,11 +21,14 @@ ModelPlace read_place(const rig::Value& value, const std::string& path, const Mo
         place.offset_m = rig::read_position(table, keys::world_motion::kOffset);
     if (before != nullptr && place.from_s <= before->from_s)
         table.fail(keys::world_motion::kAt,
-                   fmt::format("expected later than the place before, {} s, found {}", before->from_s,
-                               place.from_s));
+                   {ErrorCode::out_of_range,
+                    fmt::format("expected later than the place before, {} s", before->from_s),
+                    fmt::format("{}", place.from_s)});
     if (before != nullptr && before->moves_on && !place.is_there)
         rig::fail(value, path,
-                  "the place before moves on to here, but the model is not there; give it a place first");
+                  {.code = ErrorCode::conflict,
+                   .what = "the place before moves on to here, but the model is not there",
+                   .remedy = "give it a place first"});
     return place;
 }
 
@@ -34,18 +37,21 @@ ModelMotion read_model(const rig::Value& value, const std::string& path, const s
     ModelMotion motion;
     motion.model = table.text(keys::world_motion::kModel);
     if (std::ranges::find(solids, motion.model, &Solid::model) == solids.end())
-        table.fail(keys::world_motion::kModel, "the world has no model '" + motion.model + "'");
+        table.fail(keys::world_motion::kModel,
+                   {ErrorCode::unknown_name, "expected a model of the world", "'" + motion.model + "'"});
     const auto& places = table.list(keys::world_motion::kPlaces);
     const std::string places_path = table.path_of(keys::world_motion::kPlaces);
     for (std::size_t i = 0; i < places.size(); ++i) {
         motion.places.push_back(read_place(places[i], fmt::format("{}[{}]", places_path, i),
                                            i > 0 ? &motion.places.back() : nullptr));
     }
-    if (motion.places.empty()) table.fail(keys::world_motion::kPlaces, "expected at least one place");
+    if (motion.places.empty())
+        table.fail(keys::world_motion::kPlaces,
+                   {ErrorCode::missing_key, "expected at least one place, found none"});
     const auto has_no_way = [](const ModelPlace& place) { return place.moves_on && !place.is_there; };
     if (motion.places.back().moves_on || std::ranges::any_of(motion.places, has_no_way))
         table.fail(keys::world_motion::kPlaces,
-                   "a model that moves on must be there, and needs a next place");
+                   {ErrorCode::conflict, "a model that moves on must be there, and needs a next place"});
     return motion;
 }
 
@@ -58,7 +64,8 @@ std::vector<ModelMotion> read_checked_motion(const FilePlace& file, const std::v
         const std::string path = fmt::format("{}[{}]", top.path_of(keys::world_motion::kModels), i);
         ModelMotion motion = read_model(models[i], path, solids);
         if (std::ranges::find(motions, motion.model, &ModelMotion::model) != motions.end())
-            rig::fail(models[i], path, "model '" + motion.model + "' comes twice");
+            rig::fail(models[i], path,
+                      {ErrorCode::duplicate, "expected each model once", "'" + motion.model + "' again"});
         motions.push_back(std::move(motion));
     }
     return motions;
@@ -66,12 +73,11 @@ std::vector<ModelMotion> read_checked_motion(const FilePlace& file, const std::v
 
 }  // namespace
 
-Result<std::vector<ModelMotion>, rig::RigError> read_motion(const FilePlace& file,
-                                                            const std::vector<Solid>& solids) {
+Result<std::vector<ModelMotion>, Error> read_motion(const FilePlace& file, const std::vector<Solid>& solids) {
     try {
         return read_checked_motion(file, solids);
-    } catch (const rig::Fault& fault) {
-        return unexpected(fault.error);
+    } catch (const Error& error) {
+        return unexpected(error);
     }
 }
 

@@ -22,7 +22,7 @@ namespace octoskin::sim {
 /// As strictly as read_scenario(): an unknown key, a time that is not later than the one before, a model that
 /// occurs twice or is not one of `solids` is an error, with its line. Seconds from the start of the arm's
 /// motion; -600 or greater.
-[[nodiscard]] Result<std::vector<ModelMotion>, rig::RigError> read_motion(const FilePlace& file,
-                                                                          const std::vector<Solid>& solids);
+[[nodiscard]] Result<std::vector<ModelMotion>, Error> read_motion(const FilePlace& file,
+                                                                  const std::vector<Solid>& solids);
 
 }  // namespace octoskin::sim

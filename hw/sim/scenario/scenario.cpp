@@ -26,8 +26,8 @@ std::string item_path(const Table& table, const rig::DeclaredKey auto& key, std:
 Eigen::Vector3d unit_vector(const Table& table, const rig::NumbersKey& key) {
     Eigen::Vector3d vector = rig::read_position(table, key);
     if (std::abs(vector.norm() - 1.0) > 1e-9) {
-        table.fail(key, "expected three numbers that make a vector of length 1, found length " +
-                            std::to_string(vector.norm()));
+        table.fail(key, {ErrorCode::bad_value, "expected three numbers that make a vector of length 1",
+                         "length " + std::to_string(vector.norm())});
     }
     return vector;
 }
@@ -60,7 +60,8 @@ CircleMotion read_circle(const Value& value, const std::string& path, Scenario& 
     motion.towards_start = unit_vector(table, keys::circle::kTowardsStart);
     motion.towards_quarter = unit_vector(table, keys::circle::kTowardsQuarter);
     if (std::abs(motion.towards_start.dot(motion.towards_quarter)) > 1e-9) {
-        table.fail(keys::circle::kTowardsQuarter, "expected a vector at right angles to towards_start");
+        table.fail(keys::circle::kTowardsQuarter,
+                   {ErrorCode::bad_value, "expected a vector at right angles to towards_start"});
     }
     motion.ticks_per_revolution = table.integer<std::uint32_t>(keys::circle::kTicksPerRevolution);
     motion.tick_rate_hz = table.number(keys::circle::kTickRate);
@@ -96,8 +97,10 @@ SlowClockSpread read_slow_clocks(const Table& top) {
     spread.factor_min = table.number(keys::slow_clocks::kFactorMin);
     spread.factor_max = table.number(keys::slow_clocks::kFactorMax);
     if (spread.factor_max < spread.factor_min)
-        table.fail(keys::slow_clocks::kFactorMax,
-                   "expected at least factor_min, " + std::to_string(spread.factor_min));
+        table.fail(
+            keys::slow_clocks::kFactorMax,
+            {ErrorCode::out_of_range, "expected at least factor_min, " + std::to_string(spread.factor_min),
+             std::to_string(spread.factor_max)});
     return spread;
 }
 
@@ -114,7 +117,8 @@ TraitsOf read_traits(const Value& value, const std::string& path) {
                                      .mask = table.integer<std::uint8_t>(keys::traits::kMask)});
     } else {
         for (const rig::IntegerKey& key : {keys::traits::kReads, keys::traits::kMask})
-            if (table.find(key) != nullptr) table.fail(key, "expected a register with it");
+            if (table.find(key) != nullptr)
+                table.fail(key, {ErrorCode::missing_key, "expected a register with it, found none"});
     }
     const auto time = [&](const rig::IntegerKey& key) {
         return Microseconds{table.integer<std::int64_t>(key)};
@@ -157,7 +161,8 @@ void read_judgement(const Table& top, Scenario& scenario) {
     scenario.region.p_base_min = rig::read_position(region, keys::region::kMin);
     scenario.region.p_base_max = rig::read_position(region, keys::region::kMax);
     if (!(scenario.region.p_base_min.array() < scenario.region.p_base_max.array()).all()) {
-        region.fail(keys::region::kMax, "expected each number greater than that of min_m");
+        region.fail(keys::region::kMax,
+                    {ErrorCode::out_of_range, "expected each number greater than that of min_m"});
     }
     if (region.find(keys::region::kFloorTop) != nullptr)
         scenario.region.floor_top_m = region.number(keys::region::kFloorTop);
@@ -171,10 +176,15 @@ FilePlace read_path(const Table& top, const rig::TextKey& key, const std::string
     const bool is_scalar = value.kind == Value::Kind::scalar;
     const auto opened = file.open();
     if (opened && is_scalar) return file;
-    const std::string expected = "expected the path of " + what + ", relative to this file; ";
-    if (is_scalar && file.folder() != nullptr && opened.error().fault != FolderFault::absent)
-        top.fail(key, expected + "'" + value.text + "' " + opened.error().reason());
-    top.fail(key, expected + "there is none at " + file.shown().string());
+    Error error{ErrorCode::not_found, "expected the path of " + what + ", relative to this file",
+                "none at " + file.shown().string()};
+    if (is_scalar && file.folder() != nullptr && opened.error().fault != FolderFault::absent) {
+        const Error refused = to_error(opened.error());
+        error.code = refused.code;
+        error.value = "'" + value.text + "', which " + refused.what;
+        error.remedy = refused.remedy;
+    }
+    top.fail(key, std::move(error));
 }
 
 /// The document with the names of its files replaced by those in a recording.
@@ -219,17 +229,19 @@ Eigen::Vector3d Scenario::map_shift_m(std::uint64_t seed) const {
     return further_map_shift_max_m * Eigen::Vector3d(noise.uniform(0), noise.uniform(1), noise.uniform(2));
 }
 
-rig::RigError Scenario::error(std::string_view key, std::string what) const {
+Error Scenario::error(std::string_view key, Error error) const {
     const auto place = places.find(key);
-    if (place == places.end()) return {file, 0, std::string(key), std::move(what)};
-    return {place->second.file, place->second.line, std::string(key), std::move(what)};
+    error.file = place == places.end() ? file : place->second.file;
+    error.line = place == places.end() ? 0 : place->second.line;
+    error.key = std::string(key);
+    return error;
 }
 
-Result<Scenario, rig::RigError> read_scenario(const FilePlace& file, WorldOf world) {
+Result<Scenario, Error> read_scenario(const FilePlace& file, WorldOf world) {
     try {
         return read_checked(confined_to_recording(file), world);
-    } catch (const rig::Fault& fault) {
-        return unexpected(fault.error);
+    } catch (const Error& error) {
+        return unexpected(error);
     }
 }
 

@@ -67,7 +67,7 @@ struct Scenario {
     /// The shift of a seed: the listed one, else uniform in [0, further_map_shift_max_m) on each axis.
     [[nodiscard]] Eigen::Vector3d map_shift_m(std::uint64_t seed) const;
     /// An error about the value of one key, at its line if that is among `places`.
-    [[nodiscard]] rig::RigError error(std::string_view key, std::string what) const;
+    [[nodiscard]] Error error(std::string_view key, Error error) const;
 };
 
 /// The names in standalone_text.
@@ -80,7 +80,6 @@ enum class WorldOf : std::uint8_t { scenario, others };
 /// Reads and checks a scenario, as strictly as read_rig(): unknown keys, types, units, ranges; `extends:`
 /// works too. Paths in it are relative to the file. A scenario below a named folder (a recording) may refer
 /// only to files of that folder, without links.
-[[nodiscard]] Result<Scenario, rig::RigError> read_scenario(const FilePlace& file,
-                                                            WorldOf world = WorldOf::scenario);
+[[nodiscard]] Result<Scenario, Error> read_scenario(const FilePlace& file, WorldOf world = WorldOf::scenario);
 
 }  // namespace octoskin::sim

@@ -146,73 +146,77 @@ std::filesystem::path find_reader() {
     return is_there ? libexec / kWorldReader : std::filesystem::path();
 }
 
-std::string refusal(const std::string& limit) {
-    return "needs more than " + limit + " to be read: give a world of fewer models, or coarser meshes";
+Error refusal(const std::string& limit) {
+    return {.code = ErrorCode::too_large,
+            .what = "needs more than " + limit + " to be read",
+            .remedy = "give a world of fewer models, or coarser meshes"};
 }
 
 /// The fault for its exit status; empty if it was successful.
-std::optional<std::string> fault_of(int status, const ReadLimits& limits) {
+std::optional<Error> fault_of(int status, const ReadLimits& limits) {
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
         return refusal(std::to_string(limits.processor_s) + " s of processor time");
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS) {
-        return "the reader made a forbidden system call and was ended: the file, or one "
-               "of "
-               "its meshes, may be an attack; do not use it";
+        return Error{.code = ErrorCode::damaged,
+                     .what = "the reader made a forbidden system call and was ended",
+                     .remedy = "the file, or one of its meshes, may be an attack; do not use it"};
     }
     if (WIFSIGNALED(status)) {
-        return "the reader was ended by signal " + std::to_string(WTERMSIG(status)) +
-               ": the file, or one of its meshes, is damaged; take it out, or save it anew";
+        return Error{.code = ErrorCode::damaged,
+                     .what = "the reader was ended by signal " + std::to_string(WTERMSIG(status)),
+                     .remedy = "the file, or one of its meshes, is damaged; take it out, or save it anew"};
     }
     if (WEXITSTATUS(status) == kOutOfMemory)
         return refusal(std::to_string(limits.memory_mib) + " MiB of memory");
     if (WEXITSTATUS(status) != 0)
-        return "the reader ended with exit code " + std::to_string(WEXITSTATUS(status));
+        return Error{ErrorCode::damaged,
+                     "the reader ended with exit code " + std::to_string(WEXITSTATUS(status))};
     return std::nullopt;
 }
 
 }  // namespace
 
-Result<std::string, ReadFault> read_in_process(const FilePlace& sdf, const ReadLimits& limits,
-                                               const std::filesystem::path& program_given) {
+Result<std::string, Error> read_in_process(const FilePlace& sdf, const ReadLimits& limits,
+                                           const std::filesystem::path& program_given) {
     const auto until = Clock::now() + limits.patience;
     const auto program = program_given.empty() ? find_reader() : program_given;
     if (program.empty()) {
-        return unexpected(ReadFault{std::string("the reader of SDF files is not there: ") + kWorldReader +
-                                        " is neither beside this program nor in libexec: build "
-                                        "octoskin_programs, or install octoskin anew",
-                                    true});
+        return unexpected(Error{.code = ErrorCode::no_program,
+                                .what = std::string("the reader of SDF files is not there, ") + kWorldReader +
+                                        " is neither beside this program nor in libexec",
+                                .remedy = "build octoskin_programs, or install octoskin anew"});
     }
     std::vector<std::string> command{program.string(), std::to_string(limits.memory_mib),
                                      std::to_string(limits.processor_s), sdf.name().string()};
     std::optional<OpenFolder> folder;
     if (const NamedFolder* const named = sdf.folder()) {
         auto opened = named->open();
-        if (!opened) return unexpected(ReadFault{opened.error().reason()});
+        if (!opened) return unexpected(to_error(opened.error()));
         folder = std::move(*opened);
         command.emplace_back(kBeneath);
     }
     Reader reader(std::move(command), folder ? folder->descriptor() : -1);
     if (reader.error() != 0) {
-        return unexpected(ReadFault{"the reader of SDF files cannot be started: " + program.string() + ": " +
-                                        std::strerror(reader.error()),
-                                    true});
+        return unexpected(
+            Error{ErrorCode::no_program, "the reader of SDF files cannot be started: " + program.string() +
+                                             ": " + std::strerror(reader.error())});
     }
     std::string bytes;
     std::vector<char> part(kMiB);
     while (true) {
         const auto count = reader.read(part.data(), part.size(), until);
-        if (!count) return unexpected(ReadFault{refusal(std::to_string(limits.patience.count()) + " s")});
+        if (!count) return unexpected(refusal(std::to_string(limits.patience.count()) + " s"));
         if (*count == 0) break;
         if (bytes.size() + *count > limits.result_mib * kMiB)
-            return unexpected(
-                ReadFault{refusal(std::to_string(limits.result_mib) + " MiB for its triangles")});
+            return unexpected(refusal(std::to_string(limits.result_mib) + " MiB for its triangles"));
         bytes.append(part.data(), *count);
     }
     const auto status = reader.ended_by(std::max(until, Clock::now() + Reader::kPatienceForEnd));
-    if (!status) return unexpected(ReadFault{"the reader did not end"});
+    if (!status) return unexpected(Error{ErrorCode::time_limit, "the reader did not end"});
     if (auto fault = fault_of(*status, limits)) {
         const std::string words = reader.words();
-        return unexpected(ReadFault{std::move(*fault) + (words.empty() ? "" : "; its output: " + words)});
+        if (!words.empty()) fault->others = "Its output: " + words;
+        return unexpected(*std::move(fault));
     }
     return bytes;
 }

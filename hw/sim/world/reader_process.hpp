@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/result.hpp"
+#include "host/errors/error.hpp"
 #include "host/io/folder/file_place.hpp"
 
 namespace octoskin::sim {
@@ -27,15 +28,10 @@ inline constexpr const char* kBeneath = "--beneath";
 /// Exit code of a reader that ran out of memory.
 inline constexpr int kOutOfMemory = 70;
 
-struct ReadFault {
-    std::string what;
-    bool is_reader_missing = false;  ///< the reader program is missing or cannot be started
-};
-
 /// The output of octoskin-world-read for `sdf` (solids_bytes.hpp). If `sdf` is below a named folder, it opens
-/// only files of that folder. The error names the limit that was reached, how the process ended, or the
-/// missing program. `program`: replaces the installed one.
-[[nodiscard]] Result<std::string, ReadFault> read_in_process(const FilePlace& sdf, const ReadLimits& limits,
-                                                             const std::filesystem::path& program = {});
+/// only files of that folder. The error, which has no file, names the limit that was reached, how the process
+/// ended, or the missing program (ErrorCode::no_program). `program`: replaces the installed one.
+[[nodiscard]] Result<std::string, Error> read_in_process(const FilePlace& sdf, const ReadLimits& limits,
+                                                         const std::filesystem::path& program = {});
 
 }  // namespace octoskin::sim

@@ -17,22 +17,23 @@ std::string cut_message(const std::string& text) {
 }  // namespace
 
 SolidsOrError read_solids(const FilePlace& sdf, const ReadLimits& limits) {
-    const auto failed = [&](const std::string& what) {
-        return unexpected(WorldError{sdf.shown(), "", what});
+    const auto failed = [&](Error error) {
+        error.file = sdf.shown();
+        return unexpected(std::move(error));
     };
     const auto bytes = read_in_process(sdf, limits);
-    if (!bytes) {
-        return unexpected(WorldError{sdf.shown(), "", bytes.error().what, bytes.error().is_reader_missing});
-    }
+    if (!bytes) return failed(bytes.error());
     auto solids = from_bytes(*bytes);
-    if (!solids) return failed("the reader's output is incomplete");
+    if (!solids) return failed({ErrorCode::damaged, "the reader's output is incomplete"});
     if (*solids) {
         for (std::string& warning : (*solids)->warnings)
             warning = sdf.shown().string() + ": " + cut_message(warning);
         return std::move(*solids);
     }
-    return unexpected(
-        WorldError{sdf.shown(), cut_message(solids->error().element), cut_message(solids->error().what)});
+    Error error = solids->error();
+    for (std::string* text : {&error.key, &error.what, &error.value, &error.remedy})
+        *text = cut_message(*text);
+    return failed(std::move(error));
 }
 
 }  // namespace octoskin::sim

@@ -101,8 +101,10 @@ std::string to_bytes(const SolidsOrError& solids) {
     Writer writer;
     if (!solids) {
         writer.put(Kind::error);
-        writer.put_text(solids.error().element);
-        writer.put_text(solids.error().what);
+        const Error& error = solids.error();
+        writer.put(error.code);
+        for (const std::string& text : {error.key, error.what, error.value, error.remedy})
+            writer.put_text(text);
         return writer.take();
     }
     writer.put(Kind::solids);
@@ -126,10 +128,12 @@ std::optional<SolidsOrError> from_bytes(std::string_view bytes) {
     Reader reader(bytes);
     const auto kind = reader.take<Kind>();
     if (kind == Kind::error) {
-        WorldError error;
-        error.element = reader.take_text();
-        error.what = reader.take_text();
-        if (!reader.is_at_end()) return std::nullopt;
+        Error error;
+        error.code = reader.take<ErrorCode>();
+        for (std::string* text : {&error.key, &error.what, &error.value, &error.remedy})
+            *text = reader.take_text();
+        const bool is_known = static_cast<std::size_t>(error.code) < kErrorMeanings.size();
+        if (!reader.is_at_end() || !is_known) return std::nullopt;
         return SolidsOrError(unexpected(std::move(error)));
     }
     if (kind != Kind::solids) return std::nullopt;

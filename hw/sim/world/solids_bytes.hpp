@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "host/errors/error.hpp"
 #include "hw/sim/world/solid.hpp"
-#include "hw/sim/world/world_error.hpp"
 
 namespace octoskin::sim {
 
@@ -21,13 +21,13 @@ struct SolidsOfFile {
     std::vector<std::string> meshes = {};
 };
 
-using SolidsOrError = Result<SolidsOfFile, WorldError>;
+using SolidsOrError = Result<SolidsOfFile, Error>;
 
 /// Both ends are of one build on one machine: numbers are written as in memory, bit for bit.
 [[nodiscard]] std::string to_bytes(const SolidsOrError& solids);
 
 /// Reads these bytes. Empty unless they are complete, nothing follows them, and each corner of a triangle is
-/// one of its solid's vertices. The file of a WorldError is empty: the caller knows it.
+/// one of its solid's vertices. The file of an Error is empty: the caller knows it.
 [[nodiscard]] std::optional<SolidsOrError> from_bytes(std::string_view bytes);
 
 }  // namespace octoskin::sim

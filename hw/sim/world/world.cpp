@@ -75,10 +75,6 @@ struct World::Impl {
     RayCaster caster;
 };
 
-std::string WorldError::message() const {
-    return file.string() + ": " + (element.empty() ? "" : element + ": ") + what;
-}
-
 World::World(std::vector<Solid> solids, std::vector<std::string> warnings)
     : impl_(std::make_unique<Impl>(std::move(solids))) {
     impl_->warnings = std::move(warnings);
@@ -87,7 +83,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-Result<World, WorldError> World::read(const FilePlace& sdf) {
+Result<World, Error> World::read(const FilePlace& sdf) {
     auto solids = read_solids(confined_to_recording(sdf));
     if (!solids) {
         return unexpected(solids.error());

@@ -16,7 +16,6 @@
 #include "common/result.hpp"
 #include "host/io/folder/file_place.hpp"
 #include "hw/sim/world/solid.hpp"
-#include "hw/sim/world/world_error.hpp"
 
 namespace octoskin::sim {
 
@@ -30,7 +29,7 @@ class World {
   public:
     /// Reads the visuals of an SDF file; see read_solids() for shapes, errors, limits and the files it may
     /// refer to.
-    [[nodiscard]] static Result<World, WorldError> read(const FilePlace& sdf);
+    [[nodiscard]] static Result<World, Error> read(const FilePlace& sdf);
     explicit World(std::vector<Solid> solids, std::vector<std::string> warnings = {});
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;

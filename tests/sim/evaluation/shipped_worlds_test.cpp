@@ -91,7 +91,7 @@ TEST_P(ShippedWorld, has_its_hidden_objects_and_every_tick_in_reach) {
     const auto checked = sim::check_hidden_models(scenario_, world_);
     EXPECT_TRUE(checked) << checked.error().message();
     const auto trajectory = sim::Trajectory::circle(arm_, scenario_.motion, sim::SimTime{0});
-    EXPECT_TRUE(trajectory) << trajectory.error().what;
+    EXPECT_TRUE(trajectory) << trajectory.error().message();
 }
 
 TEST_P(WorldBeforeCamera, hides_its_hidden_objects_from_every_pixel_of_the_camera) {
@@ -114,7 +114,7 @@ TEST_P(WorldBeforeCamera, hides_its_hidden_objects_from_every_pixel_of_the_camer
 
 TEST_P(ShippedWorld, shows_its_hidden_objects_to_some_sensor_that_is_never_inside_a_solid) {
     const auto trajectory = sim::Trajectory::circle(arm_, scenario_.motion, sim::SimTime{0});
-    ASSERT_TRUE(trajectory) << trajectory.error().what;
+    ASSERT_TRUE(trajectory) << trajectory.error().message();
     std::set<std::string> met;
     for (std::int64_t us = 0; us <= trajectory->end().us; us += 100'000) {
         const auto poses = arm_.forward(trajectory->at(sim::SimTime{us}));

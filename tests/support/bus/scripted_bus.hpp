@@ -65,7 +65,7 @@ class ScriptedBus {
 class ScriptedSource final : public CanSource {
   public:
     explicit ScriptedSource(std::vector<StampedFrame> frames) : frames_(std::move(frames)) {}
-    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override {
+    [[nodiscard]] Result<std::optional<StampedFrame>, Error> next() override {
         return next_ < frames_.size() ? std::optional(frames_[next_++]) : std::nullopt;
     }
 

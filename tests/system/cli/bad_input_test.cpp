@@ -4,13 +4,23 @@
 
 #include <random>
 
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::code_is;
+using testing_support::file_is;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::others_are;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class BadInput : public ProgramTest {
   protected:
@@ -27,9 +37,9 @@ class BadInput : public ProgramTest {
 TEST_F(BadInput, the_command_line_is_refused_with_a_hint) {
     EXPECT_EQ(octoskin("").exit_code, 64);
     EXPECT_EQ(octoskin("reply").exit_code, 64);
-    const Said unknown = octoskin("replay somewhere --fast");
-    EXPECT_EQ(unknown.exit_code, 64);
-    EXPECT_THAT(unknown.output, HasSubstr("--fast"));
+    EXPECT_THAT(failure_of("replay somewhere --fast"),
+                fails_with(64, code_is(ErrorCode::bad_argument), what_is(HasSubstr("--fast")),
+                           remedy_is(HasSubstr("--help"))));
     EXPECT_EQ(octoskin("simulate out --seed many").exit_code, 64);
     EXPECT_EQ(octoskin("simulate out --seed -1").exit_code, 64);
     EXPECT_EQ(octoskin("--help").exit_code, 0);
@@ -37,54 +47,59 @@ TEST_F(BadInput, the_command_line_is_refused_with_a_hint) {
 }
 
 TEST_F(BadInput, a_missing_recording_or_a_missing_part_of_it_is_named) {
-    const Said absent = octoskin("replay " + path("nowhere"));
-    EXPECT_EQ(absent.exit_code, 66);
-    EXPECT_THAT(absent.output,
-                HasSubstr("nowhere: no such directory; `octoskin record` (of a running daemon)"));
-    const Said unreported = octoskin("explain 0 0 1");
-    EXPECT_EQ(unreported.exit_code, 64);
-    EXPECT_THAT(unreported.output, HasSubstr("`octoskin record`"));
+    EXPECT_THAT(failure_of("replay " + path("nowhere")),
+                fails_with(66, code_is(ErrorCode::not_found), path_is(path("nowhere")),
+                           remedy_is(HasSubstr("`octoskin record`"))));
+    EXPECT_THAT(failure_of("explain 0 0 1"),
+                fails_with(64, code_is(ErrorCode::bad_argument), key_is("--recording"),
+                           remedy_is(HasSubstr("`octoskin record`"))));
     std::filesystem::create_directory(path("empty"));
-    const Said empty = octoskin("explain 0 0 1 --recording " + path("empty"));
-    EXPECT_EQ(empty.exit_code, 66);
-    EXPECT_THAT(empty.output,
-                HasSubstr("can.log: no such file: this is not a recording of `octoskin record`"));
+    EXPECT_THAT(failure_of("explain 0 0 1 --recording " + path("empty")),
+                fails_with(66, code_is(ErrorCode::not_found), path_is(path("empty/can.log")),
+                           remedy_is(HasSubstr("`octoskin record`"))));
     record_short("rec");
     for (const char* file : {"can.log", "rig.yaml", "robot.urdf", "meta.yaml"}) {
         std::filesystem::rename(path(std::string("rec/") + file), path("aside"));
-        const Said said = octoskin("replay " + path("rec"));
-        EXPECT_EQ(said.exit_code, 66) << file;
-        EXPECT_THAT(said.output, HasSubstr(file));
+        const Failure failure = failure_of("replay " + path("rec"));
+        EXPECT_THAT(failure, fails_with(66, code_is(ErrorCode::not_found)));
+        if (file == std::string("robot.urdf")) {  // the rig names it
+            EXPECT_THAT(failure.error, AllOf(path_is(path("rec/rig.yaml")), key_is("robot.urdf"),
+                                             value_is(HasSubstr(path("rec/robot.urdf")))));
+        } else {
+            EXPECT_EQ(failure.error.file, path(std::string("rec/") + file));
+        }
         std::filesystem::rename(path("aside"), path(std::string("rec/") + file));
     }
 }
 
 TEST_F(BadInput, a_rig_with_a_mistake_is_refused_by_file_line_and_key) {
-    const Said said = octoskin("rig " + source("tests/data/rigs/metres-for-millimetres.yaml"));
-    EXPECT_EQ(said.exit_code, 78);
-    EXPECT_THAT(said.output, testing::ContainsRegex("metres-for-millimetres.yaml:[0-9]+: "));
-    const Said overloaded = octoskin("rig " + source("tests/data/rigs/can-overloaded.yaml"));
-    EXPECT_EQ(overloaded.exit_code, 78);
-    EXPECT_THAT(overloaded.output, HasSubstr("70 %"));
-    const Said robot = octoskin("rig " + source("hw/rigs/experiment.yaml") + " --robot " +
-                                source("tests/data/gantry/gantry.urdf"));
-    EXPECT_EQ(robot.exit_code, 78);
-    EXPECT_THAT(robot.output, HasSubstr("panda"));
+    EXPECT_THAT(failure_of("rig " + source("tests/data/rigs/metres-for-millimetres.yaml")),
+                fails_with(78, code_is(ErrorCode::out_of_range), file_is("metres-for-millimetres.yaml"),
+                           line_is(3), key_is("nodes[0].sensors[0].pose.xyz_m"), value_is("(50, 0, 20)"),
+                           remedy_is(HasSubstr("millimetres"))));
+    EXPECT_THAT(failure_of("rig " + source("tests/data/rigs/can-overloaded.yaml")),
+                fails_with(78, code_is(ErrorCode::overload), file_is("can-overloaded.yaml"), line_is(2),
+                           key_is("bus"), what_is(HasSubstr("70 %")), value_is(HasSubstr("71.1 %")),
+                           remedy_is(HasSubstr("inter_measurement_ms"))));
+    EXPECT_THAT(failure_of("rig " + source("hw/rigs/experiment.yaml") + " --robot " +
+                           source("tests/data/gantry/gantry.urdf")),
+                fails_with(78, code_is(ErrorCode::unknown_name), key_is("robot.base_link"),
+                           what_is(HasSubstr("gantry.urdf")), value_is("'panda_link0'")));
 }
 
 TEST_F(BadInput, an_unsupported_shape_in_a_world_is_named) {
-    const Said said =
-        octoskin("simulate " + path("rec") + " --world " + source("tests/data/worlds/cone-element.sdf"));
-    EXPECT_EQ(said.exit_code, 65) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("cone-element.sdf"));
+    EXPECT_THAT(
+        failure_of("simulate " + path("rec") + " --world " + source("tests/data/worlds/cone-element.sdf")),
+        fails_with(65, path_is(source("tests/data/worlds/cone-element.sdf")), key_is(HasSubstr("pylon")),
+                   what_is(HasSubstr("cone"))));
 }
 
 TEST_F(BadInput, a_mapping_file_with_an_unknown_key_is_refused) {
     record_short("rec");
     write(path("mapping.yaml"), "base: paper\nmodell:\n  miss_log_odds: -0.4\n");
-    const Said said = octoskin("replay " + path("rec") + " --configuration " + path("mapping.yaml"));
-    EXPECT_EQ(said.exit_code, 78);
-    EXPECT_THAT(said.output, HasSubstr("mapping.yaml:2"));
+    EXPECT_THAT(failure_of("replay " + path("rec") + " --configuration " + path("mapping.yaml")),
+                fails_with(78, code_is(ErrorCode::unknown_key), path_is(path("mapping.yaml")), line_is(2),
+                           key_is("modell"), remedy_is(HasSubstr("known here are base, map"))));
 }
 
 TEST_F(BadInput, foreign_lines_and_frames_in_the_log_are_counted_and_change_no_voxel) {
@@ -211,18 +226,18 @@ TEST_F(BadInput, a_broken_meta_file_is_named) {
     record_short("rec");
     for (const char* text : {"", "schema: other\n", "schema: octoskin-recording/1\nseed: nan\n", "a: [\n"}) {
         write(path("rec/meta.yaml"), text);
-        const Said said = octoskin("replay " + path("rec"));
-        EXPECT_EQ(said.exit_code, 65) << text;
-        EXPECT_THAT(said.output, HasSubstr("meta.yaml")) << text;
+        EXPECT_THAT(failure_of("replay " + path("rec")), fails_with(65, path_is(path("rec/meta.yaml"))))
+            << text;
     }
     for (const char* file : {"meta.yaml", "depth.epoch.yaml", "can.log"}) {
         std::filesystem::remove_all(path("rec"));
         record_short("rec");
         std::filesystem::remove(path(std::string("rec/") + file));
         std::filesystem::create_directory(path(std::string("rec/") + file));
-        const Said said = octoskin("replay " + path("rec"));
-        EXPECT_TRUE(said.exit_code == 65 || said.exit_code == 66) << file << ": " << said.exit_code;
-        EXPECT_THAT(said.output, HasSubstr(file));
+        EXPECT_THAT(
+            failure_of("replay " + path("rec")),
+            fails_with(66, code_is(ErrorCode::wrong_kind_of_file), path_is(path(std::string("rec/") + file)),
+                       remedy_is(HasSubstr("move it away"))));
         std::filesystem::remove(path(std::string("rec/") + file));
     }
 }
@@ -230,19 +245,18 @@ TEST_F(BadInput, a_broken_meta_file_is_named) {
 TEST_F(BadInput, a_map_that_runs_out_of_room_says_so_and_fails) {
     record_short("rec");
     write(path("mapping.yaml"), "base: robust\nmap: {memory_max_mib: 1}\n");
-    const Said said = octoskin("replay " + path("rec") + " --configuration " + path("mapping.yaml"));
-    EXPECT_EQ(said.exit_code, 1) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("no room"));
+    EXPECT_THAT(failure_of("replay " + path("rec") + " --configuration " + path("mapping.yaml")),
+                fails_with(1, code_is(ErrorCode::too_large), remedy_is(HasSubstr("map.memory_max_mib"))));
 }
 
 // A few lines of a foreign recording must not take all memory of the machine.
 TEST_F(BadInput, a_recordings_own_mapping_must_fit_the_machine_unless_it_is_named) {
     record_short("rec");
     write(path("rec/mapping.yaml"), "base: robust\nmap: {memory_max_mib: 1000000}\n");
-    const Said refused = octoskin("replay " + path("rec"));
-    EXPECT_EQ(refused.exit_code, 78) << refused.output;
-    EXPECT_THAT(refused.output, HasSubstr("rec/mapping.yaml"));
-    EXPECT_THAT(refused.output, HasSubstr("memory_max_mib"));
+    EXPECT_THAT(failure_of("replay " + path("rec")),
+                fails_with(78, code_is(ErrorCode::no_resources), path_is(path("rec/mapping.yaml")),
+                           key_is(HasSubstr("map.memory_max_mib")), value_is(HasSubstr("1000000")),
+                           remedy_is(HasSubstr("--configuration"))));
     const Said named = octoskin("replay " + path("rec") + " --configuration " + path("rec/mapping.yaml"));
     EXPECT_EQ(named.exit_code, 0) << named.output;
 }
@@ -273,11 +287,11 @@ TEST_F(BadInput, a_truncated_oni_gives_its_whole_frames_and_says_what_is_lost) {
     // Of nothing comes nothing: a map of the ranges alone would look like a fused one. It is made only of a
     // recording that says that it has no camera.
     write(path("rec/depth.oni"), oni.substr(0, 2000));
-    const Said nothing = octoskin("replay " + path("rec") + " --out " + path("cut"));
-    EXPECT_EQ(nothing.exit_code, 65) << nothing.output;
-    EXPECT_THAT(nothing.output, HasSubstr("depth.oni: "));
+    const Failure nothing = failure_of("replay " + path("rec") + " --out " + path("cut"));
+    EXPECT_THAT(nothing, fails_with(65, code_is(ErrorCode::foreign_format), path_is(path("rec/depth.oni")),
+                                    remedy_is(HasSubstr("move depth.oni and depth.epoch.yaml away")),
+                                    others_are("No map is written")));
     EXPECT_THAT(nothing.output, HasSubstr("in = "));
-    EXPECT_THAT(nothing.output, HasSubstr("no map is written"));
     EXPECT_FALSE(std::filesystem::exists(path("cut")));
     std::filesystem::rename(path("rec/depth.oni"), path("depth.oni"));
     std::filesystem::rename(path("rec/depth.epoch.yaml"), path("depth.epoch.yaml"));
@@ -285,35 +299,30 @@ TEST_F(BadInput, a_truncated_oni_gives_its_whole_frames_and_says_what_is_lost) {
     EXPECT_EQ(content(path("cut/proximity.ot")), proximity);
     std::filesystem::rename(path("depth.epoch.yaml"), path("rec/depth.epoch.yaml"));
     write(path("rec/depth.oni"), "foreign");
-    const Said foreign = octoskin("replay " + path("rec"));
-    EXPECT_EQ(foreign.exit_code, 65);
-    EXPECT_THAT(foreign.output, HasSubstr("not a recording"));
+    EXPECT_THAT(failure_of("replay " + path("rec")),
+                fails_with(65, code_is(ErrorCode::foreign_format), path_is(path("rec/depth.oni"))));
 }
 
 TEST_F(BadInput, an_output_that_cannot_be_written_is_named) {
     write(path("file"), "in the way");
-    const Said said = octoskin("simulate " + path("file/rec"));
-    EXPECT_EQ(said.exit_code, 73) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("file/rec"));
+    EXPECT_THAT(failure_of("simulate " + path("file/rec")), fails_with(73, path_is(path("file/rec"))));
 }
 
 TEST_F(BadInput, of_candump_without_L_names_the_way_to_record) {
     record_short("rec");
     write(path("rec/can.log"), "  can0  141   [8]  01 02 03 04 05 06 07 08\n");
     for (const std::string& command : {"replay " + path("rec"), "black-box " + path("rec/can.log")}) {
-        const Said said = octoskin(command);
-        EXPECT_EQ(said.exit_code, 65) << said.output;
-        EXPECT_THAT(said.output,
-                    HasSubstr("can.log: no line is a frame in candump's format: line 1 does not begin with a "
-                              "time in parentheses"));
-        EXPECT_THAT(said.output, HasSubstr("record with `candump -L can0 > can.log`"));
+        EXPECT_THAT(failure_of(command),
+                    fails_with(65, code_is(ErrorCode::foreign_format), path_is(path("rec/can.log")),
+                               line_is(1), what_is(HasSubstr("does not begin with a time in parentheses")),
+                               value_is(HasSubstr("can0  141   [8]  01 02")),
+                               remedy_is(HasSubstr("candump -L can0 > can.log"))));
     }
     write(path("rec/can.log"), "");
-    const Said empty = octoskin("black-box " + path("rec/can.log"));
-    EXPECT_EQ(empty.exit_code, 65);
-    EXPECT_THAT(empty.output, HasSubstr("can.log: no frames: the log is empty"));
-    EXPECT_THAT(octoskin("replay " + path("rec")).output,
-                HasSubstr("no measurement entered the map: can.log is empty"));
+    EXPECT_THAT(failure_of("black-box " + path("rec/can.log")),
+                fails_with(65, code_is(ErrorCode::no_content), path_is(path("rec/can.log"))));
+    EXPECT_THAT(failure_of("replay " + path("rec")),
+                fails_with(1, code_is(ErrorCode::no_content), what_is(HasSubstr("can.log is empty"))));
 }
 
 }  // namespace

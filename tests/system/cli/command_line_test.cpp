@@ -5,30 +5,37 @@
 #include <algorithm>
 #include <regex>
 
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
 namespace {
 
 using testing::AllOf;
+using testing::AnyOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::code_is;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::others_are;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class CommandLine : public ProgramTest {};
 
 TEST_F(CommandLine, names_the_command_that_is_none_and_the_one_that_is_like_it) {
-    const Said near = octoskin("reply x");
-    EXPECT_EQ(near.exit_code, 64);
-    EXPECT_THAT(near.output, AllOf(HasSubstr("'reply'"), HasSubstr("did you mean 'replay'?")));
-    const Said far = octoskin("frobnicate");
-    EXPECT_EQ(far.exit_code, 64);
-    EXPECT_THAT(far.output, HasSubstr("'frobnicate'. The commands are replay"));
-    EXPECT_THAT(far.output,
-                AllOf(HasSubstr("'frobnicate'"), Not(HasSubstr("did you mean")), HasSubstr("repair")));
-    const Said of_lab = run(OCTOSKIN_PROGRAM " simulate x");
-    EXPECT_EQ(of_lab.exit_code, 64);
-    EXPECT_THAT(of_lab.output, HasSubstr("octoskin-lab"));
+    EXPECT_THAT(failure_of("reply x"), fails_with(64, code_is(ErrorCode::unknown_word), value_is("'reply'"),
+                                                  remedy_is(HasSubstr("did you mean 'replay'?"))));
+    EXPECT_THAT(failure_of("frobnicate"),
+                fails_with(64, code_is(ErrorCode::unknown_word), value_is("'frobnicate'"),
+                           remedy_is(AllOf(HasSubstr("commands are replay"), HasSubstr("repair"),
+                                           Not(HasSubstr("did you mean"))))));
+    EXPECT_THAT(failure_in(run(OCTOSKIN_PROGRAM " --json-errors simulate x")),
+                fails_with(64, code_is(ErrorCode::unknown_word), value_is("'simulate'"),
+                           remedy_is(HasSubstr("octoskin-lab"))));
 }
 
 TEST_F(CommandLine, helps_with_options_as_they_are_typed_and_with_exit_codes) {
@@ -41,54 +48,62 @@ TEST_F(CommandLine, helps_with_options_as_they_are_typed_and_with_exit_codes) {
 
 TEST_F(CommandLine, names_the_target_that_builds_emulated_boards) {
     std::filesystem::copy_file(OCTOSKIN_LAB_PROGRAM, path("octoskin-lab"));  // nothing lies beside it
-    const Said said = run(path("octoskin-lab") + " simulate " + path("out") + " --board emulated --image " +
-                          source("README.md") + " --rig " + source("hw/rigs/experiment.yaml") +
-                          " --scenario " + source("hw/worlds/experiment.scenario.yaml"));
-    EXPECT_EQ(said.exit_code, 69) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("cmake --build --preset host-release --target octoskin_board"));
+    EXPECT_THAT(
+        failure_in(run(path("octoskin-lab") + " --json-errors simulate " + path("out") +
+                       " --board emulated --image " + source("README.md") + " --rig " +
+                       source("hw/rigs/experiment.yaml") + " --scenario " +
+                       source("hw/worlds/experiment.scenario.yaml"))),
+        fails_with(69, code_is(ErrorCode::no_program), path_is(path("octoskin_board")),
+                   remedy_is(HasSubstr("cmake --build --preset host-release --target octoskin_board")),
+                   others_are(HasSubstr("--board"))));
 }
 
 TEST_F(CommandLine, says_what_a_seed_is) {
     for (const std::string seed : {"-1", "abc", "1.5", "18446744073709551616"}) {
         for (const std::string& command : {"simulate " + path("out") + " --seed " + seed,
                                            "experiment --out " + path("out") + " --seeds " + seed}) {
-            const Said said = octoskin(command);
-            EXPECT_EQ(said.exit_code, 64) << said.output;
-            EXPECT_THAT(said.output, AllOf(HasSubstr("whole number from 0 to 2^64 - 1"), HasSubstr(seed)))
-                << command;
-            EXPECT_LT(said.output.size(), 300U) << said.output;
+            const bool is_experiment = command.starts_with("experiment");
+            EXPECT_THAT(
+                failure_of(command),
+                fails_with(64, code_is(ErrorCode::bad_argument), key_is(is_experiment ? "--seeds" : "--seed"),
+                           value_is("'" + seed + "'"), what_is(HasSubstr("from 0 to 2^64 - 1"))));
+            EXPECT_LT(octoskin(command).output.size(), 300U) << command;
         }
     }
 }
 
 TEST_F(CommandLine, takes_each_seed_and_each_configuration_once) {
-    const Said seeds = octoskin("experiment --seeds 3 0 3 --out " + path("out"));
-    EXPECT_EQ(seeds.exit_code, 64) << seeds.output;
-    EXPECT_THAT(seeds.output, HasSubstr("3 is given twice"));
-    const Said names = octoskin("experiment --configurations paper robust paper --out " + path("out"));
-    EXPECT_EQ(names.exit_code, 64) << names.output;
-    EXPECT_THAT(names.output, HasSubstr("'paper' is given twice"));
+    EXPECT_THAT(failure_of("experiment --seeds 3 0 3 --out " + path("out")),
+                fails_with(64, code_is(ErrorCode::duplicate), key_is("--seeds"), value_is("3 again")));
+    EXPECT_THAT(
+        failure_of("experiment --configurations paper robust paper --out " + path("out")),
+        fails_with(64, code_is(ErrorCode::duplicate), key_is("--configurations"), value_is("'paper' again")));
     EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
 TEST_F(CommandLine, answers_64_to_what_can_be_no_interface_and_no_socket) {
     const std::string daemon =
         "run --no-camera --rig " + source("hw/rigs/experiment.yaml") + " --maps " + path("maps") + " --can ";
-    const auto expect = [](const std::string& arguments, const std::string& why) {
-        const Said said = octoskin(arguments);
-        EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
-        EXPECT_NE(said.output.find(why), std::string::npos) << arguments << ": " << said.output;
+    for (const std::string& file : {std::string("/dev/null"), source("README.md")})
+        EXPECT_THAT(failure_of(daemon + "fd:0 < " + file),
+                    fails_with(64, code_is(ErrorCode::wrong_kind_of_file), path_is("fd:0"),
+                               remedy_is(HasSubstr("raw CAN socket"))));
+    const auto expect_bad_name = [](const std::string& arguments, const std::string& name) {
+        EXPECT_THAT(failure_of(arguments),
+                    fails_with(64, code_is(ErrorCode::bad_name), value_is("'" + name + "'")))
+            << arguments;
     };
-    expect(daemon + "fd:0 < /dev/null", "fd:0 is not a socket");
-    expect(daemon + "fd:0 < " + source("README.md"), "fd:0 is not a socket");
     for (const char* name : {"a_name_too_long_", "a b", "can#0", "123#00", "fd:0000000000000", ""})
-        expect(daemon + "'" + name + "'", "'" + std::string(name) + "': a CAN interface's name");
+        expect_bad_name(daemon + "'" + name + "'", name);
     for (const std::string& command :
          {"joints --rig " + source("hw/rigs/experiment.yaml"), std::string("command 1 stop")})
-        expect(command + " --can '123#00' < /dev/null", "'123#00': a CAN interface's name");
+        expect_bad_name(command + " --can '123#00' < /dev/null", "123#00");
     const std::string long_path = path(std::string(120, 's'));
-    expect(daemon + "can0 --socket " + long_path, "1 to 107 bytes");
-    expect("status --socket " + long_path, "1 to 107 bytes");
+    for (const std::string& command : {daemon + "can0", std::string("status")})
+        EXPECT_THAT(failure_of(command + " --socket " + long_path),
+                    fails_with(64, code_is(ErrorCode::bad_name), path_is(long_path),
+                               what_is(HasSubstr("1 to 107 bytes")),
+                               value_is(std::to_string(long_path.size()) + " bytes")));
 }
 
 TEST_F(CommandLine, answers_66_wherever_a_file_is_not_there) {
@@ -102,9 +117,13 @@ TEST_F(CommandLine, answers_66_wherever_a_file_is_not_there) {
           "evaluate " + path("rec") + " --scenario " + nope,
           "experiment --out " + path("o") + " --rig " + nope,
           "experiment --out " + path("o") + " --configurations " + nope}) {
-        const Said said = octoskin(command);
-        EXPECT_EQ(said.exit_code, 66) << command << ": " << said.output;
-        EXPECT_THAT(said.output, HasSubstr(nope)) << command;
+        const Failure failure = failure_of(command);
+        EXPECT_THAT(failure, fails_with(66, code_is(ErrorCode::not_found))) << command;
+        // A configuration may be a word, too.
+        const bool is_word = failure.error.key == "configuration";
+        EXPECT_EQ(is_word ? failure.error.value : failure.error.file.string(),
+                  is_word ? "'" + nope + "'" : nope)
+            << command;
     }
     EXPECT_FALSE(std::filesystem::exists(path("o")));
 }
@@ -124,9 +143,14 @@ TEST_F(CommandLine, refuses_a_camera_that_nobody_would_use) {
             run("python3 -c 'import os, socket, sys; a, b = socket.socketpair(socket.AF_UNIX, "
                 "socket.SOCK_SEQPACKET); os.dup2(a.fileno(), 0); os.execvp(sys.argv[1], sys.argv[1:])' "
                 "timeout 20 " +
-                typed(command));
-        EXPECT_EQ(said.exit_code, 64) << command << ": " << said.output;
-        EXPECT_THAT(said.output, HasSubstr("--camera")) << command;
+                typed_for_error(command));
+        const Failure failure = failure_in(said);
+        EXPECT_THAT(failure, fails_with(64)) << command;
+        // Of two options that exclude each other, CLI11 gives one sentence with both.
+        EXPECT_THAT(failure.error,
+                    AnyOf(AllOf(code_is(ErrorCode::bad_argument), what_is(HasSubstr("--camera"))),
+                          AllOf(code_is(ErrorCode::conflict), key_is("--camera"))))
+            << command;
     }
     EXPECT_FALSE(std::filesystem::exists(path("maps")));
     EXPECT_FALSE(std::filesystem::exists(path("rec/maps")));
@@ -186,11 +210,12 @@ TEST_F(CommandLine, takes_an_arm_with_a_hand_as_its_document_says) {
     vendors.insert(vendors.rfind("</robot>"),
                    finger("1", "") + finger("2", "<mimic joint=\"panda_finger_joint1\"/>"));
     write(path("vendor.urdf"), vendors);
-    const Said refused = octoskin(rig + path("vendor.urdf"));
-    EXPECT_EQ(refused.exit_code, 78);
-    EXPECT_THAT(refused.output,
-                HasSubstr("expected at most 7 moving joints, found 9 in vendor.urdf; not named "
-                          "are panda_finger_joint1, panda_finger_joint2"));
+    EXPECT_THAT(failure_of(rig + path("vendor.urdf")),
+                fails_with(78, code_is(ErrorCode::limit_exceeded),
+                           path_is(source("hw/rigs/bench_one_board.yaml")), key_is("joints.names"),
+                           what_is(HasSubstr("at most 7")), remedy_is(HasSubstr("type=\"fixed\"")),
+                           value_is(AllOf(HasSubstr("9 in vendor.urdf"),
+                                          HasSubstr("panda_finger_joint1, panda_finger_joint2")))));
     write(path("fit.py"), snippet("python"));
     const Said fitted = run("python3 " + path("fit.py") + " " + path("vendor.urdf") + " " + path("my.urdf"));
     EXPECT_EQ(fitted.exit_code, 0) << fitted.output;
@@ -207,10 +232,10 @@ TEST_F(CommandLine, takes_an_arm_with_a_hand_as_its_document_says) {
 }
 
 TEST_F(CommandLine, knows_the_same_configurations_in_every_command) {
-    const Said near = octoskin("mapping robsut");
-    EXPECT_EQ(near.exit_code, 66);
-    EXPECT_THAT(near.output, AllOf(HasSubstr("paper, paper_noise_free_robot_seen, robust, fast"),
-                                   HasSubstr("did you mean robust?")));
+    EXPECT_THAT(failure_of("mapping robsut"),
+                fails_with(66, code_is(ErrorCode::not_found), key_is("configuration"), value_is("'robsut'"),
+                           what_is(HasSubstr("paper, paper_noise_free_robot_seen, robust, fast")),
+                           remedy_is(HasSubstr("did you mean robust?"))));
     const Said seen = octoskin("mapping paper_noise_free_robot_seen");
     EXPECT_EQ(seen.exit_code, 0);
     EXPECT_THAT(seen.output,
@@ -222,10 +247,12 @@ TEST_F(CommandLine, knows_the_same_configurations_in_every_command) {
     const std::string experiment = "experiment --rig " + source("tests/data/short/rig.yaml") +
                                    " --scenario " + source("tests/data/short/scenario.yaml") + " --out " +
                                    path("out") + " --configurations ";
-    const Said coarse = octoskin(experiment + "robust " + path("coarse.yaml"));
-    EXPECT_EQ(coarse.exit_code, 64) << coarse.output;
-    EXPECT_THAT(coarse.output, AllOf(HasSubstr("0.04 m and 0.08 m"), HasSubstr("'coarse'")));
-    EXPECT_EQ(octoskin(experiment + path("run.yaml")).exit_code, 64);  // metrics.json's own key
+    EXPECT_THAT(failure_of(experiment + "robust " + path("coarse.yaml")),
+                fails_with(64, code_is(ErrorCode::conflict), key_is("--configurations"),
+                           what_is(HasSubstr("'robust' and 'coarse'")), value_is("0.04 m and 0.08 m")));
+    EXPECT_THAT(failure_of(experiment + path("run.yaml")),  // metrics.json's own key
+                fails_with(64, code_is(ErrorCode::bad_name), path_is(path("run.yaml")), value_is("'run'"),
+                           remedy_is(HasSubstr("rename"))));
     const Said both = octoskin(experiment + "paper " + path("mine.yaml"));
     ASSERT_EQ(both.exit_code, 0) << both.output;
     // The same equations under another name give the same figures.
@@ -260,9 +287,14 @@ TEST_F(CommandLine, tells_of_sensors_in_one_light_by_groups_and_not_by_pairs) {
     EXPECT_LT(std::count(said.output.begin(), said.output.end(), '\n'), 12) << said.output;
 }
 
-/// With standard output as `redirection` says; only standard error is kept.
-Said octoskin_into(const std::string& redirection, const std::string& arguments) {
-    return run("( " + typed(arguments) + " " + redirection + " )");
+/// That it fails for its standard output, which `redirection` replaces, with the reason of the system.
+void expect_unwritten(const std::string& redirection, const std::string& arguments,
+                      const std::string& reason) {
+    EXPECT_THAT(
+        failure_in(run("( " + typed_for_error(arguments) + " " + redirection + " )")),
+        fails_with(74, code_is(ErrorCode::system_error), path_is("standard output"),
+                   what_is(HasSubstr("(" + reason + ")")), others_are(HasSubstr("output is incomplete"))))
+        << arguments;
 }
 
 TEST_F(CommandLine, a_standard_output_that_takes_nothing_is_a_failure_of_every_command) {
@@ -275,9 +307,7 @@ TEST_F(CommandLine, a_standard_output_that_takes_nothing_is_a_failure_of_every_c
           std::string("mapping"), "rig " + source("hw/rigs/experiment.yaml"),
           "rig --canonical " + source("hw/rigs/experiment.yaml"), "simulate " + path("again") + short_files,
           "replay " + path("rec") + " --out " + path("maps")}) {
-        const Said said = octoskin_into("> /dev/full", arguments);
-        EXPECT_EQ(said.exit_code, 74) << arguments << ": " << said.output;
-        EXPECT_THAT(said.output, HasSubstr("standard output: cannot write (No space left on device)"));
+        expect_unwritten("> /dev/full", arguments, "No space left on device");
     }
     // What was to be written is written all the same.
     EXPECT_EQ(content(path("maps/fused.ot")), content(path("rec/maps/fused.ot")));
@@ -293,9 +323,7 @@ TEST_F(CommandLine, a_reader_that_goes_away_is_no_failure) {
 TEST_F(CommandLine, a_closed_standard_output_is_told_and_goes_into_no_file) {
     record_short("rec");
     ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
-    const Said said = octoskin_into("<&- >&-", "replay " + path("rec") + " --out " + path("maps"));
-    EXPECT_EQ(said.exit_code, 74) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("standard output: cannot write (Bad file descriptor)"));
+    expect_unwritten("<&- >&-", "replay " + path("rec") + " --out " + path("maps"), "Bad file descriptor");
     for (const char* file : {"fused.ot", "fused.bt", "fused.ply", "depth.ot", "proximity.ot"}) {
         EXPECT_EQ(content(path(std::string("maps/") + file)), content(path(std::string("rec/maps/") + file)));
     }
@@ -328,20 +356,20 @@ TEST_F(CommandLine, a_pipe_or_a_device_for_a_file_is_refused_instead_of_waited_f
               "flash --dry-run --rig " + rig + " --elf " + other,
               "experiment --out " + path("out") + " --rig " + other,
               "experiment --out " + path("out") + " --configurations " + other}) {
-            const Said said = run("timeout 20 " + typed(arguments));
-            EXPECT_TRUE(said.exit_code >= 64 && said.exit_code <= 78 && said.exit_code != 70)
-                << arguments << ": " << said.exit_code << said.output;
-            EXPECT_THAT(said.output, HasSubstr(other)) << arguments;
-            EXPECT_THAT(said.output, testing::ContainsRegex("pipe|device|regular file|directory"))
+            const Failure failure = failure_in(run("timeout 20 " + typed_for_error(arguments)));
+            EXPECT_TRUE(failure.exit_code >= 64 && failure.exit_code <= 78 && failure.exit_code != 70)
+                << arguments << ": " << failure.exit_code << failure.output;
+            EXPECT_THAT(failure.error, AllOf(code_is(ErrorCode::wrong_kind_of_file), path_is(other)))
                 << arguments;
         }
     }
     // A scenario's world and a world's mesh are such files, too.
     write(path("my.scenario.yaml"),
           "extends: " + source("tests/data/short/scenario.yaml") + "\nworld: " + path("pipe") + "\n");
-    const Said world = run("timeout 20 " + typed(base) + "--scenario " + path("my.scenario.yaml"));
-    EXPECT_EQ(world.exit_code, 78) << world.output;
-    EXPECT_THAT(world.output, HasSubstr("my.scenario.yaml:2: world"));
+    EXPECT_THAT(
+        failure_in(run("timeout 20 " + typed_for_error(base) + "--scenario " + path("my.scenario.yaml"))),
+        fails_with(78, path_is(path("my.scenario.yaml")), line_is(2), key_is("world"),
+                   value_is(HasSubstr(path("pipe")))));
 }
 
 }  // namespace

@@ -1,13 +1,19 @@
 // A program away from where it was built and installed: it has no helpers and no data, and takes none from
 // anywhere else.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <filesystem>
 
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
 namespace {
+
+using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::remedy_is;
+using testing_support::what_is;
 
 class CopiedProgram : public ProgramTest {
   protected:
@@ -32,28 +38,26 @@ TEST_F(CopiedProgram, has_no_helpers_and_no_data) {
     EXPECT_EQ(run(path("away/bin/octoskin cameras")).exit_code, 69);
     std::filesystem::copy_file(OCTOSKIN_LAB_PROGRAM, path("away/bin/octoskin-lab"));
     const std::string program = path("away/bin/octoskin-lab");
-    const Said world =
-        run(program + " simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
-            " --scenario " + source("tests/data/short/scenario.yaml"));
-    EXPECT_EQ(world.exit_code, 69);
-    EXPECT_NE(world.output.find("octoskin-world-read"), std::string::npos) << world.output;
-    const Said depth = run(path("away/bin/octoskin") + " replay " + source("tests/data/frozen/daemon") +
-                           " --out " + path("maps"));
-    EXPECT_EQ(depth.exit_code, 69) << depth.output;
-    EXPECT_NE(depth.output.find("octoskin-oni-read"), std::string::npos) << depth.output;
-    const Said data = run(program + " simulate " + path("rec"));
-    EXPECT_EQ(data.exit_code, 78) << data.output;
-    EXPECT_NE(data.output.find(path("away/share/octoskin")), std::string::npos) << data.output;
+    EXPECT_THAT(failure_in(run(program + " --json-errors simulate " + path("rec") + " --rig " +
+                               source("tests/data/short/rig.yaml") + " --scenario " +
+                               source("tests/data/short/scenario.yaml"))),
+                fails_with(69, code_is(ErrorCode::no_program), what_is(HasSubstr("octoskin-world-read")),
+                           remedy_is(HasSubstr("octoskin_programs"))));
+    EXPECT_THAT(failure_in(run(path("away/bin/octoskin") + " --json-errors replay " +
+                               source("tests/data/frozen/daemon") + " --out " + path("maps"))),
+                fails_with(69, code_is(ErrorCode::no_program), what_is(HasSubstr("octoskin-oni-read"))));
+    EXPECT_THAT(failure_in(run(program + " --json-errors simulate " + path("rec"))),
+                fails_with(78, code_is(ErrorCode::not_found),
+                           path_is(path("away/share/octoskin/hw/worlds/experiment.scenario.yaml"))));
 }
 
 TEST_F(CopiedProgram, says_that_what_a_recording_began_with_is_not_there) {
     std::filesystem::copy(source("tests/data/frozen/daemon"), path("rec"),
                           std::filesystem::copy_options::recursive);
     std::filesystem::remove(path("rec/first.ot"));
-    const Said said =
-        run(std::string(OCTOSKIN_PROGRAM) + " replay " + path("rec") + " --out " + path("maps"));
-    EXPECT_EQ(said.exit_code, 66) << said.output;
-    EXPECT_NE(said.output.find("first.ot"), std::string::npos) << said.output;
+    EXPECT_THAT(failure_of("replay " + path("rec") + " --out " + path("maps")),
+                fails_with(66, code_is(ErrorCode::not_found), path_is(path("rec/first.ot")),
+                           remedy_is(HasSubstr("--by-capture-time"))));
 }
 
 TEST_F(CopiedProgram, has_its_data_where_a_link_leads_and_not_in_the_working_directory) {
@@ -64,9 +68,10 @@ TEST_F(CopiedProgram, has_its_data_where_a_link_leads_and_not_in_the_working_dir
     std::filesystem::create_directories(path("here"));
     std::filesystem::create_symlink("../data", path("away/share/octoskin"));
     std::filesystem::copy_file(OCTOSKIN_LAB_PROGRAM, path("away/bin/octoskin-lab"));
-    const Said data = run("cd " + path("here") + " && ../away/bin/octoskin-lab simulate " + path("rec"));
-    EXPECT_EQ(data.exit_code, 78) << data.output;
-    EXPECT_NE(data.output.find(path("away/data/hw")), std::string::npos) << data.output;
+    EXPECT_THAT(failure_in(run("cd " + path("here") + " && ../away/bin/octoskin-lab --json-errors simulate " +
+                               path("rec"))),
+                fails_with(78, code_is(ErrorCode::not_found),
+                           path_is(path("away/data/hw/worlds/experiment.scenario.yaml"))));
 }
 
 TEST_F(CopiedProgram, has_the_helpers_beside_it) {

@@ -7,13 +7,21 @@
 
 #include "host/io/openni2/oni_writer.hpp"
 #include "tests/support/data_set/written_data_set.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
 using testing_support::Grey;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 using testing_support::WrittenDataSet;
 
 constexpr int kFrames = 6;
@@ -111,13 +119,13 @@ TEST_F(DataSet, an_oni_that_stands_alone_gives_the_same_map_from_where_its_camer
 
 TEST_F(DataSet, an_oni_that_stands_alone_needs_to_know_where_its_camera_was) {
     film(path("film"), path("recording"));
-    const Said unknown = octoskin("replay " + path("film/film.oni"));
-    EXPECT_EQ(unknown.exit_code, 64) << unknown.output;
-    EXPECT_THAT(unknown.output, HasSubstr("--pose X,Y,Z,ROLL,PITCH,YAW"));
-    for (const char* pose : {"1,2,3", "1,2,3,4,5,6,7", "1,2,3,4,5,nan", "a", "1,2,3,4,5,6,"}) {
-        const Said said = octoskin("replay " + path("film/film.oni") + " --pose " + pose);
-        EXPECT_EQ(said.exit_code, 64) << pose << said.output;
-    }
+    EXPECT_THAT(failure_of("replay " + path("film/film.oni")),
+                fails_with(64, code_is(ErrorCode::bad_argument), path_is(path("film/film.oni")),
+                           key_is("--pose"), remedy_is(HasSubstr("--pose X,Y,Z,ROLL,PITCH,YAW"))));
+    for (const std::string pose : {"1,2,3", "1,2,3,4,5,6,7", "1,2,3,4,5,nan", "a", "1,2,3,4,5,6,"})
+        EXPECT_THAT(failure_of("replay " + path("film/film.oni") + " --pose " + pose),
+                    fails_with(64, code_is(ErrorCode::bad_argument), key_is("--pose"),
+                               value_is("'" + pose + "'"), what_is(HasSubstr("X,Y,Z,ROLL,PITCH,YAW"))));
     const Said size = octoskin("replay " + path("film/film.oni") + " --pose 0,0,0,0,0,0");
     EXPECT_EQ(size.exit_code, 1) << size.output;
     EXPECT_THAT(size.output, HasSubstr("128 x 106, the camera's are 640 x 480"));
@@ -155,11 +163,9 @@ TEST_F(DataSet, a_lens_that_no_pixel_by_pixel_inverse_is_of_is_refused_before_an
     write_data_set(path("set"));
     write(path("rig.yaml"), "extends: " + source("tests/data/short/rig.yaml") +
                                 "\ncamera:\n  distortion: {k1: -0.9, k2: 0.1}\n");
-    const Said said = octoskin("replay " + path("set") + " --rig " + path("rig.yaml"));
-    EXPECT_EQ(said.exit_code, 78) << said.output;
-    EXPECT_THAT(said.output,
-                HasSubstr("rig.yaml:3: camera.distortion: expected coefficients that give each pixel "
-                          "one ray, found k1 -0.9, k2 0.1"));
+    EXPECT_THAT(failure_of("replay " + path("set") + " --rig " + path("rig.yaml")),
+                fails_with(78, code_is(ErrorCode::bad_value), path_is(path("rig.yaml")), line_is(3),
+                           key_is("camera.distortion"), value_is(HasSubstr("k1 -0.9, k2 0.1"))));
     EXPECT_FALSE(std::filesystem::exists(path("set/maps/fused.ot")));
 }
 
@@ -178,14 +184,14 @@ TEST_F(DataSet, is_explained_voxel_by_voxel) {
 TEST_F(DataSet, a_fault_is_named_with_file_and_line_and_leaves_no_map) {
     write_data_set(path("set"));
     write(path("set/groundtruth.txt"), "# no comment\n1.0 0 0 0 0 0 0\n");
-    const Said list = octoskin("replay " + path("set"));
-    EXPECT_EQ(list.exit_code, 65) << list.output;
-    EXPECT_THAT(list.output, HasSubstr("groundtruth.txt:2: expected tx ty tz qx qy qz qw"));
+    EXPECT_THAT(failure_of("replay " + path("set")),
+                fails_with(65, code_is(ErrorCode::bad_syntax), path_is(path("set/groundtruth.txt")),
+                           line_is(2), what_is(HasSubstr("tx ty tz qx qy qz qw"))));
     write_data_set(path("other"));
     write(path("other/depth/1.300000.png"), "not a picture");
-    const Said image = octoskin("replay " + path("other"));
-    EXPECT_EQ(image.exit_code, 65) << image.output;
-    EXPECT_THAT(image.output, HasSubstr("depth.txt:7: depth/1.300000.png: cannot be read as PNG"));
+    EXPECT_THAT(failure_of("replay " + path("other")),
+                fails_with(65, code_is(ErrorCode::bad_syntax), path_is(path("other/depth.txt")), line_is(7),
+                           key_is("depth/1.300000.png"), what_is(HasSubstr("PNG"))));
     EXPECT_FALSE(std::filesystem::exists(path("other/maps/fused.ot")));
 }
 
@@ -229,9 +235,8 @@ TEST_F(DataSet, says_below_the_account_which_size_its_images_have_and_which_is_e
 TEST_F(DataSet, without_images_is_named_by_its_list) {
     write_data_set(path("set"));
     write(path("set/depth.txt"), "# no image\n");
-    const Said said = octoskin("replay " + path("set"));
-    EXPECT_EQ(said.exit_code, 65) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("set/depth.txt: it names no image"));
+    EXPECT_THAT(failure_of("replay " + path("set")),
+                fails_with(65, code_is(ErrorCode::no_content), path_is(path("set/depth.txt"))));
 }
 
 TEST_F(DataSet, has_no_truth_to_be_judged_by) {
@@ -240,21 +245,21 @@ TEST_F(DataSet, has_no_truth_to_be_judged_by) {
     ASSERT_EQ(replayed.exit_code, 0) << replayed.output;
     for (const std::string& what :
          {path("set"), path("set/maps/fused.ot") + " --rig " + source("tests/data/short/rig.yaml")}) {
-        const Said said = octoskin("evaluate " + what);
-        EXPECT_EQ(said.exit_code, 64) << said.output;
-        EXPECT_THAT(said.output, HasSubstr(path("set") + ": a data set has no ground truth of its world"));
-        EXPECT_THAT(said.output, testing::Not(HasSubstr("meta.yaml")));
-        EXPECT_THAT(said.output, testing::Not(HasSubstr("changed since")));
+        const Failure failure = failure_of("evaluate " + what);
+        EXPECT_THAT(failure, fails_with(64, code_is(ErrorCode::unsupported), path_is(path("set")),
+                                        remedy_is(HasSubstr("octovis"))));
+        EXPECT_THAT(failure.output, testing::Not(HasSubstr("meta.yaml")));
+        EXPECT_THAT(failure.output, testing::Not(HasSubstr("changed since")));
     }
 }
 
 TEST_F(DataSet, is_not_hidden_by_a_simulation_even_by_force) {
     write_data_set(path("set"));
-    const Said said =
-        octoskin("simulate " + path("set") + " --force --rig " + source("tests/data/short/rig.yaml") +
-                 " --scenario " + source("tests/data/short/scenario.yaml"));
-    EXPECT_EQ(said.exit_code, 73) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("is a data set (depth.txt)"));
+    EXPECT_THAT(
+        failure_of("simulate " + path("set") + " --force --rig " + source("tests/data/short/rig.yaml") +
+                   " --scenario " + source("tests/data/short/scenario.yaml")),
+        fails_with(73, code_is(ErrorCode::already_exists), path_is(path("set")),
+                   what_is(HasSubstr("(depth.txt)")), remedy_is(HasSubstr("another directory"))));
     EXPECT_FALSE(std::filesystem::exists(path("set/can.log")));
 }
 
@@ -262,12 +267,10 @@ TEST_F(DataSet, an_image_that_is_not_there_is_named_with_its_line_and_what_to_do
     write_data_set(path("set"));
     std::filesystem::remove(path("set/depth/1.300000.png"));
     for (const char* command : {"replay ", "explain 0 0 1 --recording "}) {
-        const Said said = octoskin(command + path("set"));
-        EXPECT_EQ(said.exit_code, 66) << said.output;
-        EXPECT_THAT(said.output,
-                    HasSubstr(path("set/depth.txt") +
-                              ":7: depth/1.300000.png: does not exist: unpack the data set again, "
-                              "or remove the line"));
+        EXPECT_THAT(failure_of(command + path("set")),
+                    fails_with(66, code_is(ErrorCode::not_found), path_is(path("set/depth.txt")), line_is(7),
+                               key_is("depth/1.300000.png"),
+                               remedy_is(AllOf(HasSubstr("unpack"), HasSubstr("remove the line")))));
     }
     EXPECT_FALSE(std::filesystem::exists(path("set/maps")));
 }

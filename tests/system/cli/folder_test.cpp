@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "host/apps/daemon/map_saver.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/folder_states.hpp"
 #include "tests/system/cli/folder_traps.hpp"
 #include "tests/system/cli/program.hpp"
@@ -25,6 +26,9 @@ namespace fs = std::filesystem;
 using testing::AnyOf;
 using testing::Eq;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::remedy_is;
+using testing_support::what_is;
 
 using Names = std::vector<std::string>;
 
@@ -84,15 +88,21 @@ class FolderWalk : public ProgramTest {
     }
 
     /// Runs it, and looks at the world outside, of which the recording's own names are no part.
-    Said expect_harmless(const std::string& command, const std::string& case_name) const {
+    Failure expect_harmless(const std::string& command, const std::string& case_name) const {
         const auto before = states_in(directory_ / "outside");
-        const Said said = run("timeout 20 " + typed(command) + " < /dev/null");
+        Failure said = failure_in(run("timeout 20 " + typed_for_error(command) + " < /dev/null"));
         EXPECT_EQ(states_in(directory_ / "outside"), before) << case_name << ": " << command << said.output;
         EXPECT_NE(said.exit_code, 124) << case_name << " hangs: " << command;
         EXPECT_THAT(said.exit_code,
                     AnyOf(Eq(0), Eq(1), Eq(2), Eq(64), Eq(65), Eq(66), Eq(73), Eq(77), Eq(78)))
             << case_name << ": " << command << ": " << said.output;
         return said;
+    }
+
+    /// That the recording contains files of a killed run, and what completes the move.
+    [[nodiscard]] auto is_half_moved() const {
+        return fails_with(66, code_is(ErrorCode::unfinished_move), path_is(path("rec")),
+                          remedy_is(HasSubstr("octoskin repair " + path("rec"))));
     }
 
     /// A recording with the journal of a killed octoskin that is none.
@@ -117,13 +127,13 @@ TEST_F(FolderWalk, no_journal_moves_or_removes_what_is_outside) {
         for (const std::string& command : commands()) {
             lay_journal(line);
             const auto before = states_in(directory_ / "rec");
-            const Said said = expect_harmless(command, line);
+            const Failure said = expect_harmless(command, line);
             EXPECT_NE(said.exit_code, 0) << line << command << said.output;
             const bool only_reads = command.starts_with("replay") || command.starts_with("explain") ||
                                     command.starts_with("evaluate");
             if (!only_reads) continue;
             EXPECT_EQ(states_in(directory_ / "rec"), before) << command << " wrote, and was to read";
-            EXPECT_THAT(said.output, HasSubstr("octoskin repair " + path("rec"))) << command;
+            EXPECT_THAT(said, is_half_moved()) << command;
         }
     }
 }
@@ -138,7 +148,7 @@ TEST_F(FolderWalk, what_reads_writes_nothing_and_replay_only_its_maps) {
         expect_harmless(command, "whole");
         EXPECT_EQ(states_in(directory_ / "rec"), before) << command;
     }
-    const Said replayed = expect_harmless("replay " + path("rec"), "whole");
+    const Failure replayed = expect_harmless("replay " + path("rec"), "whole");
     ASSERT_EQ(replayed.exit_code, 0) << replayed.output;
     auto after = states_in(directory_ / "rec");
     EXPECT_TRUE(after.contains("maps/maps.yaml"));
@@ -159,9 +169,7 @@ TEST_F(FolderWalk, one_that_was_left_half_moved_is_repaired_on_demand_or_by_what
         fs::rename(directory_ / "rec/meta.yaml", directory_ / "rec/.octoskin-ready/meta.yaml");
         write(directory_ / "rec/.octoskin-ready/.journal",
               "octoskin-file-set/1\nput can.log\nput meta.yaml\n");
-        const Said refused = expect_harmless("replay " + path("rec"), "half moved");
-        EXPECT_EQ(refused.exit_code, 66) << refused.output;
-        EXPECT_THAT(refused.output, HasSubstr("octoskin repair " + path("rec")));
+        EXPECT_THAT(expect_harmless("replay " + path("rec"), "half moved"), is_half_moved());
         EXPECT_EQ(expect_harmless(remedy, "half moved").exit_code, 0) << remedy;
         EXPECT_FALSE(fs::exists(directory_ / "rec/.octoskin-ready"));
         EXPECT_EQ(expect_harmless("replay " + path("rec"), "repaired").exit_code, 0) << remedy;
@@ -169,7 +177,8 @@ TEST_F(FolderWalk, one_that_was_left_half_moved_is_repaired_on_demand_or_by_what
     const Said again = octoskin("repair " + path("rec"));
     EXPECT_EQ(again.exit_code, 0);
     EXPECT_THAT(again.output, HasSubstr("nothing is half moved"));
-    EXPECT_EQ(octoskin("repair " + path("absent")).exit_code, 66);
+    EXPECT_THAT(failure_of("repair " + path("absent")),
+                fails_with(66, code_is(ErrorCode::not_found), path_is(path("absent"))));
 }
 
 TEST_F(FolderWalk, drafts_of_a_daemon_that_keeps_its_map_there_stay) {
@@ -225,9 +234,10 @@ TEST_F(FolderWalk, drafts_that_cannot_be_removed_are_an_error_that_names_them) {
     fs::path deep = directory_ / "rec/.octoskin-part";
     for (int i = 0; i < 40; ++i) deep /= "a";  // deeper than what octoskin removes
     fs::create_directories(deep);
-    const Said said = octoskin("repair " + path("rec"));
-    EXPECT_EQ(said.exit_code, 73) << said.output;
-    EXPECT_THAT(said.output, HasSubstr(".octoskin-part/a"));
+    const Failure failure = failure_of("repair " + path("rec"));
+    EXPECT_THAT(failure, fails_with(73, code_is(ErrorCode::system_error), path_is(path("rec")),
+                                    remedy_is(HasSubstr("remove"))));
+    EXPECT_THAT(failure.output, HasSubstr(".octoskin-part/a"));
 }
 
 TEST_F(FolderWalk, a_link_in_the_path_that_was_typed_is_followed) {
@@ -269,15 +279,19 @@ TEST_F(FolderWalk, writes_only_into_folders_of_the_caller_or_of_root_and_reads_a
     const auto own = [this](const char* name, uid_t user) {
         ASSERT_EQ(::lchown(path(name).c_str(), user, user), 0);
     };
-    const auto said_of = [&](const std::string& arguments) { return run(as_another + typed(arguments)); };
+    const auto said_of = [&](const std::string& arguments) {
+        return failure_in(run(as_another + typed_for_error(arguments)));
+    };
     own("rec", 12'346);
-    const Said in_anothers = said_of("replay " + path("rec"));
-    EXPECT_EQ(in_anothers.exit_code, 73) << in_anothers.output;
-    EXPECT_THAT(in_anothers.output, HasSubstr("belongs to uid 12346"));
+    EXPECT_THAT(said_of("replay " + path("rec")),
+                fails_with(73, code_is(ErrorCode::foreign_owner), path_is(path("rec")),
+                           what_is(HasSubstr("uid 12346")), remedy_is(HasSubstr("another folder"))));
     EXPECT_EQ(said_of("replay " + path("rec") + " --out " + path("own")).exit_code, 0) << "reads any";
     own("rec", 12'345);
     own("rec/maps", 12'346);
-    EXPECT_EQ(said_of("replay " + path("rec")).exit_code, 73) << "the maps' folder is another's";
+    EXPECT_THAT(said_of("replay " + path("rec")),
+                fails_with(73, code_is(ErrorCode::foreign_owner), path_is(path("rec/maps"))))
+        << "the maps' folder is another's";
     own("rec/maps", 0);
     EXPECT_EQ(said_of("replay " + path("rec")).exit_code, 0) << "root's, and open to all";
     own("rec", 12'346);

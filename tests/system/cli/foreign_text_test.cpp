@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/core/text/printable.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -13,6 +14,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
+using testing_support::code_is;
 
 /// Sets the title, turns red, turns the writing, and makes up a line of a log.
 constexpr const char* kYaml = R"("\e]0;owned\a\e[31m\u009b1m\u202Etxt\n12:00:00 error forged")";
@@ -96,6 +98,13 @@ TEST_F(ForeignText, is_harmless_in_the_journal_too) {
     EXPECT_THAT(said.output, AllOf(StartsWith("<3>"), HasSubstr(kShown)));
 }
 
+TEST_F(ForeignText, is_exact_in_the_fields_of_an_error_and_its_line_is_harmless) {
+    const std::string file = path("no\x1b[31m\u009b\u202esuch.yaml\n12:00:00 error forged");
+    const Failure failure = failure_of("rig '" + file + "'");
+    EXPECT_THAT(failure, fails_with(66, code_is(ErrorCode::not_found), path_is(file)));
+    expect_harmless({failure.exit_code, failure.output});
+}
+
 TEST_F(ForeignText, is_exact_in_json) {
     const std::string name = path("no\x1b[31m\u009b\u202esuch.ot");
     const Said said = run(OCTOSKIN_PROGRAM " query --json --rig " + source("tests/data/short/rig.yaml") +
@@ -103,7 +112,9 @@ TEST_F(ForeignText, is_exact_in_json) {
                           "2>/dev/null");
     const auto answer = nlohmann::json::parse(said.output, nullptr, false);
     ASSERT_TRUE(answer.is_object()) << said.output;
-    EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr(name));
+    EXPECT_EQ(answer.at("exit"), 66);
+    EXPECT_EQ(answer.at("error").at("file"), name);
+    EXPECT_THAT(answer.at("error").at("message").get<std::string>(), HasSubstr(name));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/io/candump/log_reader.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -16,6 +17,10 @@ namespace {
 
 using candump::LogEntry;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::what_is;
 
 std::vector<LogEntry> entries_of(const std::string& file) {
     auto reader = candump::LogReader::open(file);
@@ -123,13 +128,13 @@ TEST_F(LogLayout, of_candump_is_read_whichever_it_is) {
 
 TEST_F(LogLayout, of_others_is_refused_with_the_line_or_the_command) {
     rewrite([](const LogEntry& e) { return " " + shown(e); });
-    const Said timeless = octoskin("replay " + path("rec"));
-    EXPECT_EQ(timeless.exit_code, 65) << timeless.output;
-    EXPECT_THAT(timeless.output, HasSubstr("line 1 does not begin with a time in parentheses"));
+    EXPECT_THAT(failure_of("replay " + path("rec")),
+                fails_with(65, code_is(ErrorCode::foreign_format), path_is(path("rec/can.log")), line_is(1),
+                           what_is(HasSubstr("does not begin with a time in parentheses"))));
     write(path("rec/can.log"), "date Mon Jun 30 15:02:57 2025\nbase hex  timestamps absolute\n");
-    const Said asc = octoskin("replay " + path("rec"));
-    EXPECT_EQ(asc.exit_code, 65) << asc.output;
-    EXPECT_THAT(asc.output, HasSubstr("asc2log -I can.log -O candump.log"));
+    EXPECT_THAT(failure_of("replay " + path("rec")),
+                fails_with(65, code_is(ErrorCode::foreign_format), path_is(path("rec/can.log")),
+                           remedy_is(HasSubstr("asc2log -I can.log -O candump.log"))));
 }
 
 TEST_F(LogLayout, of_stamps_in_batches_up_to_16_ms_loses_nothing_and_names_what_mends_it) {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/support/data_set/written_data_set.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -13,7 +14,11 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::code_is;
 using testing_support::Grey;
+using testing_support::others_are;
+using testing_support::remedy_is;
+using testing_support::what_is;
 using testing_support::WrittenDataSet;
 
 class Losses : public ProgramTest {
@@ -71,15 +76,16 @@ TEST_F(Losses, of_joint_samples_names_joint_value_and_limit_and_the_nodes_that_l
     const auto at = urdf.find("upper=\"", urdf.find("panda_joint1"));
     const auto end = urdf.find('"', at + 7);
     write(path("limits/robot.urdf"), urdf.substr(0, at + 7) + "-2" + urdf.substr(end));
-    const Said said = replay("limits");
-    EXPECT_EQ(said.exit_code, 1) << said.output;
-    EXPECT_THAT(
-        said.output,
-        AllOf(HasSubstr("joint samples: 329 of 329 are lost, most as out_of_limits (329, "
-                        "the first at 1750000001.360135 s)"),
-              HasSubstr("panda_joint1 is "), HasSubstr("; its limits are -2.8973 to -2"),
-              HasSubstr("loses 329 of 329 joint samples, most as out_of_limits"),
-              HasSubstr("most as out_of_limits; see the warnings above"), HasSubstr("no map is written")));
+    const Failure failure = failure_of("replay " + path("limits"));
+    EXPECT_THAT(failure,
+                fails_with(1, code_is(ErrorCode::no_content),
+                           what_is(AllOf(HasSubstr("329 of 329"), HasSubstr("most as out_of_limits"))),
+                           remedy_is("see the warnings above"), others_are("No map is written")));
+    EXPECT_THAT(failure.output,
+                AllOf(HasSubstr("joint samples: 329 of 329 are lost, most as out_of_limits (329, "
+                                "the first at 1750000001.360135 s)"),
+                      HasSubstr("panda_joint1 is "), HasSubstr("; its limits are -2.8973 to -2"),
+                      HasSubstr("loses 329 of 329 joint samples, most as out_of_limits")));
     EXPECT_FALSE(std::filesystem::exists(path("limits/maps/fused.ot")));
 }
 
@@ -99,14 +105,14 @@ TEST_F(Losses, of_most_but_not_all_writes_the_map_and_ends_with_1) {
     record_changed("part", [](std::size_t number, const std::string& line) {
         return is_joint_frame(line) && number > 3'000 ? "" : line;
     });
-    const Said said = replay("part");
-    EXPECT_EQ(said.exit_code, 1) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("most of the readings is lost (joints_missing)"));
+    EXPECT_THAT(failure_of("replay " + path("part")),
+                fails_with(1, code_is(ErrorCode::no_data),
+                           what_is(AllOf(HasSubstr("readings"), HasSubstr("(joints_missing)")))));
     EXPECT_GT(content(path("part/maps/fused.ot")).size(), 1'000U);
-    const Said explained = octoskin("explain 0.6 0 0.4 --recording " + path("part"));
-    EXPECT_EQ(explained.exit_code, 1) << explained.output;
-    const Said judged = octoskin("evaluate " + path("part") + " --json " + path("part.json"));
-    EXPECT_EQ(judged.exit_code, 1) << judged.output;
+    EXPECT_THAT(failure_of("explain 0.6 0 0.4 --recording " + path("part")),
+                fails_with(1, code_is(ErrorCode::no_data)));
+    EXPECT_THAT(failure_of("evaluate " + path("part") + " --json " + path("part.json")),
+                fails_with(1, code_is(ErrorCode::no_data)));
     EXPECT_GT(content(path("part.json")).size(), 100U) << "the figures are written all the same";
 }
 

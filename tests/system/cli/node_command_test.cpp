@@ -10,13 +10,18 @@
 #include "host/io/socketcan/can_socket.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "tests/support/node_rig.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::key_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class NodeCommand : public ProgramTest {
   protected:
@@ -29,20 +34,17 @@ TEST_F(NodeCommand, answers_64_to_what_is_typed_wrongly_before_it_looks_for_an_i
           "1 set_rate --can nope0", "1 stop --period-ms 50 --can nope0", "1 calibrate_offset --can nope0",
           "1 identify --seconds 1801 --can nope0", "1 reset --sensor 0 --can nope0",
           "1 start --sensor front --can nope0", "1 start --can fd:99"}) {
-        const Said said = octoskin("command " + arguments);
-        EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
-        EXPECT_GT(said.output.size(), 20U);
+        EXPECT_THAT(failure_of("command " + arguments), fails_with(64)) << arguments;
     }
-    const Said unknown = octoskin("command x stop --can nope0 --rig " + rig_file_);
-    EXPECT_EQ(unknown.exit_code, 64);
-    EXPECT_THAT(unknown.output, AllOf(HasSubstr("no node 'x'"), HasSubstr("bench (1)")));
+    EXPECT_THAT(
+        failure_of("command x stop --can nope0 --rig " + rig_file_),
+        fails_with(64, code_is(ErrorCode::unknown_name), value_is("'x'"), remedy_is(HasSubstr("bench (1)"))));
     EXPECT_EQ(octoskin("command 1 stop --can nope0 --rig " + path("nope.yaml")).exit_code, 66);
 }
 
 TEST_F(NodeCommand, answers_69_and_names_the_interface_that_is_not_there) {
-    const Said said = octoskin("command bench stop --can nope0 --rig " + rig_file_);
-    EXPECT_EQ(said.exit_code, 69) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("nope0: "));
+    EXPECT_THAT(failure_of("command bench stop --can nope0 --rig " + rig_file_),
+                fails_with(69, code_is(ErrorCode::no_device), path_is("nope0")));
 }
 
 /// The bench's board in real time at the other end of a socket, which a program inherits.
@@ -98,12 +100,13 @@ TEST_F(NodeCommand, does_and_tells_each_of_them) {
     EXPECT_EQ(command("1 start").output, "node 1: start: ranging; 4 sensors: 4 ranging\n");
     EXPECT_THAT(command("all send_info --rig " + rig_file_).output, HasSubstr(", as in the rig; up "));
     EXPECT_EQ(command("1 identify --seconds 1").exit_code, 0);
-    const Said refused = command("1 set_rate --period-ms 1");
-    EXPECT_EQ(refused.exit_code, 1) << refused.output;
-    EXPECT_THAT(refused.output, HasSubstr("it refuses set_rate"));
-    const Said stranger = command("2 stop");
-    EXPECT_EQ(stranger.exit_code, 69);
-    EXPECT_THAT(stranger.output, HasSubstr("no heartbeat"));
+    const auto failure = [&](const std::string& arguments) {
+        return failure_of("command " + arguments + " --can " + node.interface());
+    };
+    EXPECT_THAT(failure("1 set_rate --period-ms 1"),
+                fails_with(1, key_is(HasSubstr("node 1")), what_is(HasSubstr("it refuses set_rate"))));
+    EXPECT_THAT(failure("2 stop"), fails_with(69, code_is(ErrorCode::no_answer), key_is(HasSubstr("node 2")),
+                                              what_is(HasSubstr("no heartbeat"))));
     const Said reset = command("1 reset");
     EXPECT_EQ(reset.exit_code, 0) << reset.output;
 }

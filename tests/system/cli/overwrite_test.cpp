@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <sys/file.h>
 
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -9,12 +10,23 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::file_is;
+using testing_support::others_are;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class Overwrite : public ProgramTest {
   protected:
     [[nodiscard]] Said record(const std::string& more) const {
         return octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
                         " --scenario " + source("tests/data/short/scenario.yaml") + " " + more);
+    }
+    /// The failure of the same.
+    [[nodiscard]] Failure fail_to_record(const std::string& more) const {
+        return failure_of("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                          " --scenario " + source("tests/data/short/scenario.yaml") + " " + more);
     }
     [[nodiscard]] std::string names_in(const std::string& folder) const {
         return run("ls -A " + path(folder)).output;
@@ -25,9 +37,9 @@ TEST_F(Overwrite, a_recording_is_replaced_only_by_force_and_with_its_maps) {
     record_short("rec");
     ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
     const std::string log = content(path("rec/can.log"));
-    const Said refused = record("--seed 1");
-    EXPECT_EQ(refused.exit_code, 73) << refused.output;
-    EXPECT_THAT(refused.output, AllOf(HasSubstr("not empty"), HasSubstr("--force")));
+    EXPECT_THAT(fail_to_record("--seed 1"),
+                fails_with(73, code_is(ErrorCode::already_exists), path_is(path("rec")),
+                           what_is(HasSubstr("not empty")), remedy_is(HasSubstr("--force"))));
     EXPECT_EQ(content(path("rec/can.log")), log);
     EXPECT_TRUE(std::filesystem::exists(path("rec/maps/fused.ot")));
     const Said forced = record("--seed 1 --force");
@@ -40,18 +52,19 @@ TEST_F(Overwrite, a_robots_recording_is_not_replaced_even_by_force) {
     record_short("rec");
     write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
     const std::string log = content(path("rec/can.log"));
-    const Said refused = record("--force");
-    EXPECT_EQ(refused.exit_code, 73) << refused.output;
+    EXPECT_THAT(fail_to_record("--force"),
+                fails_with(73, code_is(ErrorCode::already_exists), path_is(path("rec")),
+                           value_is("a can.log"), remedy_is(HasSubstr("another directory"))));
     EXPECT_EQ(content(path("rec/can.log")), log);
 }
 
 TEST_F(Overwrite, a_simulation_that_fails_leaves_nothing) {
     write(path("wide.yaml"), "extends: " + source("tests/data/short/rig.yaml") +
                                  "\ncamera: {width_px: 2048, height_px: 2048, cx_px: 1024, cy_px: 1024}\n");
-    const Said said = octoskin("simulate " + path("rec") + " --rig " + path("wide.yaml") + " --scenario " +
-                               source("tests/data/short/scenario.yaml"));
-    EXPECT_EQ(said.exit_code, 73) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("2048 x 2048"));
+    EXPECT_THAT(failure_of("simulate " + path("rec") + " --rig " + path("wide.yaml") + " --scenario " +
+                           source("tests/data/short/scenario.yaml")),
+                fails_with(73, code_is(ErrorCode::limit_exceeded), file_is("depth.oni"),
+                           what_is(HasSubstr("2048 x 2048"))));
     EXPECT_FALSE(std::filesystem::exists(path("rec")));
 }
 
@@ -61,9 +74,8 @@ TEST_F(Overwrite, a_replay_that_fails_leaves_the_maps_as_they_were) {
     const std::string fused = content(path("rec/maps/fused.ot"));
     const std::string names = names_in("rec/maps");
     // A rig of other nodes: nothing of this log comes into its map.
-    const Said wrong = octoskin("replay " + path("rec") + " --rig " + source("tests/data/gantry/rig.yaml"));
-    EXPECT_EQ(wrong.exit_code, 1) << wrong.output;
-    EXPECT_THAT(wrong.output, HasSubstr("no map is written"));
+    EXPECT_THAT(failure_of("replay " + path("rec") + " --rig " + source("tests/data/gantry/rig.yaml")),
+                fails_with(1, code_is(ErrorCode::no_content), others_are("No map is written")));
     EXPECT_EQ(content(path("rec/maps/fused.ot")), fused);
     EXPECT_EQ(names_in("rec/maps"), names);
 }
@@ -100,16 +112,16 @@ TEST_F(Overwrite, a_log_with_its_rig_elsewhere_is_enough) {
     std::filesystem::rename(path("rec/rig.yaml"), path("elsewhere/rig.yaml"));
     std::filesystem::rename(path("rec/robot.urdf"), path("elsewhere/robot.urdf"));
     write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
-    const Said refused = octoskin("replay " + path("rec"));
-    EXPECT_EQ(refused.exit_code, 66);
-    EXPECT_THAT(refused.output, AllOf(HasSubstr("rig.yaml"), HasSubstr("give --rig")));
+    EXPECT_THAT(failure_of("replay " + path("rec")),
+                fails_with(66, code_is(ErrorCode::not_found), path_is(path("rec/rig.yaml")),
+                           remedy_is(HasSubstr("give --rig"))));
     const Said said =
         octoskin("replay " + path("rec") + " --rig " + path("elsewhere/rig.yaml") + " --out " + path("maps"));
     ASSERT_EQ(said.exit_code, 0) << said.output;
     EXPECT_EQ(content(path("maps/fused.ot")), fused);
-    const Said file = octoskin("replay " + path("rec/can.log"));
-    EXPECT_EQ(file.exit_code, 66);
-    EXPECT_THAT(file.output, AllOf(HasSubstr("is a file"), HasSubstr("directory")));
+    EXPECT_THAT(failure_of("replay " + path("rec/can.log")),
+                fails_with(66, code_is(ErrorCode::wrong_kind_of_file), path_is(path("rec/can.log")),
+                           remedy_is(HasSubstr("directory, " + path("rec")))));
 }
 
 TEST_F(Overwrite, two_that_write_one_directory_at_once_are_kept_apart) {
@@ -142,24 +154,23 @@ TEST_F(Overwrite, a_directory_in_use_is_named_with_what_to_do) {
     std::FILE* const held = std::fopen(path("rec/maps").c_str(), "r");
     ASSERT_NE(held, nullptr);
     ASSERT_EQ(::flock(::fileno(held), LOCK_EX), 0);
-    const Said maps = octoskin("replay " + path("rec"));
-    EXPECT_EQ(maps.exit_code, 73) << maps.output;
-    EXPECT_THAT(maps.output, AllOf(HasSubstr(path("rec/maps") + ": another octoskin is writing here"),
-                                   HasSubstr("another directory")));
+    EXPECT_THAT(failure_of("replay " + path("rec")),
+                fails_with(73, code_is(ErrorCode::in_use), path_is(path("rec/maps")),
+                           what_is(HasSubstr("writing")), remedy_is(HasSubstr("another directory"))));
     EXPECT_EQ(octoskin("replay " + path("rec") + " --out " + path("elsewhere")).exit_code, 0);
     std::fclose(held);
 
     std::FILE* const read = std::fopen(path("rec/meta.yaml").c_str(), "r");
     ASSERT_NE(read, nullptr);
     ASSERT_EQ(::flock(::fileno(read), LOCK_SH), 0);
-    const Said writer = octoskin(again);
-    EXPECT_EQ(writer.exit_code, 73) << writer.output;
-    EXPECT_THAT(writer.output, HasSubstr(path("rec") + ": another octoskin is reading this recording"));
+    EXPECT_THAT(failure_of(again),
+                fails_with(73, code_is(ErrorCode::in_use), path_is(path("rec")),
+                           what_is(HasSubstr("reading")), remedy_is(HasSubstr("another directory"))));
     EXPECT_EQ(octoskin("replay " + path("rec")).exit_code, 0);  // readers do not mind each other
     ASSERT_EQ(::flock(::fileno(read), LOCK_EX), 0);
-    const Said reader = octoskin("replay " + path("rec"));
-    EXPECT_EQ(reader.exit_code, 65) << reader.output;
-    EXPECT_THAT(reader.output, HasSubstr("is replacing this recording"));
+    EXPECT_THAT(failure_of("replay " + path("rec")),
+                fails_with(65, code_is(ErrorCode::in_use), path_is(path("rec")),
+                           what_is(HasSubstr("replacing")), remedy_is(HasSubstr("wait"))));
     std::fclose(read);
     EXPECT_EQ(octoskin(again).exit_code, 0);
 }
@@ -171,10 +182,9 @@ TEST_F(Overwrite, maps_with_a_directory_in_their_way_are_refused_and_those_befor
     const std::string origin = content(path("rec/maps/maps.yaml"));
     std::filesystem::remove(path("rec/maps/proximity.ply"));
     std::filesystem::create_directory(path("rec/maps/proximity.ply"));
-    const Said said = octoskin("replay " + path("rec") + " --configuration paper");
-    EXPECT_EQ(said.exit_code, 73) << said.output;
-    EXPECT_THAT(said.output,
-                AllOf(HasSubstr("maps/proximity.ply: is not a file"), HasSubstr("move it away")));
+    EXPECT_THAT(failure_of("replay " + path("rec") + " --configuration paper"),
+                fails_with(73, code_is(ErrorCode::wrong_kind_of_file),
+                           path_is(path("rec/maps/proximity.ply")), remedy_is(HasSubstr("move it away"))));
     EXPECT_EQ(content(path("rec/maps/fused.ot")), fused);
     EXPECT_EQ(content(path("rec/maps/maps.yaml")), origin);
     EXPECT_EQ(run("ls -A " + path("rec/maps") + " | grep -c octoskin").output, "0\n");
@@ -194,17 +204,16 @@ TEST_F(Overwrite, maps_that_a_replay_has_none_of_go_with_the_replay_before) {
 
 class OverwriteByExperiment : public Overwrite {
   protected:
-    [[nodiscard]] Said experiment() const {
-        return octoskin("experiment --out " + path("out") + " --rig " + source("tests/data/short/rig.yaml") +
-                        " --scenario " + source("tests/data/short/scenario.yaml"));
+    [[nodiscard]] std::string experiment() const {
+        return "experiment --out " + path("out") + " --rig " + source("tests/data/short/rig.yaml") +
+               " --scenario " + source("tests/data/short/scenario.yaml");
     }
     void expect_refused_for(const std::string& name) const {
-        const Said said = experiment();
-        EXPECT_EQ(said.exit_code, 73) << said.output;
-        EXPECT_THAT(said.output,
-                    AllOf(HasSubstr(path("out") + ": contains " + name +
-                                    ", which is not an unchanged result of an experiment"),
-                          HasSubstr("give another directory"), testing::Not(HasSubstr("ground truth"))));
+        const Failure failure = failure_of(experiment());
+        EXPECT_THAT(failure,
+                    fails_with(73, code_is(ErrorCode::already_exists), path_is(path("out")),
+                               value_is("'" + name + "'"), remedy_is(HasSubstr("give another directory"))));
+        EXPECT_THAT(failure.output, testing::Not(HasSubstr("ground truth")));
     }
 };
 
@@ -224,11 +233,11 @@ TEST_F(OverwriteByExperiment, replaces_nothing_that_no_experiment_left) {
 }
 
 TEST_F(OverwriteByExperiment, replaces_its_own_results_again_and_again) {
-    ASSERT_EQ(experiment().exit_code, 0);
+    ASSERT_EQ(octoskin(experiment()).exit_code, 0);
     // As docs/start/simulation.md has it: maps of the recording beside it, and something of one's own.
     ASSERT_EQ(octoskin("replay " + path("out/recording")).exit_code, 0);
     write(path("out/notes.txt"), "what I saw");
-    const Said again = experiment();
+    const Said again = octoskin(experiment());
     ASSERT_EQ(again.exit_code, 0) << again.output;
     EXPECT_EQ(content(path("out/notes.txt")), "what I saw");
     const auto expect_kept = [&](const std::string& name) {

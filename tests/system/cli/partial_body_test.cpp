@@ -6,6 +6,7 @@
 #include <string>
 
 #include "host/io/mapfile/map_file.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -13,6 +14,11 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::code_is;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
 using Json = nlohmann::json;
 
 class PartialBodyTest : public ProgramTest {
@@ -33,7 +39,7 @@ class PartialBodyTest : public ProgramTest {
             }
         }
         const auto saved = save_map(map, path("map.ot"));
-        EXPECT_TRUE(saved) << saved.error().message;
+        EXPECT_TRUE(saved) << saved.error().message();
         return path("map.ot");
     }
     static std::string rig(const std::string& file) { return source("tests/data/partial_body/" + file); }
@@ -89,10 +95,11 @@ TEST_F(PartialBodyTest, a_rig_that_lists_the_link_has_it_left_out) {
     EXPECT_EQ(said.exit_code, 0) << said.output;
     EXPECT_EQ(Json::parse(said.output)["links_without_body"], Json({"upper"}));
     EXPECT_EQ(Json::parse(said.output)["links_unknown"], Json::array());
-    const Said refused = octoskin("query " + path("map.ot") + " --joints 0,0 --rig " + rig("listed.yaml") +
-                                  " --robot " + rig("arm_whole.urdf"));
-    EXPECT_EQ(refused.exit_code, 78) << refused.output;
-    EXPECT_THAT(refused.output, HasSubstr("listed.yaml:4: robot.links_without_body: "));
+    EXPECT_THAT(failure_of("query " + path("map.ot") + " --joints 0,0 --rig " + rig("listed.yaml") +
+                           " --robot " + rig("arm_whole.urdf")),
+                fails_with(78, code_is(ErrorCode::conflict), path_is(rig("listed.yaml")), line_is(4),
+                           key_is("robot.links_without_body"), value_is(HasSubstr("'upper'")),
+                           remedy_is(HasSubstr("remove it"))));
 }
 
 TEST_F(PartialBodyTest, rig_names_the_link) {

@@ -2,12 +2,17 @@
 #include <gmock/gmock.h>
 
 #include "tests/support/data_set/written_data_set.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
 namespace {
 
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::key_is;
+using testing_support::remedy_is;
+using testing_support::what_is;
 
 /// The program as somebody who may not read what is not everybody's: root may read everything.
 class PermissionTest : public ProgramTest {
@@ -28,16 +33,20 @@ class PermissionTest : public ProgramTest {
     Said as_nobody(const std::string& arguments) const {
         const std::string who = ::geteuid() == 0 ? "setpriv --reuid 65534 --regid 65534 --clear-groups " : "";
         const std::string program = are_for_lab(arguments) ? "bin/octoskin-lab" : "bin/octoskin";
-        return run("cd " + path("") + " && timeout 20 " + who + path(program) + " " + arguments);
+        return run("cd " + path("") + " && timeout 20 " + who + path(program) + " --json-errors " +
+                   arguments);
+    }
+    [[nodiscard]] Failure fail_as_nobody(const std::string& arguments) const {
+        return failure_in(as_nobody(arguments));
     }
     /// That each of them says of `file` that it may not be read, and does what it does once it may.
     void expect_refused(const std::string& file, const std::vector<std::string>& commands) const {
         const std::filesystem::perms before = std::filesystem::status(path(file)).permissions();
         std::filesystem::permissions(path(file), std::filesystem::perms::none);
         for (const std::string& command : commands) {
-            const Said said = as_nobody(command);
-            EXPECT_EQ(said.exit_code, 77) << command << ": " << said.output;
-            EXPECT_THAT(said.output, HasSubstr(path(file) + ": cannot be read (Permission denied)"))
+            EXPECT_THAT(fail_as_nobody(command),
+                        fails_with(77, code_is(ErrorCode::no_permission), path_is(path(file)),
+                                   what_is(HasSubstr("(Permission denied)")), remedy_is(HasSubstr("chmod"))))
                 << command;
         }
         std::filesystem::permissions(path(file), before);
@@ -80,9 +89,9 @@ TEST_F(PermissionTest, of_what_is_in_a_folder_that_may_not_be_entered) {
     for (const std::string& command :
          {"rig" + at("rec/rig.yaml"), "replay" + at("rec") + " --out" + at("out"), "evaluate" + at("rec"),
           "black-box" + at("rec/can.log"), "rig" + at("rig.yaml")}) {
-        const Said said = as_nobody(command);
-        EXPECT_EQ(said.exit_code, 77) << command << ": " << said.output;
-        EXPECT_THAT(said.output, HasSubstr("cannot be read (Permission denied)")) << command;
+        EXPECT_THAT(fail_as_nobody(command), fails_with(77, code_is(ErrorCode::no_permission),
+                                                        what_is(HasSubstr("(Permission denied)"))))
+            << command;
     }
     std::filesystem::permissions(path("rec"), std::filesystem::perms::all);
 }
@@ -92,14 +101,15 @@ TEST_F(PermissionTest, of_an_image_of_a_data_set) {
     data_set.add_image("1.0", {640, 480, std::vector<std::uint16_t>(640 * 480, 10'000)});
     data_set.add_pose("1.0", "0 0 0 0 0 0 1");
     std::filesystem::permissions(path("set/depth/1.0.png"), std::filesystem::perms::none);
-    const Said said = as_nobody("replay" + at("set") + " --out" + at("out"));
-    EXPECT_EQ(said.exit_code, 77) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("depth/1.0.png: may not be read"));
+    EXPECT_THAT(fail_as_nobody("replay" + at("set") + " --out" + at("out")),
+                fails_with(77, code_is(ErrorCode::no_permission), path_is(path("set/depth.txt")),
+                           key_is("depth/1.0.png"), remedy_is(HasSubstr("permission"))));
 }
 
 TEST_F(PermissionTest, is_none_where_there_is_no_file) {
-    EXPECT_EQ(as_nobody("rig" + at("gone.yaml")).exit_code, 66);
-    EXPECT_EQ(as_nobody("replay" + at("gone")).exit_code, 66);
+    for (const std::string command : {"rig", "replay"})
+        EXPECT_THAT(fail_as_nobody(command + at("gone")),
+                    fails_with(66, code_is(ErrorCode::not_found), path_is(path("gone"))));
 }
 
 }  // namespace

@@ -6,12 +6,19 @@
 #include <utility>
 
 #include "host/io/mapfile/map_file.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
 namespace {
 
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 using Json = nlohmann::json;
 
 constexpr const char* kReady = "0,-0.785,0,-2.356,0,1.571,0.785";
@@ -28,7 +35,7 @@ class QueryCommandTest : public ProgramTest {
                 for (const auto z : kSides) EXPECT_TRUE(map.set_cube({{x, y, z}, 6}, -1.0F));
         change(map);
         const auto saved = save_map(map, path(name));
-        EXPECT_TRUE(saved) << saved.error().message;
+        EXPECT_TRUE(saved) << saved.error().message();
         return path(name);
     }
     [[nodiscard]] std::string free_map() const {
@@ -135,74 +142,91 @@ TEST_F(QueryCommandTest, lists_unknown_pockets) {
 
 TEST_F(QueryCommandTest, that_cannot_be_asked_says_why) {
     const std::string map = free_map();
-    const auto expect = [&](const std::string& arguments, int exit_code, const std::string& text) {
-        const Said said = query(map + arguments);
-        EXPECT_EQ(said.exit_code, exit_code) << said.output;
-        EXPECT_THAT(said.output, HasSubstr(text));
+    const std::string rig = " --rig " + source("hw/rigs/experiment.yaml");
+    const auto failure = [&](const std::string& arguments) {
+        return failure_of("query " + map + arguments + rig);
     };
     write(path("bad.txt"), "0,0,0,0,0,0,0\n0,0,x\n");
     write(path("none.txt"), "# nothing\n");
-    expect("", 69, "give the posture to ask about as --joints");
-    expect(" --joints 1,2", 64, "2 joint positions; the rig has 7 joints: panda_joint1, panda_joint2");
-    for (const char* joints : {"a,b", "0,,0,0,0,0,0", "0,-1,0,-2,0,1,0,", "'0;-1;0;-2;0;1;0'",
-                               "0x0,-1,0,-2,0,1,0", "nan,-1,0,-2,0,1,0", "inf,-1,0,-2,0,1,0", "''"}) {
-        expect(std::string(" --joints ") + joints, 64, "expected a joint configuration: one number for each");
+    EXPECT_THAT(failure(""), fails_with(69, code_is(ErrorCode::no_data), remedy_is(HasSubstr("--joints"))));
+    EXPECT_THAT(
+        failure(" --joints 1,2"),
+        fails_with(64, code_is(ErrorCode::mismatch), key_is("configuration 1"), value_is("2 positions"),
+                   what_is(HasSubstr("7 joints: panda_joint1, panda_joint2"))));
+    for (const std::string joints : {"a,b", "0,,0,0,0,0,0", "0,-1,0,-2,0,1,0,", "0;-1;0;-2;0;1;0",
+                                     "0x0,-1,0,-2,0,1,0", "nan,-1,0,-2,0,1,0", "inf,-1,0,-2,0,1,0", ""}) {
+        EXPECT_THAT(failure(" --joints '" + joints + "'"),
+                    fails_with(64, code_is(ErrorCode::bad_syntax), key_is("--joints '" + joints + "'")));
     }
-    expect(" --joints 0,9,0,-2,0,1,0", 64, "panda_joint2 is 9; its limits are");
-    expect(" --path " + path("bad.txt"), 65,
-           "bad.txt:2: 'x' is not a plain, finite number; expected a joint");
+    EXPECT_THAT(failure(" --joints 0,9,0,-2,0,1,0"),
+                fails_with(64, code_is(ErrorCode::out_of_range), key_is(HasSubstr("panda_joint2")),
+                           value_is("9"), what_is(HasSubstr("limits"))));
+    EXPECT_THAT(failure(" --path " + path("bad.txt")),
+                fails_with(65, code_is(ErrorCode::bad_syntax), path_is(path("bad.txt")), line_is(2),
+                           value_is("'x'")));
     write(path("few.txt"), std::string("# two\n") + kReady + "\n\n0,0,0\n");
-    expect(" --path " + path("few.txt"), 64, "few.txt:4: configuration 2: 3 joint positions; the rig has 7");
+    EXPECT_THAT(
+        failure(" --path " + path("few.txt")),
+        fails_with(64, code_is(ErrorCode::mismatch), path_is(path("few.txt")), line_is(4),
+                   key_is("configuration 2"), value_is("3 positions"), what_is(HasSubstr("7 joints"))));
     write(path("beyond.txt"), std::string("# one\n0,9,0,-2,0,1,0\n"));
-    expect(" --path " + path("beyond.txt"), 64,
-           "beyond.txt:2: configuration 1: panda_joint2 is 9; its limits");
-    expect(" --path " + path("beyond.txt") + " --path -", 64, "--path");
-    expect(" --path ''", 66, "cannot be read: No such file");
-    expect(" --path /proc/self/mem", 74, "/proc/self/mem: cannot be read");
-    expect(" --path /dev/zero", 65, "/dev/zero: has more than 1048576 bytes, more than any valid path");
-    expect(" --path " + directory_.string(), 64, "is a directory, not a file with one configuration a line");
-    expect(" --path " + path("none.txt"), 65, "no joint configuration");
-    expect(" --path " + path("nowhere.txt"), 66, "nowhere.txt");
-    expect(std::string(" --ignore-link hand --joints ") + kReady, 64, "the robot has no link 'hand'");
-    const Said no_rig = octoskin("query " + map + " --joints " + kReady);
-    EXPECT_EQ(no_rig.exit_code, 64) << no_rig.output;
-    EXPECT_THAT(no_rig.output, HasSubstr("give --rig"));
-    const Said no_daemon = octoskin("query --socket " + path("nobody"));
-    EXPECT_EQ(no_daemon.exit_code, 69) << no_daemon.output;
+    EXPECT_THAT(
+        failure(" --path " + path("beyond.txt")),
+        fails_with(64, code_is(ErrorCode::out_of_range), path_is(path("beyond.txt")), line_is(2),
+                   key_is("configuration 1: panda_joint2"), value_is("9"), what_is(HasSubstr("limits"))));
+    EXPECT_THAT(failure(" --path " + path("beyond.txt") + " --path -"),
+                fails_with(64, code_is(ErrorCode::bad_argument), key_is("--path")));
+    EXPECT_THAT(failure(" --path ''"), fails_with(66, code_is(ErrorCode::not_found)));
+    EXPECT_THAT(failure(" --path /proc/self/mem"),
+                fails_with(74, code_is(ErrorCode::system_error), path_is("/proc/self/mem")));
+    EXPECT_THAT(
+        failure(" --path /dev/zero"),
+        fails_with(65, code_is(ErrorCode::too_large), path_is("/dev/zero"), what_is(HasSubstr("1048576"))));
+    EXPECT_THAT(failure(" --path " + directory_.string()),
+                fails_with(64, code_is(ErrorCode::wrong_kind_of_file), path_is(directory_.string())));
+    EXPECT_THAT(failure(" --path " + path("none.txt")),
+                fails_with(65, code_is(ErrorCode::no_content), path_is(path("none.txt"))));
+    EXPECT_THAT(failure(" --path " + path("nowhere.txt")),
+                fails_with(66, code_is(ErrorCode::not_found), path_is(path("nowhere.txt"))));
+    EXPECT_THAT(
+        failure(std::string(" --ignore-link hand --joints ") + kReady),
+        fails_with(64, code_is(ErrorCode::unknown_name), key_is("links_ignored"), value_is("'hand'")));
+    EXPECT_THAT(
+        failure_of("query " + map + " --joints " + kReady),
+        fails_with(64, code_is(ErrorCode::bad_argument), key_is("--rig"), remedy_is(HasSubstr("rig"))));
+    EXPECT_THAT(failure_of("query --socket " + path("nobody")), fails_with(69, path_is(path("nobody"))));
 }
 
 TEST_F(QueryCommandTest, refuses_what_would_not_be_looked_at) {
     const std::string map = free_map();
     const std::string rig = " --rig " + source("hw/rigs/experiment.yaml");
     const std::string joints = std::string(" --joints ") + kReady;
-    const auto refused = [&](const std::string& arguments) {
-        const Said said = octoskin("query " + arguments);
-        EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
-        return said.output;
+    const auto expect_refused = [](const std::string& arguments, const std::string& option,
+                                   const std::string& remedy) {
+        EXPECT_THAT(
+            failure_of("query " + arguments),
+            fails_with(64, code_is(ErrorCode::conflict), key_is(option), remedy_is(HasSubstr(remedy))))
+            << arguments;
     };
-    EXPECT_THAT(refused(joints + rig + " --socket " + path("nobody")),
-                HasSubstr("--rig is for a map file; a daemon has its own: leave it out, or name the map"));
-    EXPECT_THAT(refused(joints + " --robot " + source("hw/rigs/experiment.yaml")),
-                HasSubstr("--robot is for a"));
-    EXPECT_THAT(refused(joints + " --stands " + kReady), HasSubstr("--stands is for a map file"));
-    EXPECT_THAT(refused(map + rig + joints + " --socket " + path("nobody")),
-                HasSubstr("--socket is where a daemon listens, but a map file is given"));
-    for (const char* option : {" --radius 1", " --above 0", " --pockets 1", " --tries 1"})
-        EXPECT_THAT(refused(map + rig + joints + option), HasSubstr(" is for --unknown: give that, too"));
-    EXPECT_THAT(refused(map + rig + joints + " --unknown --reach 1"),
-                HasSubstr("--reach: --unknown gives no"));
+    expect_refused(joints + rig + " --socket " + path("nobody"), "--rig", "leave it out, or name the map");
+    expect_refused(joints + " --robot " + source("hw/rigs/experiment.yaml"), "--robot", "name the map");
+    expect_refused(joints + " --stands " + kReady, "--stands", "name the map");
+    expect_refused(map + rig + joints + " --socket " + path("nobody"), "--socket", "leave out");
+    for (const std::string option : {"--radius", "--above", "--pockets", "--tries"})
+        expect_refused(map + rig + joints + " " + option + " 1", option, "give --unknown");
+    expect_refused(map + rig + joints + " --unknown --reach 1", "--reach", "leave it out");
     write(path("way.txt"), std::string(kReady) + "\n");
-    EXPECT_THAT(refused(map + rig + " --unknown --path " + path("way.txt")),
-                HasSubstr("give it as --joints"));
+    expect_refused(map + rig + " --unknown --path " + path("way.txt"), "--path", "give it as --joints");
 }
 
 TEST_F(QueryCommandTest, takes_no_variable_that_nothing_set_for_an_option_that_was_left_out) {
     const std::string map = free_map();
     const std::string joints = std::string(" --joints ") + kReady;
-    const auto expect_refused = [](const std::string& arguments, const std::string& what) {
-        const Said said = octoskin("query " + arguments);
-        EXPECT_EQ(said.exit_code, 64) << arguments << ": " << said.output;
-        EXPECT_THAT(said.output, HasSubstr(what + ": the file name is missing"));
+    const auto expect_refused = [](const std::string& arguments, const std::string& option) {
+        EXPECT_THAT(failure_of("query " + arguments),
+                    fails_with(64, code_is(ErrorCode::bad_argument), key_is(option),
+                               what_is(HasSubstr("the file name is missing"))))
+            << arguments;
     };
     expect_refused("''" + joints, "map");
     expect_refused(map + " --rig ''" + joints, "--rig");
@@ -229,8 +253,12 @@ TEST_F(QueryCommandTest, tells_an_error_as_json_too) {
         const Json answer = Json::parse(said.output, nullptr, false);
         ASSERT_TRUE(answer.is_object()) << arguments << ": " << said.output;
         EXPECT_EQ(answer.value("ok", true), false);
-        EXPECT_NE(answer.value("error", ""), "");
-        EXPECT_EQ(answer.value("code", 0), exit_code);
+        EXPECT_EQ(answer.value("exit", 0), exit_code);
+        // The same error as on standard error.
+        ASSERT_TRUE(answer.contains("error")) << said.output;
+        const Failure failure = failure_of("query " + arguments);
+        EXPECT_THAT(failure, fails_with(exit_code));
+        EXPECT_EQ(Json(answer.at("error")), Json(to_json(failure.error)));
     }
 }
 
@@ -239,16 +267,21 @@ TEST_F(QueryCommandTest, tells_a_script_which_configuration_is_refused) {
     const Said said = said_to_script(free_map() + " --rig " + source("hw/rigs/experiment.yaml") + " --path " +
                                      path("beyond.txt"));
     EXPECT_EQ(said.exit_code, 64);
-    EXPECT_EQ(Json::parse(said.output).at("configuration"), 2) << said.output;
+    const Json answer = Json::parse(said.output);
+    EXPECT_EQ(answer.at("configuration"), 2) << said.output;
+    EXPECT_EQ(answer.at("error").at("line"), 2) << said.output;
 }
 
 TEST_F(QueryCommandTest, takes_for_own_space_where_the_arm_is_said_to_stand) {
     const std::string unknown = path("empty.ot");
     ASSERT_TRUE(save_map(FusedMap{MapConfig{}}, unknown));
     const std::string aside = " --joints 1.5,-0.785,0,-2.356,0,1.571,0.785 --own-space 0.05";
-    const Said itself = query(unknown + aside);
-    EXPECT_EQ(itself.exit_code, 64) << "it would be free whatever the map says";
-    EXPECT_THAT(itself.output, HasSubstr("--own-space of a map file needs --stands"));
+    const auto failure = [](const std::string& arguments) {
+        return failure_of("query " + arguments + " --rig " + source("hw/rigs/experiment.yaml"));
+    };
+    EXPECT_THAT(failure(unknown + aside), fails_with(64, code_is(ErrorCode::bad_argument),
+                                                     key_is("--own-space"), remedy_is(HasSubstr("--stands"))))
+        << "it would be free whatever the map says";
     write(path("one.txt"), std::string(kReady) + "\n");
     EXPECT_EQ(query(unknown + " --own-space 0.05 --path " + path("one.txt")).exit_code, 64);
     write(path("two.txt"), std::string(kReady) + "\n" + kReady + "\n");
@@ -257,11 +290,12 @@ TEST_F(QueryCommandTest, takes_for_own_space_where_the_arm_is_said_to_stand) {
     EXPECT_EQ(Json::parse(way.output).at("own_space_m"), 0.05);
     EXPECT_EQ(query(unknown + aside + " --stands " + kReady).exit_code, 2) << "there it does not stand";
     EXPECT_EQ(query(unknown + " --own-space 0.05 --stands " + kReady).exit_code, 0) << "as it stands";
-    const Said few = query(unknown + aside + " --stands 0,1");
-    EXPECT_EQ(few.exit_code, 64);
-    EXPECT_THAT(few.output, HasSubstr("the present posture: 2 joint positions; the rig has 7 joints"));
-    EXPECT_THAT(query(unknown + aside + " --stands 1,,2").output,
-                HasSubstr("--stands '1,,2': a number is missing"));
+    EXPECT_THAT(failure(unknown + aside + " --stands 0,1"),
+                fails_with(64, code_is(ErrorCode::mismatch), key_is("the present posture"),
+                           value_is("2 positions"), what_is(HasSubstr("7 joints"))));
+    EXPECT_THAT(failure(unknown + aside + " --stands 1,,2"),
+                fails_with(64, code_is(ErrorCode::bad_syntax), key_is("--stands '1,,2'"),
+                           value_is(HasSubstr("no number"))));
 }
 
 TEST_F(QueryCommandTest, warns_if_the_map_was_made_with_another_rig) {

@@ -1,6 +1,9 @@
 // What a recording is judged in: the world it was made in, found again, or none.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -9,6 +12,12 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::code_is;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class SceneOfARecording : public ProgramTest {
   protected:
@@ -47,9 +56,10 @@ TEST_F(SceneOfARecording, has_the_meshes_that_were_found_in_folders_of_models) {
     const std::string simulate = "simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
                                  " --scenario " + source("tests/data/short/scenario.yaml") + " --world " +
                                  kitchen();
-    const Said nowhere = octoskin(simulate);
-    EXPECT_EQ(nowhere.exit_code, 65);
-    EXPECT_THAT(nowhere.output, AllOf(HasSubstr("model://kitchen/meshes/"), HasSubstr("--model-path")));
+    const Failure nowhere = failure_of(simulate);
+    EXPECT_THAT(nowhere, fails_with(65, path_is(kitchen())));
+    EXPECT_THAT(nowhere.error.message(),
+                AllOf(HasSubstr("model://kitchen/meshes/"), HasSubstr("--model-path")));
     const Said made = octoskin(simulate + " --model-path " + path("worlds") + ":" + path("models"));
     ASSERT_EQ(made.exit_code, 0) << made.output;
     EXPECT_THAT(made.output,
@@ -97,10 +107,11 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     take_scene_out("rec");
     const std::string evaluate =
         "evaluate " + path("rec") + " --scenario " + source("tests/data/short/scenario.yaml");
-    const Said unnamed = octoskin(evaluate);
-    EXPECT_EQ(unnamed.exit_code, 66) << "a recording does not choose what is opened outside of it";
-    EXPECT_THAT(unnamed.output,
-                AllOf(HasSubstr("recorded in " + kitchen()), HasSubstr("give --world " + kitchen())));
+    const auto is_absent =
+        fails_with(66, code_is(ErrorCode::not_found), path_is(path("rec")), key_is("world"),
+                   what_is(HasSubstr(kitchen())), remedy_is(HasSubstr("give --world " + kitchen())));
+    EXPECT_THAT(failure_of(evaluate), is_absent)
+        << "a recording does not choose what is opened outside of it";
     const Said own = octoskin(evaluate + " --world " + kitchen() + " --json " + path("figures.json"));
     ASSERT_EQ(own.exit_code, 0) << own.output;
     EXPECT_THAT(own.output, AllOf(HasSubstr("judging in " + kitchen()), Not(HasSubstr("recorded in"))));
@@ -119,9 +130,7 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     EXPECT_NE(table_of(own), table_of(other));
 
     std::filesystem::rename(kitchen(), path("worlds/moved.sdf"));
-    const Said absent = octoskin(evaluate);
-    EXPECT_EQ(absent.exit_code, 66) << absent.output;
-    EXPECT_THAT(absent.output, AllOf(HasSubstr("recorded in " + kitchen()), HasSubstr("give --world")));
+    EXPECT_THAT(failure_of(evaluate), is_absent);
     const Said moved = octoskin(evaluate + " --world " + path("worlds/moved.sdf"));
     ASSERT_EQ(moved.exit_code, 0) << moved.output;
     EXPECT_THAT(moved.output, Not(HasSubstr("recorded in kitchen.sdf")));
@@ -135,19 +144,18 @@ TEST_F(SceneOfARecording, is_the_one_it_was_made_in_or_evaluate_refuses) {
     EXPECT_EQ(table_of(within), table_of(own));
     std::filesystem::remove_all(path("rec/meshes"));
     std::filesystem::create_directory_symlink(path("worlds/meshes"), path("rec/meshes"));
-    const Said linked = octoskin(evaluate);
-    EXPECT_EQ(linked.exit_code, 65) << linked.output;
-    EXPECT_THAT(linked.output, AllOf(HasSubstr("rec/kitchen.sdf: "), HasSubstr("is a symbolic link")));
+    const Failure linked = failure_of(evaluate);
+    EXPECT_THAT(linked, fails_with(65, path_is(path("rec/kitchen.sdf"))));
+    EXPECT_THAT(linked.error.message(), HasSubstr("is a symbolic link"));
     write(path("rec/kitchen.sdf"), content(kitchen()));
-    const Said changed = octoskin(evaluate);
-    EXPECT_EQ(changed.exit_code, 65) << changed.output;
-    EXPECT_THAT(changed.output,
-                AllOf(HasSubstr("recorded in kitchen.sdf (CRC-32 0x"), HasSubstr("give --world")));
+    EXPECT_THAT(failure_of(evaluate), fails_with(65, code_is(ErrorCode::mismatch), path_is(path("rec")),
+                                                 what_is(HasSubstr("kitchen.sdf (CRC-32 0x")),
+                                                 value_is(HasSubstr(path("rec/kitchen.sdf") + " (CRC-32 0x")),
+                                                 remedy_is(HasSubstr("give --world"))));
     std::filesystem::remove(path("rec/kitchen.sdf"));
     std::filesystem::create_symlink(kitchen(), path("rec/kitchen.sdf"));
-    const Said link = octoskin(evaluate);
-    EXPECT_EQ(link.exit_code, 65) << link.output;
-    EXPECT_THAT(link.output, AllOf(HasSubstr("rec/kitchen.sdf: "), HasSubstr("is a symbolic link")));
+    EXPECT_THAT(failure_of(evaluate),
+                fails_with(65, code_is(ErrorCode::link), path_is(path("rec/kitchen.sdf"))));
 }
 
 TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
@@ -158,9 +166,9 @@ TEST_F(SceneOfARecording, has_the_scenario_too_with_what_that_extends) {
     ASSERT_EQ(made.exit_code, 0) << made.output;
     take_scene_out("rec");
     write(path("base.yaml"), content(path("base.yaml")) + "depth: {sigma_m: 0.01}\n");
-    const Said unnamed = octoskin("evaluate " + path("rec"));
-    EXPECT_EQ(unnamed.exit_code, 66) << unnamed.output;
-    EXPECT_THAT(unnamed.output, AllOf(HasSubstr("mine.yaml"), HasSubstr("give --scenario")));
+    EXPECT_THAT(failure_of("evaluate " + path("rec")),
+                fails_with(66, code_is(ErrorCode::not_found), path_is(path("rec")), key_is("scenario"),
+                           what_is(HasSubstr(path("mine.yaml"))), remedy_is(HasSubstr("give --scenario"))));
     const Said changed = octoskin("evaluate " + path("rec") + " --scenario " + path("mine.yaml"));
     EXPECT_EQ(changed.exit_code, 0) << changed.output;
     EXPECT_THAT(changed.output, HasSubstr("recorded in mine.yaml (CRC-32 0x"));
@@ -205,10 +213,12 @@ TEST_F(SceneOfARecording, made_with_ones_own_scenario_and_world_is_in_it) {
         const std::string file = rec + "/" + name;
         const std::string whole = content(file);
         write(file, whole + "\n");
-        const Said changed = octoskin("evaluate " + rec);
-        EXPECT_EQ(changed.exit_code, 65) << name << changed.output;
-        EXPECT_THAT(changed.output, AllOf(HasSubstr("not what `octoskin-lab simulate` put there"),
-                                          HasSubstr("give --scenario and --world")));
+        EXPECT_THAT(
+            failure_of("evaluate " + rec),
+            fails_with(65, code_is(ErrorCode::mismatch), path_is(rec),
+                       what_is(HasSubstr("`octoskin-lab simulate`")), value_is(HasSubstr("CRC-32 0x")),
+                       remedy_is(HasSubstr("give --scenario and --world"))))
+            << name;
         std::filesystem::remove(file);
         std::filesystem::create_symlink("/etc/passwd", file);
         EXPECT_EQ(octoskin("evaluate " + rec).exit_code, 66) << name;
@@ -226,9 +236,10 @@ TEST_F(SceneOfARecording, made_with_ones_own_scenario_and_world_is_in_it) {
     const std::string rig = " --rig " + rec + "/rig.yaml";
     EXPECT_EQ(octoskin("evaluate " + rec + "/maps/fused.ot" + rig).exit_code, 0);
     std::filesystem::copy(rec + "/maps", path("maps"));
-    const Said alone = octoskin("evaluate " + path("maps/fused.ot") + rig);
-    EXPECT_EQ(alone.exit_code, 64) << alone.output;
-    EXPECT_THAT(alone.output, HasSubstr("give --recording " + rec));
+    const Failure alone = failure_of("evaluate " + path("maps/fused.ot") + rig);
+    EXPECT_THAT(alone, fails_with(64, code_is(ErrorCode::bad_argument), path_is(path("maps/fused.ot")),
+                                  key_is("--scenario"), remedy_is(HasSubstr("--recording"))));
+    EXPECT_THAT(alone.output, HasSubstr("give --recording " + rec));  // a warning
     EXPECT_EQ(octoskin("evaluate " + path("maps/fused.ot") + rig + " --recording " + rec).exit_code, 0);
     // Of another world nothing of this one stays.
     const Said forced =
@@ -260,27 +271,28 @@ TEST_F(SceneOfARecording, whose_world_is_missing_says_so_and_a_shipped_one_is_kn
                   .exit_code,
               0);
     write(path("rec/mine.yaml"), "extends: none.yaml\n");
-    const Said unusable = octoskin("evaluate " + path("rec"));
-    EXPECT_EQ(unusable.exit_code, 65) << unusable.output;
-    EXPECT_THAT(unusable.output, AllOf(HasSubstr("rec/mine.yaml:1: extends: "), HasSubstr("none.yaml"),
-                                       Not(HasSubstr("0x00000000"))));
+    const Failure unusable = failure_of("evaluate " + path("rec"));
+    EXPECT_THAT(unusable, fails_with(65, code_is(ErrorCode::mismatch), path_is(path("rec")),
+                                     value_is(AllOf(HasSubstr(path("rec/mine.yaml") + ":1: extends: "),
+                                                    HasSubstr("none.yaml")))));
+    EXPECT_THAT(unusable.output, Not(HasSubstr("0x00000000")));
 }
 
 TEST_F(SceneOfARecording, of_a_robot_has_to_be_given) {
     record_short("rec");
     write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
-    const Said said = octoskin("evaluate " + path("rec"));
-    EXPECT_EQ(said.exit_code, 64) << said.output;
-    EXPECT_THAT(said.output, AllOf(HasSubstr("names no scenario"), HasSubstr("give --scenario")));
+    EXPECT_THAT(failure_of("evaluate " + path("rec")),
+                fails_with(64, code_is(ErrorCode::missing_key), path_is(path("rec/meta.yaml")),
+                           key_is("scenario"), remedy_is(HasSubstr("give --scenario"))));
 }
 
 TEST_F(SceneOfARecording, that_names_no_world_is_not_guessed) {
     record_short("rec");
     ASSERT_EQ(run("sed -i '/^world/d' " + path("rec/meta.yaml")).exit_code, 0);
     const std::string scenario = " --scenario " + source("tests/data/short/scenario.yaml");
-    const Said said = octoskin("evaluate " + path("rec") + scenario);
-    EXPECT_EQ(said.exit_code, 64) << said.output;
-    EXPECT_THAT(said.output, AllOf(HasSubstr("meta.yaml names no world"), HasSubstr("give --world")));
+    EXPECT_THAT(failure_of("evaluate " + path("rec") + scenario),
+                fails_with(64, code_is(ErrorCode::missing_key), path_is(path("rec/meta.yaml")),
+                           key_is("world"), remedy_is(HasSubstr("give --world"))));
     write(path("rec/meta.yaml"), "schema: octoskin-recording/1\nsource: robot\n");
     const Said robot = octoskin("evaluate " + path("rec") + scenario);
     EXPECT_EQ(robot.exit_code, 0) << robot.output;
@@ -305,9 +317,9 @@ TEST_F(SceneOfARecording, without_a_checksum_goes_by_its_name) {
     write(path("rec/meta.yaml"),
           "schema: octoskin-recording/1\nsource: simulation\nworld: kitchen.sdf\n"
           "scenario: experiment.scenario.yaml\n");
-    const Said other = octoskin("evaluate " + path("rec"));
-    EXPECT_EQ(other.exit_code, 66) << other.output;
-    EXPECT_THAT(other.output, AllOf(HasSubstr("recorded in kitchen.sdf"), HasSubstr("give --world")));
+    EXPECT_THAT(failure_of("evaluate " + path("rec")),
+                fails_with(66, code_is(ErrorCode::not_found), path_is(path("rec")), key_is("world"),
+                           what_is(HasSubstr("kitchen.sdf")), remedy_is(HasSubstr("give --world"))));
 }
 
 TEST_F(SceneOfARecording, serves_the_maps_beside_it) {
@@ -315,9 +327,9 @@ TEST_F(SceneOfARecording, serves_the_maps_beside_it) {
     ASSERT_EQ(octoskin("replay " + path("rec")).exit_code, 0);
     const std::string map = path("rec/maps/fused.ot");
     const std::string scenario = " --scenario " + source("tests/data/short/scenario.yaml");
-    const Said no_rig = octoskin("evaluate " + map);
-    EXPECT_EQ(no_rig.exit_code, 64);
-    EXPECT_THAT(no_rig.output, HasSubstr("give --rig " + path("rec/rig.yaml")));
+    EXPECT_THAT(failure_of("evaluate " + map),
+                fails_with(64, code_is(ErrorCode::bad_argument), key_is("--rig"),
+                           remedy_is(HasSubstr("give --rig " + path("rec/rig.yaml")))));
     const Said own = octoskin("evaluate " + map + scenario + " --rig " + path("rec/rig.yaml"));
     ASSERT_EQ(own.exit_code, 0) << own.output;
     EXPECT_THAT(own.output, Not(HasSubstr("is another rig")));
@@ -337,9 +349,9 @@ TEST_F(SceneOfARecording, serves_the_maps_beside_it) {
     EXPECT_EQ(table_of(copy), table_of(own));
 
     std::filesystem::copy(map, path("alone.ot"));
-    const Said alone = octoskin("evaluate " + path("alone.ot") + " --rig " + path("rec/rig.yaml"));
-    EXPECT_EQ(alone.exit_code, 64) << alone.output;
-    EXPECT_THAT(alone.output, HasSubstr("give --scenario"));
+    EXPECT_THAT(failure_of("evaluate " + path("alone.ot") + " --rig " + path("rec/rig.yaml")),
+                fails_with(64, code_is(ErrorCode::bad_argument), path_is(path("alone.ot")),
+                           key_is("--scenario"), remedy_is(HasSubstr("give --scenario"))));
 }
 
 TEST_F(SceneOfARecording, and_its_maps_know_each_other) {
@@ -352,32 +364,36 @@ TEST_F(SceneOfARecording, and_its_maps_know_each_other) {
     const std::string fused = content(path("rec/maps/fused.ot"));
     write(path("rec/maps/fused.ot"), content(path("rec/maps/depth.ot")));
     const std::string rig = " --rig " + path("rec/rig.yaml");
-    const Said other_bytes = octoskin("evaluate " + path("rec/maps/fused.ot") + rig);
-    EXPECT_EQ(other_bytes.exit_code, 65) << other_bytes.output;
-    EXPECT_THAT(other_bytes.output, AllOf(HasSubstr("is not the map that maps.yaml beside it describes"),
-                                          HasSubstr("move maps.yaml away")));
+    EXPECT_THAT(failure_of("evaluate " + path("rec/maps/fused.ot") + rig),
+                fails_with(65, code_is(ErrorCode::mismatch), path_is(path("rec/maps/fused.ot")),
+                           what_is(HasSubstr("maps.yaml")), value_is(HasSubstr("0x")),
+                           remedy_is(HasSubstr("move maps.yaml away"))));
     write(path("rec/maps/fused.ot"), fused);
 
     write(path("rec/maps/maps.yaml"), origin + "surprise: 1\n");
-    const Said broken = octoskin("evaluate " + path("rec/maps/fused.ot") + rig);
-    EXPECT_EQ(broken.exit_code, 65) << broken.output;
-    EXPECT_THAT(broken.output,
-                AllOf(testing::ContainsRegex("maps.yaml:[0-9]+: surprise"), HasSubstr("replay")));
+    const auto lines = std::count(origin.begin(), origin.end(), '\n');
+    EXPECT_THAT(failure_of("evaluate " + path("rec/maps/fused.ot") + rig),
+                fails_with(65, code_is(ErrorCode::unknown_key), path_is(path("rec/maps/maps.yaml")),
+                           line_is(static_cast<int>(lines) + 1), key_is("surprise"),
+                           remedy_is(HasSubstr("replay the recording again"))));
     write(path("rec/maps/maps.yaml"), origin);
 
     write(path("rec/can.log"), content(path("rec/can.log")) + "\n");
-    const Said other = octoskin("evaluate " + path("rec/maps/fused.ot") + rig);
-    EXPECT_EQ(other.exit_code, 65) << other.output;
-    EXPECT_THAT(other.output,
-                AllOf(HasSubstr("was made from another recording"), HasSubstr("replay that one again")));
+    const auto is_of_another = [this](const std::string& map) {
+        return fails_with(65, code_is(ErrorCode::mismatch), path_is(map),
+                          what_is(HasSubstr("was made from another recording")),
+                          value_is(HasSubstr("CRC-32 0x")),
+                          remedy_is(HasSubstr("replay " + path("rec") + " again")));
+    };
+    EXPECT_THAT(failure_of("evaluate " + path("rec/maps/fused.ot") + rig),
+                is_of_another(path("rec/maps/fused.ot")));
     // One elsewhere whose recording has changed has none.
     std::filesystem::copy(path("rec/maps"), path("copies"));
-    const Said elsewhere = octoskin("evaluate " + path("copies/fused.ot") + rig);
-    EXPECT_EQ(elsewhere.exit_code, 64) << elsewhere.output;
-    EXPECT_THAT(elsewhere.output, HasSubstr("give --recording"));
-    const Said named = octoskin("evaluate " + path("copies/fused.ot") + rig + " --recording " + path("rec"));
-    EXPECT_EQ(named.exit_code, 65) << named.output;
-    EXPECT_THAT(named.output, HasSubstr("was made from another recording"));
+    EXPECT_THAT(failure_of("evaluate " + path("copies/fused.ot") + rig),
+                fails_with(64, code_is(ErrorCode::bad_argument), path_is(path("copies/fused.ot")),
+                           key_is("--scenario"), remedy_is(HasSubstr("--recording"))));
+    EXPECT_THAT(failure_of("evaluate " + path("copies/fused.ot") + rig + " --recording " + path("rec")),
+                is_of_another(path("copies/fused.ot")));
     // Below the map's folder it may lie.
     ASSERT_EQ(run("sed -i 's#^recording:.*#recording: below#' " + path("copies/maps.yaml")).exit_code, 0);
     std::filesystem::copy(path("rec"), path("copies/below"), std::filesystem::copy_options::recursive);
@@ -389,30 +405,30 @@ TEST_F(SceneOfARecording, that_cannot_be_had_is_refused_at_the_line_that_asks_fo
     const auto refusal = [&](const std::string& overlay) {
         write(path("my.scenario.yaml"),
               "extends: " + source("tests/data/short/scenario.yaml") + "\n" + overlay);
-        const Said said =
-            octoskin("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
-                     " --scenario " + path("my.scenario.yaml"));
-        EXPECT_EQ(said.exit_code, 78) << said.output;
-        return said.output;
+        return failure_of("simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
+                          " --scenario " + path("my.scenario.yaml"));
     };
     EXPECT_THAT(refusal("motion:\n  circle:\n    link: hand_of_nobody\n"),
-                AllOf(HasSubstr("my.scenario.yaml:4: motion.circle.link: "), HasSubstr("'hand_of_nobody'")));
+                fails_with(78, code_is(ErrorCode::unknown_name), path_is(path("my.scenario.yaml")),
+                           line_is(4), key_is("motion.circle.link"), value_is("'hand_of_nobody'")));
     EXPECT_THAT(refusal("motion: {circle: {start_position_rad: [0, 0]}}\n"),
-                AllOf(HasSubstr("my.scenario.yaml:2: motion.circle.start_position_rad: "),
-                      HasSubstr("give one number for each")));
+                fails_with(78, code_is(ErrorCode::mismatch), path_is(path("my.scenario.yaml")), line_is(2),
+                           key_is("motion.circle.start_position_rad"), what_is(HasSubstr("7 joints"))));
     EXPECT_THAT(refusal("motion:\n  circle: {radius_m: 3}\n"),
-                AllOf(HasSubstr(":"), HasSubstr("motion.circle: "), HasSubstr("move the circle")));
+                fails_with(78, code_is(ErrorCode::out_of_range), key_is("motion.circle"),
+                           remedy_is(HasSubstr("move the circle"))));
 }
 
 TEST_F(SceneOfARecording, hides_no_model_that_is_not_there) {
     write(path("my.scenario.yaml"),
           "extends: " + source("tests/data/short/scenario.yaml") + "\nhidden_models: [crate, conne]\n");
     for (const std::string& command : {"simulate " + path("rec"), "experiment --out " + path("out")}) {
-        const Said said = octoskin(command + " --rig " + source("tests/data/short/rig.yaml") +
-                                   " --scenario " + path("my.scenario.yaml"));
-        EXPECT_EQ(said.exit_code, 78) << said.output;
-        EXPECT_THAT(said.output,
-                    AllOf(HasSubstr("my.scenario.yaml:2"), HasSubstr("'conne'"), HasSubstr("cone, crate")));
+        EXPECT_THAT(failure_of(command + " --rig " + source("tests/data/short/rig.yaml") + " --scenario " +
+                               path("my.scenario.yaml")),
+                    fails_with(78, code_is(ErrorCode::unknown_name), path_is(path("my.scenario.yaml")),
+                               line_is(2), key_is(HasSubstr("hidden_models")), value_is("'conne'"),
+                               remedy_is(HasSubstr("cone, crate"))))
+            << command;
     }
     EXPECT_FALSE(std::filesystem::exists(path("rec")));
 }
@@ -447,14 +463,12 @@ TEST_F(MovingWorld, is_what_camera_and_sensors_see) {
 TEST_F(MovingWorld, is_not_judged) {
     write(path("floor.motion.yaml"), "models: [{model: floor, places: [{at_s: 0.5, is_there: false}]}]\n");
     record("gone", "world_motion: floor.motion.yaml\n");
-    const Said judged = octoskin("evaluate " + path("gone") + " --scenario " + path("gone.yaml"));
-    EXPECT_EQ(judged.exit_code, 78) << judged.output;
-    EXPECT_THAT(judged.output,
-                HasSubstr("gone.yaml:5: world_motion: a model that moves has no single place"));
-    const Said studied = octoskin("experiment --rig " + source("tests/data/short/rig.yaml") + " --scenario " +
-                                  path("gone.yaml") + " --out " + path("study"));
-    EXPECT_EQ(studied.exit_code, 78) << studied.output;
-    EXPECT_THAT(studied.output, HasSubstr("world_motion: a model that moves has no single place"));
+    const auto moves = fails_with(78, code_is(ErrorCode::unsupported), path_is(path("gone.yaml")), line_is(5),
+                                  key_is("world_motion"), remedy_is(HasSubstr("`octoskin-lab simulate`")));
+    EXPECT_THAT(failure_of("evaluate " + path("gone") + " --scenario " + path("gone.yaml")), moves);
+    const Failure studied = failure_of("experiment --rig " + source("tests/data/short/rig.yaml") +
+                                       " --scenario " + path("gone.yaml") + " --out " + path("study"));
+    EXPECT_THAT(studied, moves);
     EXPECT_THAT(studied.output, Not(HasSubstr("ground truth"))) << "before any work";
     EXPECT_FALSE(std::filesystem::exists(path("study")));
 }
@@ -464,14 +478,13 @@ TEST_F(MovingWorld, is_refused_where_its_motion_is_not_there_or_of_another_world
           "extends: " + source("tests/data/short/scenario.yaml") + "\nworld_motion: no.yaml\n");
     const std::string simulate = "simulate " + path("rec") + " --rig " + source("tests/data/short/rig.yaml") +
                                  " --scenario " + path("mine.yaml");
-    const Said absent = octoskin(simulate);
-    EXPECT_EQ(absent.exit_code, 78) << absent.output;
-    EXPECT_THAT(absent.output,
-                HasSubstr("mine.yaml:2: world_motion: expected the path of a file with the motion"));
+    EXPECT_THAT(failure_of(simulate),
+                fails_with(78, code_is(ErrorCode::not_found), path_is(path("mine.yaml")), line_is(2),
+                           key_is("world_motion"), value_is(HasSubstr(path("no.yaml")))));
     write(path("no.yaml"), "models: [{model: guest, places: [{at_s: 1, is_there: false}]}]\n");
-    const Said other = octoskin(simulate);
-    EXPECT_EQ(other.exit_code, 78) << other.output;
-    EXPECT_THAT(other.output, HasSubstr("no.yaml:1"));
+    EXPECT_THAT(failure_of(simulate),
+                fails_with(78, code_is(ErrorCode::unknown_name), path_is(path("no.yaml")), line_is(1),
+                           key_is("models[0].model"), value_is("'guest'")));
 }
 
 }  // namespace

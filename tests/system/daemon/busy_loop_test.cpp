@@ -71,7 +71,7 @@ class BusyLoopTest : public testing::Test {
     void tell_joints() const {
         constexpr std::string_view kAtRest = "0 0 0 -1.5 0 1.5 0";
         const auto socket = connect_unix_socket(request_.joint_socket, SOCK_DGRAM);
-        ASSERT_TRUE(socket) << socket.error().message;
+        ASSERT_TRUE(socket) << socket.error().message();
         EXPECT_EQ(::send(*socket, kAtRest.data(), kAtRest.size(), 0), static_cast<ssize_t>(kAtRest.size()));
         ::close(*socket);
     }

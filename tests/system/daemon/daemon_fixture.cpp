@@ -71,7 +71,8 @@ DaemonTest::Pause DaemonTest::hold_up(std::chrono::milliseconds duration) const 
 
 bool DaemonTest::has_problem(const nlohmann::json& status, const std::string& text) {
     for (const auto& problem : status["problems"])
-        if (problem.get<std::string>().find(text) != std::string::npos) return true;
+        if (problem["code"] == text || problem["text"].get<std::string>().find(text) != std::string::npos)
+            return true;
     return false;
 }
 

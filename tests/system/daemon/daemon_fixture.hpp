@@ -59,6 +59,7 @@ class DaemonTest : public testing::Test {
         return status["inputs"]["readings"]["used"].get<int>();
     }
     static bool is_ranging(const nlohmann::json& status) { return readings_used(status) > 100; }
+    /// The code of a problem is this text, or its sentence contains it.
     static bool has_problem(const nlohmann::json& status, const std::string& text);
 
     testing_support::ScratchFolder folder_;

@@ -106,7 +106,7 @@ TEST_F(JointSendersTest, of_which_there_are_two_move_nothing_are_named_within_a_
     begin();
     const Driver first(daemon_->joints(), kTrue, 100.0, true);
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->status().dump(1);
-    EXPECT_FALSE(has_problem(daemon_->status(), "second_sender"));
+    EXPECT_FALSE(has_problem(daemon_->status(), "joint_senders"));
     ASSERT_TRUE(ask("record start 0 " + recording())["ok"].get<bool>());
     for (const Pair& pair :
          {Pair{"far, stamped", kFar, 100.0, 100.0, true}, Pair{"far, unstamped", kFar, 100.0, 50.0, false},
@@ -117,7 +117,7 @@ TEST_F(JointSendersTest, of_which_there_are_two_move_nothing_are_named_within_a_
             const Driver second(daemon_->joints(), pair.other, pair.other_hz, pair.is_stamped);
             const auto named = daemon_->wait_until(
                 [&](const Json& status) {
-                    return has_problem(status, "second_sender") &&
+                    return has_problem(status, "joint_senders") &&
                            has_problem(status, fmt::format("process {} ", first.process())) &&
                            has_problem(status, fmt::format("process {} ", second.process()));
                 },

@@ -58,7 +58,7 @@ TEST_F(DaemonTest, maps_a_live_bus_says_how_quick_it_is_and_saves_at_the_end) {
     ASSERT_TRUE(ended) << "did not end within 5 s";
     EXPECT_EQ(*ended, 0) << daemon_->log();
     const auto map = load_map(daemon_->maps() / "fused.ot");
-    ASSERT_TRUE(map) << map.error().message;
+    ASSERT_TRUE(map) << map.error().message();
     EXPECT_GE(map->map.known_voxels(), status["map"]["known_voxels"].get<std::size_t>());
     EXPECT_GT(map->map.known_voxels(), 500U);
 }
@@ -177,8 +177,8 @@ TEST_F(DaemonTest, names_joint_states_that_stop) {
     start();
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
     bus_->silence(3, true);
-    const auto reported = daemon_->wait_until(
-        [](const Json& status) { return has_problem(status, "joint states have stopped"); }, 3s);
+    const auto reported =
+        daemon_->wait_until([](const Json& status) { return has_problem(status, "joints_stopped"); }, 3s);
     ASSERT_TRUE(reported) << daemon_->status()["problems"].dump(1);
     bus_->silence(3, false);
     EXPECT_TRUE(daemon_->wait_until([](const Json& status) { return status["problems"].empty(); }, 5s))

@@ -53,7 +53,7 @@ class DaemonOnFrames {
         const std::string& text = settings_.recorded.mapping;
         const auto mapping_crc32 = crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
         const auto snapshot = load_snapshot(file, settings_.mapping, mapping_crc32);
-        EXPECT_TRUE(snapshot) << snapshot.error().what;
+        EXPECT_TRUE(snapshot) << snapshot.error().message();
         return snapshot ? encode_snapshot(snapshot->state, {}) : std::string();
     }
     /// To a posture, and to the way there from another one.

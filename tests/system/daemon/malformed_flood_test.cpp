@@ -99,7 +99,7 @@ TEST_F(DaemonTest, records_on_when_a_packet_is_no_frame_that_can_be_written_down
     start();
     ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->log();
     const auto answer = ask_daemon(folder_ / "control", "record start 0 " + (folder_ / "out").string());
-    ASSERT_TRUE(answer) << answer.error().message;
+    ASSERT_TRUE(answer) << answer.error().message();
     canfd_frame frame{};
     for (const std::uint32_t flags :
          {CAN_RTR_FLAG, CAN_RTR_FLAG | CAN_EFF_FLAG, CAN_ERR_FLAG, CAN_ERR_FLAG | CAN_RTR_FLAG}) {

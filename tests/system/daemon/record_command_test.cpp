@@ -120,8 +120,8 @@ TEST_F(RecordCommand, tells_a_daemon_that_no_longer_answers_from_one_that_ended)
     };
     const Said ran = record((folder_ / "own").string());
     EXPECT_EQ(ran.exit_code, 74) << ran.output;
-    EXPECT_NE(ran.output.find("the daemon no longer answers, and may continue to record to " +
-                              (folder_ / "own").string()),
+    EXPECT_NE(ran.output.find((folder_ / "own").string() +
+                              ": the daemon no longer answers, and may continue to record"),
               std::string::npos)
         << ran.output;
     EXPECT_NE(ran.output.find("octoskin record --stop " + (folder_ / "own").string()), std::string::npos);
@@ -152,10 +152,8 @@ TEST_F(RecordCommand, refuses_a_folder_whose_name_would_be_two_lines) {
     const Said ran =
         octoskin("record \"$(printf '/tmp/a\\nrecord stop')\" --socket " + (folder_ / "control").string());
     EXPECT_EQ(ran.exit_code, 64) << ran.output;
-    EXPECT_NE(
-        ran.output.find("'/tmp/a\\x0arecord stop': a recording's folder may have no control characters"),
-        std::string::npos)
-        << ran.output;
+    for (const char* const part : {"without control characters", "'/tmp/a\\x0arecord stop'"})
+        EXPECT_NE(ran.output.find(part), std::string::npos) << part << "\n" << ran.output;
 }
 
 }  // namespace

@@ -48,6 +48,13 @@ class DaemonRecording : public DaemonTest {
     Json ask(const std::string& line) const {
         return Json::parse(ask_daemon(folder_ / "control", line).value());
     }
+    /// Expects an answer with this exit code, whose error has these parts.
+    void expect_refusal(const std::string& line, int exit, const Json& parts) const {
+        const Json answer = ask(line);
+        EXPECT_EQ(answer["ok"], false) << answer;
+        EXPECT_EQ(answer["exit"], exit) << answer;
+        for (const auto& [key, value] : parts.items()) EXPECT_EQ(answer["error"][key], value) << answer;
+    }
     void expect_only_its_user_may_write() const {
         using std::filesystem::perms;
         constexpr perms kOthers = perms::group_write | perms::others_write;
@@ -152,7 +159,7 @@ TEST_F(DaemonRecording, begun_with_a_full_map_gives_the_daemons_own_map_and_expl
     start({"--no-camera", "--configuration", file.string()});
     ::umask(before);
     ASSERT_TRUE(daemon_->wait_until(
-        [](const Json& status) { return is_ranging(status) && has_problem(status, "memory_max_mib"); }, 15s))
+        [](const Json& status) { return is_ranging(status) && has_problem(status, "map_full"); }, 15s))
         << daemon_->status()["map"].dump(1) << daemon_->log();
     const Said recorded = record(out() + " --seconds 2");
     ASSERT_EQ(recorded.exit_code, 0) << recorded.output << daemon_->log();
@@ -341,10 +348,10 @@ TEST_F(DaemonRecording, names_a_folder_that_it_cannot_record_to_and_goes_on) {
     EXPECT_EQ(log.find("recording to"), std::string::npos) << log;
 
     ASSERT_TRUE(ask("record start 0 " + out())["ok"].get<bool>());
-    EXPECT_EQ(ask("record start 0 " + out())["code"], 73) << "a second one at once";
-    EXPECT_FALSE(ask("record start -1 /x")["ok"].get<bool>());
-    EXPECT_FALSE(ask("record start 0 relative")["ok"].get<bool>());
-    EXPECT_FALSE(ask("record tape")["ok"].get<bool>());
+    expect_refusal("record start 0 " + out(), 73, {{"code", "in_use"}, {"file", out()}});  // a second one
+    expect_refusal("record start -1 /x", 64, {{"code", "bad_argument"}});
+    expect_refusal("record start 0 relative", 64, {{"code", "bad_value"}, {"value", "'relative'"}});
+    expect_refusal("record tape", 64, {{"code", "bad_argument"}});
     const Said others = record("--stop " + (folder_ / "others").string());
     EXPECT_EQ(others.exit_code, 69) << others.output;
     EXPECT_NE(others.output.find("is not being recorded; the recording goes to " + out()), std::string::npos);

@@ -96,8 +96,8 @@ TEST_F(Shortage, leaves_everything_as_it_was_where_a_reload_needs_more) {
     write_mapping(3.4F);
     limit_addresses(12 * kMib);
     daemon_->signal(SIGHUP);
-    ASSERT_TRUE(daemon_->wait_until(
-        [](const Json& status) { return has_problem(status, "the old settings stay in force"); }, 10s))
+    ASSERT_TRUE(
+        daemon_->wait_until([](const Json& status) { return has_problem(status, "reload_refused"); }, 10s))
         << daemon_->log();
     EXPECT_TRUE(has_problem(daemon_->status(), "beside the old one")) << daemon_->status()["problems"].dump();
     EXPECT_EQ(reloads()["count"], 0);

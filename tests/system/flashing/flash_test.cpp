@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "tests/support/image/elf_builder.hpp"
+#include "tests/system/cli/failure.hpp"
 #include "tests/system/cli/program.hpp"
 
 namespace octoskin {
@@ -14,6 +15,13 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::code_is;
+using testing_support::file_is;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class FlashTest : public ProgramTest {
   protected:
@@ -23,9 +31,11 @@ class FlashTest : public ProgramTest {
     }
     /// `more`: options, as typed.
     [[nodiscard]] Said flash(const std::string& more = "") const {
-        return run("PATH=" + path("bin") + ":$PATH " OCTOSKIN_PROGRAM " flash --rig " +
-                   source("hw/rigs/bench_one_board.yaml") + " --node bench --elf " + path("image.elf") +
-                   " --out " + path("out") + " " + more);
+        return run("PATH=" + path("bin") + ":$PATH " + typed(arguments() + more));
+    }
+    /// The failure of the same.
+    [[nodiscard]] Failure fail_to_flash(const std::string& more = "") const {
+        return failure_in(run("PATH=" + path("bin") + ":$PATH " + typed_for_error(arguments() + more)));
     }
     void put_openocd(const std::string& script) const {
         write(path("bin/openocd"), "#!/bin/sh\n" + script);
@@ -62,15 +72,20 @@ proc stm32l4x {command bank args} {
         put_openocd("exec /usr/bin/openocd -f " + path("chip.tcl") + " \"$@\"\n");
     }
     [[nodiscard]] static bool has_openocd() { return std::filesystem::exists("/usr/bin/openocd"); }
+
+  private:
+    [[nodiscard]] std::string arguments() const {
+        return "flash --rig " + source("hw/rigs/bench_one_board.yaml") + " --node bench --elf " +
+               path("image.elf") + " --out " + path("out") + " ";
+    }
 };
 
 TEST_F(FlashTest, programs_nothing_where_its_files_could_not_be_kept) {
     put_openocd("touch " + path("was_run") + "\n");
     for (const char* name : {"openocd.log", "record.yaml"}) {
         std::filesystem::create_directories(path(std::string("out/") + name));
-        const Said said = flash();
-        EXPECT_EQ(said.exit_code, 73) << said.output;
-        EXPECT_THAT(said.output, HasSubstr(std::string("out/") + name));
+        EXPECT_THAT(fail_to_flash(),
+                    fails_with(73, path_is(path(std::string("out/") + name)), remedy_is(HasSubstr("move"))));
         EXPECT_FALSE(std::filesystem::exists(path("was_run"))) << name;
         std::filesystem::remove_all(path("out"));
     }
@@ -112,23 +127,27 @@ TEST_F(FlashTest, scripts_that_lie_in_its_folder_or_in_the_working_directory_are
 TEST_F(FlashTest, without_an_adapter_it_says_so_in_one_sentence) {
     if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
     if (run("lsusb -d 0483: ").exit_code == 0) GTEST_SKIP() << "an ST-LINK may be connected";
-    const Said said = flash();
-    EXPECT_EQ(said.exit_code, 69) << said.output;
-    EXPECT_THAT(said.output, AllOf(HasSubstr("no ST-LINK found"), Not(HasSubstr("Error:"))));
+    const Failure failure = fail_to_flash();
+    EXPECT_THAT(failure, fails_with(69, code_is(ErrorCode::no_device), what_is(HasSubstr("no ST-LINK")),
+                                    remedy_is(HasSubstr("lsusb"))));
+    EXPECT_THAT(failure.output, Not(HasSubstr("Error:")));
     EXPECT_THAT(content(path("out/openocd.log")), HasSubstr("open failed"));
-    const Said named = flash("--adapter-serial 0042003A");
-    EXPECT_EQ(named.exit_code, 69);
-    EXPECT_THAT(named.output, HasSubstr("serial number 0042003A"));
+    EXPECT_THAT(fail_to_flash("--adapter-serial 0042003A"),
+                fails_with(69, code_is(ErrorCode::no_device), key_is("--adapter-serial"),
+                           value_is("0042003A"), remedy_is(HasSubstr("iSerial"))));
 }
 
 TEST_F(FlashTest, a_factory_board_is_programmed_and_its_option_bytes_are_told) {
     if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
     put_pretended_chip("0x20016469", "0xFFEFF8AA");
-    const Said said = flash();
-    EXPECT_EQ(said.exit_code, 1) << said.output << content(path("out/openocd.log"));
-    EXPECT_THAT(said.output,
-                AllOf(HasSubstr("programmed, verified, started"), HasSubstr("BOR_LEV is 0, not 4"),
-                      HasSubstr("nSWBOOT0 is 1, not 0"), HasSubstr("--write-option-bytes")));
+    const Failure failure = fail_to_flash();
+    EXPECT_THAT(
+        failure,
+        fails_with(1, code_is(ErrorCode::mismatch), value_is("0xFFEFF8AA"),
+                   what_is(AllOf(HasSubstr("BOR_LEV is 0, not 4"), HasSubstr("nSWBOOT0 is 1, not 0"))),
+                   remedy_is(HasSubstr("--write-option-bytes"))))
+        << content(path("out/openocd.log"));
+    EXPECT_THAT(failure.output, HasSubstr("programmed, verified, started"));
     EXPECT_THAT(content(path("out/openocd.log")), Not(HasSubstr("option_write")));
     EXPECT_THAT(content(path("out/record.yaml")),
                 AllOf(HasSubstr("is_programmed: true"), HasSubstr("flash_optr: 0xffeff8aa")));
@@ -156,9 +175,9 @@ TEST_F(FlashTest, option_bytes_that_are_right_are_not_written_again) {
 TEST_F(FlashTest, nothing_is_written_to_another_chip) {
     if (!has_openocd()) GTEST_SKIP() << "openocd is not installed";
     put_pretended_chip("0x20016468", "0xFFEFF8AA");
-    const Said said = flash("--write-option-bytes");
-    EXPECT_EQ(said.exit_code, 69) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("device id 0x468, expected 0x469"));
+    EXPECT_THAT(fail_to_flash("--write-option-bytes"),
+                fails_with(69, code_is(ErrorCode::mismatch), what_is(HasSubstr("device id 0x469")),
+                           value_is("0x468"), remedy_is(HasSubstr("--adapter-serial"))));
     EXPECT_THAT(content(path("out/openocd.log")),
                 AllOf(Not(HasSubstr("write_image")), Not(HasSubstr("option_write"))));
 }
@@ -167,43 +186,46 @@ TEST_F(FlashTest, what_the_real_one_says_becomes_a_sentence_and_a_code) {
     const struct {
         const char* says;
         int exit_code;
-        const char* words;
+        ErrorCode code;
+        const char* what;
+        const char* remedy;
     } cases[] = {
-        {"Error: libusb_open() failed with LIBUSB_ERROR_ACCESS\\nError: open failed", 77, "plugdev"},
-        {"Error: open failed", 69, "no ST-LINK found"},
+        {"Error: libusb_open() failed with LIBUSB_ERROR_ACCESS\\nError: open failed", 77,
+         ErrorCode::no_permission, "ST-LINK", "plugdev"},
+        {"Error: open failed", 69, ErrorCode::no_device, "no ST-LINK", "lsusb"},
         {"Info : Target voltage: 3.2\\nError: init mode failed (unable to connect to the target)", 69,
-         "the chip does not answer"},
+         ErrorCode::no_answer, "the chip does not answer", "reset button"},
         {"octoskin: device 0x469\\noctoskin: options 0xFFEFF8AA\\nError: flash write failed", 74,
-         "programming failed"},
+         ErrorCode::no_device, "programming failed (flash write failed)", "openocd.log"},
     };
     for (const auto& each : cases) {
         put_openocd(std::string("printf '") + each.says + "\\n' >&2\nexit 1\n");
-        const Said said = flash();
-        EXPECT_EQ(said.exit_code, each.exit_code) << said.output;
-        EXPECT_THAT(said.output, HasSubstr(each.words));
+        EXPECT_THAT(fail_to_flash(),
+                    fails_with(each.exit_code, code_is(each.code), what_is(HasSubstr(each.what)),
+                               remedy_is(HasSubstr(each.remedy))));
         EXPECT_THAT(content(path("out/record.yaml")), HasSubstr("is_programmed: false"));
     }
 }
 
 TEST_F(FlashTest, without_openocd_it_names_the_package) {
-    const Said said =
-        run("PATH=" + path("bin") + " " OCTOSKIN_PROGRAM " flash --dry-run --rig " +
-            source("hw/rigs/bench_one_board.yaml") + " --elf " + path("image.elf") + " --out " + path("out"));
-    EXPECT_EQ(said.exit_code, 69) << said.output;
-    EXPECT_THAT(said.output, HasSubstr("apt install openocd"));
+    EXPECT_THAT(
+        failure_in(run("PATH=" + path("bin") + " " OCTOSKIN_PROGRAM " --json-errors flash --dry-run --rig " +
+                       source("hw/rigs/bench_one_board.yaml") + " --elf " + path("image.elf") + " --out " +
+                       path("out"))),
+        fails_with(69, code_is(ErrorCode::no_program), what_is(HasSubstr("openocd")),
+                   remedy_is(HasSubstr("apt install openocd"))));
 }
 
 TEST_F(FlashTest, a_folder_that_takes_no_files_is_named_with_the_reason_and_a_remedy) {
     write(path("out"), "a file where the folder should be");
-    const Said no_folder = flash("--dry-run");
-    EXPECT_EQ(no_folder.exit_code, 73) << no_folder.output;
-    EXPECT_THAT(no_folder.output,
-                AllOf(HasSubstr(path("out")), HasSubstr("(Not a directory)"), HasSubstr("--out")));
+    EXPECT_THAT(fail_to_flash("--dry-run"),
+                fails_with(73, path_is(path("out")), what_is(HasSubstr("(Not a directory)")),
+                           remedy_is(HasSubstr("--out"))));
     std::filesystem::remove(path("out"));
     std::filesystem::create_directories(path("out/flash.hex"));
-    const Said no_file = flash("--dry-run");
-    EXPECT_EQ(no_file.exit_code, 73) << no_file.output;
-    EXPECT_THAT(no_file.output, HasSubstr("flash.hex: exists already; move it away"));
+    EXPECT_THAT(fail_to_flash("--dry-run"),
+                fails_with(73, code_is(ErrorCode::already_exists), path_is(path("out/flash.hex")),
+                           remedy_is(HasSubstr("move it away"))));
     std::filesystem::remove_all(path("out"));
     std::filesystem::create_directories(path("out"));
     std::filesystem::create_symlink("/dev/full", path("out/flash.cfg"));
@@ -216,19 +238,22 @@ TEST_F(FlashTest, a_folder_that_takes_no_files_is_named_with_the_reason_and_a_re
 
 TEST_F(FlashTest, bad_input_has_its_code_and_is_never_programmed) {
     put_openocd("touch " + path("was_started") + "\n");
-    EXPECT_EQ(octoskin("flash --node nobody --rig " + source("hw/rigs/bench_one_board.yaml")).exit_code, 64);
-    EXPECT_EQ(flash("--adapter-serial 'a; b'").exit_code, 64);
+    EXPECT_THAT(failure_of("flash --node nobody --rig " + source("hw/rigs/bench_one_board.yaml")),
+                fails_with(64, code_is(ErrorCode::unknown_name), key_is("--node"), value_is("'nobody'")));
+    EXPECT_THAT(
+        fail_to_flash("--adapter-serial 'a; b'"),
+        fails_with(64, code_is(ErrorCode::bad_argument), key_is("--adapter-serial"), value_is("'a; b'")));
     std::filesystem::rename(path("image.elf"), path("aside.elf"));
-    EXPECT_EQ(flash().exit_code, 66);
+    EXPECT_THAT(fail_to_flash(), fails_with(66, code_is(ErrorCode::not_found), path_is(path("image.elf"))));
     write(path("image.elf"), content(path("aside.elf")).substr(0, 300));
-    EXPECT_EQ(flash().exit_code, 65);
+    EXPECT_THAT(fail_to_flash(), fails_with(65, path_is(path("image.elf"))));
     test::ElfBuilder soft;
     soft.set_attribute(28, 0);
     write(path("image.elf"), soft.text());
-    const Said said = flash();
-    EXPECT_EQ(said.exit_code, 65);
-    EXPECT_THAT(said.output, HasSubstr("floating-point registers"));
-    EXPECT_EQ(octoskin("flash --rig " + source("tests/data/rigs/metres-for-millimetres.yaml")).exit_code, 78);
+    EXPECT_THAT(fail_to_flash(), fails_with(65, code_is(ErrorCode::mismatch), path_is(path("image.elf")),
+                                            what_is(HasSubstr("floating-point registers"))));
+    EXPECT_THAT(failure_of("flash --rig " + source("tests/data/rigs/metres-for-millimetres.yaml")),
+                fails_with(78, file_is("metres-for-millimetres.yaml"), line_is(3)));
     EXPECT_FALSE(std::filesystem::exists(path("was_started")));
 }
 

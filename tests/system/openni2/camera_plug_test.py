@@ -73,7 +73,7 @@ def unplug_and_plug_in(scratch):
     with Daemon(scratch, RIG) as daemon:
         daemon.wait_until("frames", lambda status: timed_frames(status) >= 2)
         daemon.plug.unlink()
-        named_s = daemon.wait_until("its name", lambda status: any(text.startswith("camera: ") for text in status["problems"]))
+        named_s = daemon.wait_until("its name", lambda status: any(problem.get("on") == "camera" for problem in status["problems"]))
         daemon.wait_until("its end", lambda status: not status["camera"]["open"] and "no camera" in status["camera"]["why"])
         before = timed_frames(daemon.status())
         daemon.plug.write_text("1500\n")
@@ -91,7 +91,8 @@ def name_rate_once(scratch, wanted, mode_hz):
         daemon.wait_until("frames", lambda status: timed_frames(status) >= 2)
         time.sleep(3)
         rate = f"has {mode_hz} frames a second, the rig {rate_hz}"
-        assert sum(rate in problem for problem in daemon.status()["problems"]) == 1, daemon.status()["problems"]
+        told = [problem for problem in daemon.status()["problems"] if problem["code"] == "camera_rate"]
+        assert len(told) == 1 and rate in told[0]["text"], daemon.status()["problems"]
         lines = daemon.lines_of_camera()
         assert sum(rate in line for line in lines) == 1, lines
         assert not any("three periods" in line for line in lines), lines

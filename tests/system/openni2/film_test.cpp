@@ -38,7 +38,7 @@ class FilmCamera {
     explicit FilmCamera(const testing_support::ScratchFolder& folder) {
         const auto file = folder / "film.oni";
         auto writer = OniWriter::create(file, folder / "film.epoch.yaml", kSize);
-        EXPECT_TRUE(writer) << writer.error().what;
+        EXPECT_TRUE(writer) << writer.error().message();
         const std::vector<std::uint16_t> depth_mm(kSize.pixels(), 2'000);
         for (int i = 0; i < 100; ++i)
             EXPECT_TRUE(writer->write(HostTime{1'000'000'000 + 1'000 * kPeriodUs * i}, depth_mm));

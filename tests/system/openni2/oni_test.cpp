@@ -21,9 +21,18 @@
 #include "host/io/openni2/helpers/oni_records.hpp"
 #include "host/io/openni2/oni_reader.hpp"
 #include "host/io/openni2/oni_writer.hpp"
+#include "tests/support/errors/error_fields.hpp"
 
 namespace octoskin::openni2 {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::what_is;
 
 namespace fs = std::filesystem;
 
@@ -56,18 +65,18 @@ class OniTest : public testing::Test {
 
     void record() const {
         auto writer = OniWriter::create(oni(), epoch(), kSize);
-        ASSERT_TRUE(writer) << writer.error().what;
+        ASSERT_TRUE(writer) << writer.error().message();
         for (int i = 0; i < kFrames; ++i) ASSERT_TRUE(writer->write(time_of(i), noisy_frame(i)));
         const auto closed = writer->close();
-        ASSERT_TRUE(closed) << closed.error().what;
+        ASSERT_TRUE(closed) << closed.error().message();
     }
 
-    /// Frames until the end or an error; the error's text in `error`.
-    static int count_frames(OniReader& reader, std::string& error) {
+    /// Frames until the end or an error, which is in `error` then.
+    static int count_frames(OniReader& reader, Error& error) {
         for (int frames = 0;; ++frames) {
             const auto frame = reader.next();
             if (!frame) {
-                error = frame.error().what;
+                error = frame.error();
                 return frames;
             }
             if (!frame->has_value()) return frames;
@@ -81,10 +90,10 @@ class OniTest : public testing::Test {
 TEST_F(OniTest, every_frame_comes_back_with_its_pixels_and_its_time) {
     record();
     auto reader = OniReader::open(oni(), epoch());
-    ASSERT_TRUE(reader) << reader.error().what;
+    ASSERT_TRUE(reader) << reader.error().message();
     for (int i = 0; i < kFrames; ++i) {
         const auto frame = reader->next();
-        ASSERT_TRUE(frame) << frame.error().what;
+        ASSERT_TRUE(frame) << frame.error().message();
         ASSERT_TRUE(frame->has_value()) << "frame " << i;
         EXPECT_EQ((*frame)->captured, time_of(i)) << "frame " << i;
         EXPECT_EQ((*frame)->width, 64U);
@@ -134,19 +143,20 @@ TEST_F(OniTest, a_truncated_recording_gives_its_whole_frames_and_says_what_is_lo
         auto reader = OniReader::open(oni(), epoch());
         if (expected == 0) {
             ASSERT_FALSE(reader);
-            EXPECT_THAT(reader.error().what, testing::HasSubstr("depth.oni: "));
+            EXPECT_EQ(reader.error().file, oni());
+            EXPECT_TRUE(has_its_fields(reader.error()));
             continue;
         }
-        ASSERT_TRUE(reader) << reader.error().what;
+        ASSERT_TRUE(reader) << reader.error().message();
         for (int i = 0; i < expected; ++i) {
             const auto frame = reader->next();
-            ASSERT_TRUE(frame) << frame.error().what;
+            ASSERT_TRUE(frame) << frame.error().message();
             ASSERT_TRUE(frame->has_value()) << "frame " << i;
             EXPECT_EQ((*frame)->captured, time_of(i)) << "frame " << i;
             EXPECT_EQ((*frame)->depth_mm, noisy_frame(i)) << "frame " << i;
         }
         const auto end = reader->next();
-        ASSERT_TRUE(end) << end.error().what;
+        ASSERT_TRUE(end) << end.error().message();
         EXPECT_FALSE(end->has_value());
         EXPECT_THAT(reader->loss().value_or(""),
                     testing::HasSubstr("depth.oni: was cut off; " + std::to_string(expected) +
@@ -169,7 +179,7 @@ TEST_F(OniTest, a_damaged_recording_gives_an_error_or_its_frames_in_bounded_time
         for (int i = 0; i < 8; ++i) damaged[random() % reach] = static_cast<char>(random());
         std::ofstream(oni(), std::ios::binary) << damaged;
         const auto start = std::chrono::steady_clock::now();
-        std::string error;
+        Error error;
         auto reader = OniReader::open(oni(), epoch());
         if (reader) {
             EXPECT_LE(count_frames(*reader, error), kFrames);
@@ -210,15 +220,15 @@ TEST_F(OniTest, full_size_frames_of_pure_noise_come_back_whole) {
         return depth;
     };
     auto writer = OniWriter::create(oni(), epoch(), kFull);
-    ASSERT_TRUE(writer) << writer.error().what;
+    ASSERT_TRUE(writer) << writer.error().message();
     for (int i = 0; i < kCount; ++i) ASSERT_TRUE(writer->write(time_of(i), frame_of(i)));
     const auto closed = writer->close();
-    ASSERT_TRUE(closed) << closed.error().what;
+    ASSERT_TRUE(closed) << closed.error().message();
     auto reader = OniReader::open(oni(), epoch());
-    ASSERT_TRUE(reader) << reader.error().what;
+    ASSERT_TRUE(reader) << reader.error().message();
     for (int i = 0; i < kCount; ++i) {
         const auto frame = reader->next();
-        ASSERT_TRUE(frame) << frame.error().what;
+        ASSERT_TRUE(frame) << frame.error().message();
         ASSERT_TRUE(frame->has_value()) << "frame " << i;
         ASSERT_EQ((*frame)->captured, time_of(i)) << "frame " << i;
         ASSERT_TRUE((*frame)->depth_mm == frame_of(i)) << "frame " << i;
@@ -240,18 +250,18 @@ TEST_F(OniTest, a_recording_without_frames_has_an_end_and_no_frames) {
     auto writer = OniWriter::create(oni(), epoch(), kSize);
     ASSERT_TRUE(writer);
     const auto closed = writer->close();
-    ASSERT_TRUE(closed) << closed.error().what;
+    ASSERT_TRUE(closed) << closed.error().message();
     auto reader = OniReader::open(oni(), epoch());
-    ASSERT_TRUE(reader) << reader.error().what;
+    ASSERT_TRUE(reader) << reader.error().message();
     const auto end = reader->next();
-    ASSERT_TRUE(end) << end.error().what;
+    ASSERT_TRUE(end) << end.error().message();
     EXPECT_FALSE(end->has_value());
 }
 
 TEST_F(OniTest, a_recording_that_cannot_be_created_is_an_error_and_leaves_no_sidecar) {
     auto writer = OniWriter::create(directory_ / "no such folder" / "depth.oni", epoch(), kSize);
     ASSERT_FALSE(writer) << "the file is made before the helper begins";
-    EXPECT_THAT(writer.error().what, testing::HasSubstr("no such folder"));
+    EXPECT_THAT(writer.error().file.string(), testing::HasSubstr("no such folder"));
     EXPECT_FALSE(fs::exists(epoch()));
 }
 
@@ -311,7 +321,8 @@ TEST_F(OniTest, a_file_that_is_removed_while_it_is_recorded_is_an_error_that_say
     });
     const auto closed = writer->close();
     ASSERT_FALSE(closed);
-    EXPECT_THAT(closed.error().what, testing::HasSubstr("depth.oni: the file was removed during recording"));
+    EXPECT_EQ(closed.error().file, oni());
+    EXPECT_THAT(closed.error(), what_is(HasSubstr("the file was removed during recording")));
     EXPECT_FALSE(fs::exists(epoch()));
 }
 
@@ -326,7 +337,7 @@ TEST_F(OniTest, what_takes_the_files_name_meanwhile_is_not_written_to) {
     const fs::path victim = directory_ / "victim";
     std::ofstream(victim) << "precious";
     auto writer = OniWriter::create(oni(), epoch(), kSize, slow);
-    ASSERT_TRUE(writer) << writer.error().what;
+    ASSERT_TRUE(writer) << writer.error().message();
     fs::create_symlink(victim, directory_ / "link");
     fs::rename(directory_ / "link", oni());
     std::ofstream(go) << "";
@@ -338,7 +349,7 @@ TEST_F(OniTest, what_takes_the_files_name_meanwhile_is_not_written_to) {
 TEST_F(OniTest, pictures_too_large_for_OpenNI2_are_refused) {
     const auto writer = OniWriter::create(oni(), epoch(), {2000, 1200});
     ASSERT_FALSE(writer);
-    EXPECT_THAT(writer.error().what, testing::HasSubstr("2000 x 1200"));
+    EXPECT_THAT(writer.error(), AllOf(code_is(ErrorCode::limit_exceeded), what_is(HasSubstr("2000 x 1200"))));
 }
 
 TEST_F(OniTest, an_error_stays_the_answer) {
@@ -346,10 +357,11 @@ TEST_F(OniTest, an_error_stays_the_answer) {
     ASSERT_TRUE(write_epoch(epoch(), {.first_frame = time_of(0), .frames = kFrames + 1}));
     auto reader = OniReader::open(oni(), epoch());
     ASSERT_TRUE(reader);
-    std::string error, again;
+    Error error, again;
     count_frames(*reader, error);
     EXPECT_EQ(count_frames(*reader, again), 0);
-    EXPECT_EQ(again, error);
+    EXPECT_EQ(again.code, error.code);
+    EXPECT_EQ(again.message(), error.message());
 }
 
 TEST_F(OniTest, a_file_that_is_no_recording_is_named) {
@@ -357,7 +369,8 @@ TEST_F(OniTest, a_file_that_is_no_recording_is_named) {
     std::ofstream(oni()) << "this is not a recording";
     const auto reader = OniReader::open(oni(), epoch());
     ASSERT_FALSE(reader);
-    EXPECT_THAT(reader.error().what, testing::HasSubstr("depth.oni: not a recording"));
+    EXPECT_THAT(reader.error(), AllOf(code_is(ErrorCode::foreign_format), file_is("depth.oni"),
+                                      what_is(HasSubstr("not a recording"))));
 }
 
 TEST_F(OniTest, a_helper_that_crashes_is_a_camera_fault_and_nothing_more) {
@@ -367,7 +380,7 @@ TEST_F(OniTest, a_helper_that_crashes_is_a_camera_fault_and_nothing_more) {
     fs::permissions(crashing, fs::perms::owner_all);
     const auto reader = OniReader::open(oni(), epoch(), crashing);
     ASSERT_FALSE(reader);
-    EXPECT_THAT(reader.error().what, testing::HasSubstr("signal 11"));
+    EXPECT_THAT(reader.error(), what_is(HasSubstr("signal 11")));
 }
 
 TEST_F(OniTest, a_sidecar_that_promises_more_frames_is_an_error_after_the_last_one) {
@@ -375,9 +388,10 @@ TEST_F(OniTest, a_sidecar_that_promises_more_frames_is_an_error_after_the_last_o
     ASSERT_TRUE(write_epoch(epoch(), {.first_frame = time_of(0), .frames = kFrames + 1}));
     auto reader = OniReader::open(oni(), epoch());
     ASSERT_TRUE(reader);
-    std::string error;
+    Error error;
     EXPECT_EQ(count_frames(*reader, error), kFrames);
-    EXPECT_THAT(error, testing::HasSubstr("the recording ends after 12 of 13 frames"));
+    EXPECT_THAT(error, AllOf(code_is(ErrorCode::damaged), file_is("depth.oni"),
+                             what_is(HasSubstr("after 12 of 13 frames"))));
 }
 
 TEST_F(OniTest, every_broken_sidecar_is_named) {
@@ -390,10 +404,12 @@ TEST_F(OniTest, every_broken_sidecar_is_named) {
         std::ofstream(epoch()) << text;
         const auto reader = OniReader::open(oni(), epoch());
         ASSERT_FALSE(reader) << text;
-        EXPECT_THAT(reader.error().what, testing::HasSubstr("depth.epoch.yaml")) << text;
+        EXPECT_EQ(reader.error().file, epoch()) << text;
+        EXPECT_TRUE(has_its_fields(reader.error())) << text;
     }
     fs::remove(epoch());
-    EXPECT_THAT(OniReader::open(oni(), epoch()).error().what, testing::HasSubstr("no such file"));
+    EXPECT_THAT(OniReader::open(oni(), epoch()).error(),
+                AllOf(code_is(ErrorCode::not_found), file_is("depth.epoch.yaml")));
 }
 
 }  // namespace

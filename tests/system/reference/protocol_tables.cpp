@@ -142,8 +142,8 @@ const dbc::ValueMeaning* find_value(FrameType type, std::string_view field, std:
     return found == all.end() ? nullptr : &*found;
 }
 
-/// The values of other fields are in the row of the field; those of a device status have a table for all
-/// messages.
+/// True if the values of the field have meanings, and so a table. Values without meanings are in the row of
+/// the field. All messages share the table of device statuses.
 bool has_value_table(FrameType type, const Signal& signal) {
     return std::ranges::any_of(signal.values, [&](const auto& value) {
         return find_value(type, signal.field, value.second) != nullptr;
@@ -199,7 +199,7 @@ std::string condition_text(const Signal& signal, std::string_view selector) {
     return min == max ? fmt::format("{} {}", selector, min) : fmt::format("{} {}..{}", selector, min, max);
 }
 
-/// The rows of a message's table: the readings of RANGE_FD are alike, so its first one stands for all.
+/// The rows of a message's table: the readings of RANGE_FD are alike, so only its first one has rows.
 std::vector<Signal> fields_of(FrameType type) {
     std::vector<Signal> fields = dbc::signals_of(type);
     std::erase_if(fields, [type](const Signal& signal) {

@@ -20,8 +20,10 @@
 #include <vector>
 
 #include "host/apps/command_line/exit_codes.hpp"
+#include "host/apps/daemon/problem.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
 #include "host/core/counters/counter_meanings.hpp"
+#include "host/errors/error_code.hpp"
 #include "host/io/mapping/mapping_keys.hpp"
 #include "hw/rigfile/hardware_keys.hpp"
 #include "hw/rigfile/rig_keys.hpp"
@@ -58,6 +60,22 @@ Tables exit_code_tables() {
     return tables;
 }
 
+Tables error_tables() {
+    Tables tables;
+    for (const ErrorMeaning& error : kErrorMeanings)
+        add_row(tables, "error codes", "| Code | Meaning |\n|---|---|",
+                fmt::format("| `{}` | {} |", error.name, cell(error.meaning)));
+    return tables;
+}
+
+Tables problem_tables() {
+    Tables tables;
+    for (const ProblemMeaning& problem : kProblemMeanings)
+        add_row(tables, "problem codes", "| Code | Meaning |\n|---|---|",
+                fmt::format("| `{}` | {} |", problem.name, cell(problem.meaning)));
+    return tables;
+}
+
 std::string type_text(ValueType type) {
     return fmt::format("{}{}", name_of(type.kind), type.may_be_null ? " or null" : "");
 }
@@ -75,6 +93,12 @@ Tables status_tables() {
                 fmt::format("| `{}` | {} |{} {} |", meaning.name, cell(type_text(meaning.type)),
                             has_units ? fmt::format(" {} |", meaning.unit) : "", cell(meaning.text)));
     }
+    return tables;
+}
+
+Tables status_page_tables() {
+    Tables tables = status_tables();
+    tables.merge(problem_tables());
     return tables;
 }
 
@@ -189,7 +213,8 @@ Rendered render(const std::string& file, const std::string& page, Tables tables)
 
 int run(std::string_view mode, const std::string& docs) {
     const std::vector<Page> pages = {{"reference/command-line.md", exit_code_tables()},
-                                     {"status.md", status_tables()},
+                                     {"reference/errors.md", error_tables()},
+                                     {"status.md", status_page_tables()},
                                      {"counters.md", counter_tables()},
                                      {"mapping.md", mapping_tables()},
                                      {"protocol.md", protocol_tables()},

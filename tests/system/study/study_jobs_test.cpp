@@ -27,7 +27,7 @@ void study(const std::vector<std::uint64_t>& seeds, unsigned jobs, const fs::pat
     request.inputs.scenario = kSources / "tests/data/short/scenario.yaml";
     std::vector<std::string> said;
     const auto results = run_study(request, [&](const std::string& line) { said.push_back(line); });
-    ASSERT_TRUE(results) << results.error().message;
+    ASSERT_TRUE(results) << results.error().message();
     EXPECT_GE(said.size(), 2 * seeds.size());
 }
 

@@ -12,6 +12,7 @@
 
 #include "hw/sim/world/sdf_solids.hpp"
 #include "hw/sim/world/solids_bytes.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::sim {
@@ -20,6 +21,15 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::is_no_error;
+using testing_support::key_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 const fs::path kShipped = fs::path(OCTOSKIN_SOURCE_DIR) / "hw/worlds";
 
@@ -31,13 +41,13 @@ class ReaderProcessTest : public testing::Test {
         fs::permissions(file, fs::perms::owner_all);
         return file;
     }
-    std::string error_of(const std::string& commands, const ReadLimits& limits = {}) const {
-        const auto read = read_in_process("x.sdf", limits, program(commands));
-        return read ? "it was accepted" : read.error().what;
+    Error error_of(const std::string& commands, const ReadLimits& limits = {}) const {
+        return error_in(read_in_process("x.sdf", limits, program(commands)));
     }
-    static std::string error_of_world(const FilePlace& sdf, const ReadLimits& limits = {}) {
-        const auto read = read_solids(sdf, limits);
-        return read ? "it was accepted" : read.error().message();
+    static Error error_of_world(const FilePlace& sdf, const ReadLimits& limits = {}) {
+        const Error error = error_in(read_solids(sdf, limits));
+        EXPECT_TRUE(has_its_fields(error));
+        return error;
     }
     /// Of the folder "in".
     FilePlace in_folder(const std::string& name) const {
@@ -72,13 +82,15 @@ class ReaderProcessTest : public testing::Test {
 
 TEST_F(ReaderProcessTest, that_reaches_a_limit_is_refused_by_its_name) {
     EXPECT_THAT(error_of("kill -XCPU $$", {.processor_s = 7}),
-                HasSubstr("needs more than 7 s of processor time"));
-    EXPECT_THAT(error_of("exit 70", {.memory_mib = 77}), HasSubstr("needs more than 77 MiB of memory"));
+                AllOf(code_is(ErrorCode::too_large), what_is(HasSubstr("7 s of processor time")),
+                      remedy_is(HasSubstr("fewer models"))));
+    EXPECT_THAT(error_of("exit 70", {.memory_mib = 77}),
+                AllOf(code_is(ErrorCode::too_large), what_is(HasSubstr("77 MiB of memory"))));
     EXPECT_THAT(error_of("exec yes", {.result_mib = 3}),
-                HasSubstr("needs more than 3 MiB for its triangles"));
+                AllOf(code_is(ErrorCode::too_large), what_is(HasSubstr("3 MiB for its triangles"))));
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_THAT(error_of("exec sleep 30", {.patience = std::chrono::seconds(1)}),
-                HasSubstr("needs more than 1 s to be read"));
+                AllOf(code_is(ErrorCode::too_large), what_is(HasSubstr("more than 1 s to be read"))));
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
@@ -90,17 +102,18 @@ TEST_F(ReaderProcessTest, tells_no_more_of_a_file_than_a_message_may_have) {
           "<model name='m'><poze>" + name + "</poze></model>"}) {
         const auto file = scratch_.write(
             "long.sdf", "<?xml version='1.0'?><sdf version='1.9'><world name='w'>" + what + "</world></sdf>");
-        const std::string error = error_of_world(file);
+        const std::string error = error_of_world(file).message();
         EXPECT_GT(error.size(), 20U);
         EXPECT_LT(error.size(), 2500U) << error.substr(0, 300);
     }
 }
 
 TEST_F(ReaderProcessTest, that_ends_otherwise_is_told_how) {
-    EXPECT_THAT(error_of("kill -SEGV $$"), HasSubstr("ended by signal 11"));
-    EXPECT_THAT(error_of("exit 3"), HasSubstr("exit code 3"));
-    EXPECT_TRUE(read_in_process("x.sdf", {}, scratch_ / "none").error().is_reader_missing);
-    EXPECT_THAT(read_in_process("x.sdf", {}, scratch_ / "none").error().what, HasSubstr("cannot be started"));
+    EXPECT_THAT(error_of("kill -SEGV $$"),
+                AllOf(code_is(ErrorCode::damaged), what_is(HasSubstr("signal 11"))));
+    EXPECT_THAT(error_of("exit 3"), AllOf(code_is(ErrorCode::damaged), what_is(HasSubstr("exit code 3"))));
+    EXPECT_THAT(read_in_process("x.sdf", {}, scratch_ / "none").error(),
+                AllOf(code_is(ErrorCode::no_program), what_is(HasSubstr("cannot be started"))));
 }
 
 TEST_F(ReaderProcessTest, leaves_no_process_behind) {
@@ -112,17 +125,18 @@ TEST_F(ReaderProcessTest, leaves_no_process_behind) {
 TEST_F(ReaderProcessTest, refuses_a_world_of_twenty_thousand_models) {
     const auto sdf = many_models(20'000);
     const auto begin = std::chrono::steady_clock::now();
-    EXPECT_THAT(
-        error_of_world(sdf, {.processor_s = 1}),
-        AllOf(HasSubstr("many.sdf: needs more than 1 s of processor time"), HasSubstr("fewer models")));
+    EXPECT_THAT(error_of_world(sdf, {.processor_s = 1}),
+                AllOf(code_is(ErrorCode::too_large), file_is("many.sdf"),
+                      what_is(HasSubstr("1 s of processor time")), remedy_is(HasSubstr("fewer models"))));
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
-    EXPECT_EQ(error_of_world(many_models(20)), "it was accepted");
+    EXPECT_THAT(error_of_world(many_models(20)), is_no_error());
 }
 
 #ifndef OCTOSKIN_SANITIZED  // which reserves terabytes of addresses
 TEST_F(ReaderProcessTest, refuses_a_world_that_needs_too_much_memory) {
-    EXPECT_THAT(error_of_world(many_models(2'000), {.memory_mib = 160}),
-                HasSubstr("many.sdf: needs more than 160 MiB of memory"));
+    EXPECT_THAT(
+        error_of_world(many_models(2'000), {.memory_mib = 160}),
+        AllOf(code_is(ErrorCode::too_large), file_is("many.sdf"), what_is(HasSubstr("160 MiB of memory"))));
 }
 #endif
 
@@ -130,7 +144,7 @@ TEST_F(ReaderProcessTest, writes_nothing_not_even_a_librarys_log) {
     const char* const before = std::getenv("HOME");
     const std::string home = before == nullptr ? "" : before;
     ::setenv("HOME", scratch_.path().c_str(), 1);
-    EXPECT_EQ(error_of_world(kShipped / "experiment.sdf"), "it was accepted");
+    EXPECT_THAT(error_of_world(kShipped / "experiment.sdf"), is_no_error());
     before == nullptr ? ::unsetenv("HOME") : ::setenv("HOME", home.c_str(), 1);
     EXPECT_EQ(scratch_.entries(), 0);
 }
@@ -143,18 +157,19 @@ TEST_F(ReaderProcessTest, reads_in_its_folder_what_it_reads_anywhere) {
     EXPECT_EQ(to_bytes(*anywhere), to_bytes(*beneath));
     fs::create_directory(in() / "deeper");
     fs::rename(in() / "experiment.sdf", in() / "deeper/experiment.sdf");
-    EXPECT_THAT(error_of_world(in_folder("deeper/experiment.sdf")), HasSubstr("deeper/meshes/cone.obj"));
+    EXPECT_THAT(error_of_world(in_folder("deeper/experiment.sdf")),
+                what_is(HasSubstr("deeper/meshes/cone.obj")));
     fs::rename(in() / "meshes", in() / "deeper/meshes");
-    EXPECT_EQ(error_of_world(in_folder("deeper/experiment.sdf")), "it was accepted");
+    EXPECT_THAT(error_of_world(in_folder("deeper/experiment.sdf")), is_no_error());
 }
 
 TEST_F(ReaderProcessTest, reads_no_mesh_outside_of_its_folder) {
     const auto outside = scratch_.write("cone.obj", kTetrahedron);
     make_world_with("../cone.obj");
-    EXPECT_EQ(error_of_world(in() / "w.sdf"), "it was accepted") << "the user named it";
+    EXPECT_THAT(error_of_world(in() / "w.sdf"), is_no_error()) << "the user named it";
     EXPECT_THAT(error_of_world(in_folder("w.sdf")),
-                AllOf(HasSubstr("in/w.sdf: model 'm', link 'l', visual 'v'"), HasSubstr("cone.obj"),
-                      HasSubstr("leads out")));
+                AllOf(file_is("w.sdf"), key_is("model 'm', link 'l', visual 'v'"),
+                      what_is(AllOf(HasSubstr("cone.obj"), HasSubstr("leads out")))));
     fs::create_symlink(outside, in() / "link.obj");
     fs::create_directory_symlink(scratch_.path(), in() / "up");
     ASSERT_EQ(::mkfifo((in() / "pipe.obj").c_str(), 0600), 0);
@@ -168,7 +183,7 @@ TEST_F(ReaderProcessTest, reads_no_mesh_outside_of_its_folder) {
     for (const auto& [mesh, what] : meshes) {
         make_world_with(mesh);
         EXPECT_THAT(error_of_world(in_folder("w.sdf")),
-                    AllOf(HasSubstr(mesh.substr(mesh.rfind('/') + 1)), HasSubstr(what)));
+                    what_is(AllOf(HasSubstr(mesh.substr(mesh.rfind('/') + 1)), HasSubstr(what))));
     }
 }
 
@@ -178,7 +193,7 @@ TEST_F(ReaderProcessTest, opens_no_material_outside_of_its_folder) {
     // A pipe would be waited for: whether it is opened shows.
     ASSERT_EQ(::mkfifo((scratch_ / "it.mtl").c_str(), 0600), 0);
     fs::create_symlink("../it.mtl", in() / "it.mtl");
-    EXPECT_EQ(error_of_world(in_folder("w.sdf"), {.patience = std::chrono::seconds(20)}), "it was accepted");
+    EXPECT_THAT(error_of_world(in_folder("w.sdf"), {.patience = std::chrono::seconds(20)}), is_no_error());
 }
 
 TEST_F(ReaderProcessTest, includes_nothing_in_a_world_of_a_folder) {
@@ -186,8 +201,8 @@ TEST_F(ReaderProcessTest, includes_nothing_in_a_world_of_a_folder) {
     scratch_.write(
         "in/w.sdf",
         "<sdf version='1.9'>\n<world name='w'>\n<include><uri>/etc/passwd</uri></include></world></sdf>");
-    EXPECT_THAT(error_of_world(in_folder("w.sdf")),
-                AllOf(HasSubstr("w.sdf: line 3"), HasSubstr("<include>")));
+    EXPECT_THAT(error_of_world(in_folder("w.sdf")), AllOf(code_is(ErrorCode::unsupported), file_is("w.sdf"),
+                                                          key_is("line 3"), what_is(HasSubstr("<include>"))));
 }
 
 TEST_F(ReaderProcessTest, waits_at_no_pipe_that_is_included) {
@@ -200,7 +215,8 @@ TEST_F(ReaderProcessTest, waits_at_no_pipe_that_is_included) {
         const auto world = scratch_.write("w.sdf", "<sdf version='1.9'>\n<world name='w'>\n<include><uri>" +
                                                        uri + "</uri></include></world></sdf>");
         EXPECT_THAT(error_of_world(world, {.patience = std::chrono::seconds(5)}),
-                    AllOf(HasSubstr("w.sdf: line 3"), HasSubstr("a named pipe")))
+                    AllOf(code_is(ErrorCode::wrong_kind_of_file), file_is("w.sdf"), key_is("line 3"),
+                          value_is(AllOf(HasSubstr(uri), HasSubstr("a named pipe")))))
             << uri;
     }
 }
@@ -226,7 +242,8 @@ TEST_F(ReaderProcessTest, waits_at_no_pipe_that_the_libraries_alone_find) {
     for (const std::string& uri : {"\n  " + pipe + "\n", std::string("named"), std::string("nested")}) {
         const auto world = scratch_.write("w.sdf", including(uri));
         EXPECT_THAT(error_of_world(world, {.patience = std::chrono::seconds(5)}),
-                    AllOf(HasSubstr("w.sdf: "), HasSubstr("pipe.sdf"), HasSubstr("a named pipe")))
+                    AllOf(code_is(ErrorCode::wrong_kind_of_file), file_is("w.sdf"),
+                          value_is(AllOf(HasSubstr("pipe.sdf"), HasSubstr("a named pipe")))))
             << uri;
     }
 }
@@ -244,12 +261,12 @@ TEST_F(ReaderProcessTest, goes_without_a_material_that_is_a_pipe_and_says_so) {
 TEST_F(ReaderProcessTest, reads_no_world_outside_of_its_folder) {
     make_world_with("");
     const auto outside = scratch_.write("w.sdf", "<sdf version='1.9'/>");
-    EXPECT_THAT(error_of_world(in_folder("../w.sdf")), HasSubstr("leads out"));
-    EXPECT_THAT(error_of_world(in_folder(outside.string())), HasSubstr("leads out"));
+    EXPECT_THAT(error_of_world(in_folder("../w.sdf")), what_is(HasSubstr("leads out")));
+    EXPECT_THAT(error_of_world(in_folder(outside.string())), what_is(HasSubstr("leads out")));
     fs::create_symlink(outside, in() / "link.sdf");
-    EXPECT_THAT(error_of_world(in_folder("link.sdf")), HasSubstr("is a symbolic link"));
+    EXPECT_THAT(error_of_world(in_folder("link.sdf")), what_is(HasSubstr("is a symbolic link")));
     ASSERT_EQ(::mkfifo((in() / "pipe.sdf").c_str(), 0600), 0);
-    EXPECT_THAT(error_of_world(in_folder("pipe.sdf")), HasSubstr("is a named pipe"));
+    EXPECT_THAT(error_of_world(in_folder("pipe.sdf")), what_is(HasSubstr("is a named pipe")));
 }
 
 }  // namespace

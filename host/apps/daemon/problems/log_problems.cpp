@@ -10,10 +10,11 @@ void add_log(const DaemonView& view, Problems& problems) {
     const LogRecord& log = view.log;
     if (!log.stuck_since || view.now - *log.stuck_since < kStuck) return;
     problems.push_back(
-        {"log stuck",
-         fmt::format("the log has taken no line for {:.0f} s: its reader (a pager, a terminal with Ctrl-S, a "
-                     "pipe, the journal) has stopped; {} lines wait, {} were dropped; mapping continues",
-                     seconds_of(view.now - *log.stuck_since), log.waiting, log.dropped)});
+        {.code = ProblemCode::log_stuck,
+         .what = fmt::format("the log has taken no line for {:.0f} s: its reader (a pager, a terminal with "
+                             "Ctrl-S, a pipe, the journal) has stopped; {} lines wait, {} were dropped; "
+                             "mapping continues",
+                             seconds_of(view.now - *log.stuck_since), log.waiting, log.dropped)});
 }
 
 }  // namespace octoskin

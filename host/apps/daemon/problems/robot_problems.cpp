@@ -13,11 +13,12 @@ void add_links_without_body(const DaemonView& view, Problems& problems) {
         if (!link.is_listed) names += (names.empty() ? "" : ", ") + link.link;
     }
     if (names.empty()) return;
-    problems.push_back({"links without body",
-                        fmt::format("robot: {}: without a body (links_unknown): the map has what the sensors "
-                                    "see of it, and a query answers unknown instead of free; give it "
-                                    "capsules, or list it in robot.links_without_body of the rig",
-                                    names)});
+    problems.push_back({.code = ProblemCode::links_without_body,
+                        .on = "robot: " + names,
+                        .what = "without a body (links_unknown), so what the sensors see of it enters the "
+                                "map, and a query answers unknown instead of free",
+                        .remedy = "give it capsules, or list it in robot.links_without_body of the rig",
+                        .key = "robot.links_without_body"});
 }
 
 }  // namespace octoskin

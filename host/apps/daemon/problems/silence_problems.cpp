@@ -15,8 +15,8 @@ const SensorRecord& record_of(const DaemonView& view, const HostNode& node, std:
     return view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
 }
 
-/// Where the readings of a node are lost: they come in frames of one type, all other data in classical
-/// frames.
+/// Which frames are lost, and where to look. All readings of a node come in frames of one type, RANGE or
+/// RANGE_FD, and all other data in classical frames.
 std::string lost_where(const DaemonView& view, const HostNode& node) {
     bool is_classical = false;
     for (std::size_t i = 0; i < node.sensors.size(); ++i) {
@@ -32,6 +32,8 @@ std::string lost_where(const DaemonView& view, const HostNode& node) {
 constexpr const char* kLossRemedy =
     "look for a disturbed line (wrong_crc, can.error_frames), a full bus (can.busy_s), and a gateway or an "
     "adapter in between that drops frames";
+
+constexpr const char* kGatewayRemedy = "look for a gateway or a program in between that drops them";
 
 /// "39 of the 45 readings that its node sent within the last 3 s did not arrive (lost, 120)".
 std::string lost_text(const SentCount::Loss& loss, const char* sender, std::uint64_t lost_ever) {
@@ -55,7 +57,7 @@ std::string lost_of_node(const DaemonView& view, const HostNode& node) {
     return lost_text(all, "it", lost_ever);
 }
 
-/// A node that is not working reports nothing about its sensors.
+/// In state safe a node reports nothing about its sensors.
 std::string unheard_remedy(const DaemonView& view, const HostNode& node) {
     const auto& heartbeat = view.pipeline->intake().nodes().records().at(node.node_id).heartbeat;
     if (heartbeat && heartbeat->state == wire::NodeState::safe)
@@ -66,26 +68,32 @@ std::string unheard_remedy(const DaemonView& view, const HostNode& node) {
 }
 
 void add_of_node(const DaemonView& view, const HostNode& node, SensorSilence what, Problems& problems) {
-    const std::string on = node_subject(node.node_id);
+    const std::string subject = node_subject(node.node_id);
+    const std::string on = fmt::format("{} '{}'", subject, node.name);
     if (what == SensorSilence::unheard) {
-        problems.push_back({on + " unheard",
-                            fmt::format("{} '{}': neither readings nor SENSOR_HEALTH of its sensors arrive, "
-                                        "but its heartbeats do: {}",
-                                        on, node.name, unheard_remedy(view, node)),
-                            on});
-    } else if (what == SensorSilence::no_readings) {
-        problems.push_back({on + " silence",
-                            fmt::format("{} '{}': none of its readings arrives, though it sends them (lost), "
-                                        "but its other frames do: {}",
-                                        on, node.name, lost_where(view, node)),
-                            {},
-                            on});
-    } else if (what == SensorSilence::mostly_lost) {
         problems.push_back(
-            {on + " silence",
-             fmt::format("{} '{}': {}: {}", on, node.name, lost_of_node(view, node), kLossRemedy),
-             {},
-             on});
+            {.code = ProblemCode::node_unheard,
+             .on = on,
+             .what = "neither readings nor SENSOR_HEALTH of its sensors arrive, but its heartbeats "
+                     "do",
+             .remedy = unheard_remedy(view, node),
+             .subject = subject});
+    } else if (what == SensorSilence::no_readings) {
+        problems.push_back({.code = ProblemCode::node_readings_lost,
+                            .on = on,
+                            .what =
+                                "none of its readings arrives, though it sends them (lost), but its other "
+                                "frames do",
+                            .remedy = lost_where(view, node),
+                            .key = "lost",
+                            .hidden_by = subject});
+    } else if (what == SensorSilence::mostly_lost) {
+        problems.push_back({.code = ProblemCode::node_readings_lost,
+                            .on = on,
+                            .what = lost_of_node(view, node),
+                            .remedy = kLossRemedy,
+                            .key = "lost",
+                            .hidden_by = subject});
     }
 }
 
@@ -95,28 +103,33 @@ void add_of_sensor(const DaemonView& view, const HostNode& node, const NodeSilen
     const std::string sensor = sensor_text(node, silent.index);
     const SentCount& sent = record_of(view, node, silent.index).sent;
     if (silent.what == SensorSilence::unheard) {
-        problems.push_back(
-            {sensor + " unheard",
-             fmt::format("{}: neither its readings nor its SENSOR_HEALTH arrive, but the other frames of its "
-                         "node do: look for a gateway or a program in between that drops them",
-                         sensor),
-             sensor, on});
+        problems.push_back({.code = ProblemCode::sensor_unheard,
+                            .on = sensor,
+                            .what =
+                                "neither its readings nor its SENSOR_HEALTH arrive, but the other frames of "
+                                "its node do",
+                            .remedy = kGatewayRemedy,
+                            .subject = sensor,
+                            .hidden_by = on});
     } else if (const auto loss = sent.newest_loss(*view.bus_now);
                loss && silent.what == SensorSilence::mostly_lost) {
-        problems.push_back({sensor + " silence",
-                            fmt::format("{}: {}, but those of other sensors of the node do: {}", sensor,
-                                        lost_text(*loss, "its node", sent.lost()), kLossRemedy),
-                            {},
-                            on});
+        problems.push_back({.code = ProblemCode::sensor_readings_lost,
+                            .on = sensor,
+                            .what = lost_text(*loss, "its node", sent.lost()) +
+                                    ", but those of other sensors of the node do",
+                            .remedy = kLossRemedy,
+                            .key = "lost",
+                            .hidden_by = on});
     } else {
         problems.push_back(
-            {sensor + " silence",
-             fmt::format(
-                 "{}: none of its readings arrives, though its node sends them (lost, {}), but those of "
-                 "other sensors of the node do: look for a gateway or a program in between that drops them",
-                 sensor, sent.lost()),
-             {},
-             on});
+            {.code = ProblemCode::sensor_readings_lost,
+             .on = sensor,
+             .what = fmt::format("none of its readings arrives, though its node sends them (lost, {}), but "
+                                 "those of other sensors of the node do",
+                                 sent.lost()),
+             .remedy = kGatewayRemedy,
+             .key = "lost",
+             .hidden_by = on});
     }
 }
 

@@ -326,7 +326,7 @@ class Reader {
     }
 
     bool fail(const std::string& element, const std::string& what) {
-        error_ = WorldError{file_, element, what};
+        error_ = Error{.code = ErrorCode::bad_value, .what = what, .file = file_, .key = element};
         return false;
     }
 
@@ -334,7 +334,7 @@ class Reader {
     std::filesystem::path file_;
     SolidsOfFile read_;
     std::vector<std::pair<std::string, sdf::ElementPtr>> meshes_;  ///< the original uri, and its element
-    std::optional<WorldError> error_;
+    std::optional<Error> error_;
 };
 
 }  // namespace

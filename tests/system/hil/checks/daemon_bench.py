@@ -55,14 +55,23 @@ def frames_of(log):
     return [line.split()[2] for line in pathlib.Path(log).read_text().splitlines(keepends=True) if line.endswith("\n")]
 
 
+def codes_of(status):
+    return [problem["code"] for problem in status["problems"]]
+
+
+def has_sentence(status, words):
+    """The sentence of a problem contains these words."""
+    return any(words in problem["text"] for problem in status["problems"])
+
+
 def is_link_named(status, state, words, subject=""):
     """The first of the problems, as a sentence, says so of the link."""
-    told = status["problems"][0] if status["problems"] else ""
+    told = status["problems"][0]["text"] if status["problems"] else ""
     return status["can"]["state"] == state and told.startswith(f"CAN {state}: {subject}") and words in told
 
 
 def is_link_up(status):
-    return status["can"]["state"] == "up" and not any(problem.startswith("CAN ") for problem in status["problems"])
+    return status["can"]["state"] == "up" and "can_link" not in codes_of(status)
 
 
 class Daemon:

@@ -37,11 +37,15 @@ def expect_beams(added):
     claim(at_least <= added <= at_most, f"voxels of the sensors: {added}, wanted {at_least} to {at_most:.0f}")
 
 
+def has_camera_problem(status):
+    return any(problem.get("on") == "camera" for problem in status["problems"])
+
+
 def unplug_and_plug_in(daemon, plug):
     """The camera, while the node ranges: what that took, in seconds."""
     opened, before = daemon.status()["camera"]["opened"], used(daemon.status(), "readings")
     plug.unlink()
-    named_s = daemon.await_status("the camera's name", lambda now: any(text.startswith("camera: ") for text in now["problems"]))
+    named_s = daemon.await_status("the camera's name", lambda now: has_camera_problem(now))
     claim(named_s <= CAMERA_NAMED_S, f"the camera that is gone was named after {named_s:.2f} s")
     daemon.await_status("an end of it", lambda now: not now["camera"]["open"] and "no camera" in now["camera"]["why"])
     daemon.await_status("readings without a camera", lambda now: used(now, "readings") > before, PATIENCE_S)
@@ -51,7 +55,7 @@ def unplug_and_plug_in(daemon, plug):
     claim(back_s <= CAMERA_BACK_S, f"the camera's frames were on the map {back_s:.2f} s after it was back")
     status = daemon.status()
     claim(status["camera"]["open"] and status["camera"]["opened"] > opened, f"the camera: {status['camera']}")
-    claim(not any(text.startswith("camera: ") for text in status["problems"]), f"problems: {status['problems']}")
+    claim(not has_camera_problem(status), f"problems: {status['problems']}")
     return named_s, back_s
 
 
@@ -87,12 +91,12 @@ def check(bench):
     expect("wrong ranges", [], wrong_ranges(status, "first"))
     expect_beams(status["map"]["known_voxels"] - of_camera)
     expect("frames not sent, lost", (0, 0), (status["can"]["not_sent"], status["can"]["dropped_by_kernel"]))
-    claim(any("'second': absent" in problem for problem in status["problems"]), f"the missing node: {status['problems']}")
+    claim(daemon_bench.has_sentence(status, "'second': absent"), f"the missing node: {status['problems']}")
     unplugged_s, plugged_s = unplug_and_plug_in(daemon, plug)
 
     node.terminate()
     expect("exit code of the node", 0, node.wait(daemon_bench.PATIENCE_S))
-    named_s = daemon.await_status("the lost node's name", lambda now: any("'first': lost" in text for text in now["problems"]))
+    named_s = daemon.await_status("the lost node's name", lambda now: daemon_bench.has_sentence(now, "'first': lost"))
     claim(named_s <= NAMED_S, f"the lost node was named after {named_s:.2f} s")
     daemon.stop()
     others = {frame.split("#")[0] for frame in listener.stop() if int(frame.split("#")[0], 16) & 63 not in (1, JOINT_NODE)}

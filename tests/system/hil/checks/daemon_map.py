@@ -65,7 +65,7 @@ def check(bench):
            (after["can"]["dropped_by_kernel"], after["can"]["malformed"], after["nodes"][0]["sensors"][0]["lost"]))
     claim(all(unit["balanced"] for unit in after["inputs"].values()), f"in = used + rejected: {after['inputs']}")
 
-    mapper.await_status("silence is named", lambda status: any("'bench': lost" in problem for problem in status["problems"]))
+    mapper.await_status("silence is named", lambda status: daemon_bench.has_sentence(status, "'bench': lost"))
 
     replayed = bench.replay(recorded, "--by-capture-time", "--fused-only", "--out", bench.folder / "replayed")
     for daemon in (mapper, recorder):

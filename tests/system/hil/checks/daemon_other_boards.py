@@ -37,7 +37,7 @@ def with_frame(line, frame):
 
 def names_it(status, verdict, words):
     node = status["nodes"][0]
-    told = [problem for problem in status["problems"] if "node 1 'bench'" in problem]
+    told = [problem["text"] for problem in status["problems"] if "node 1 'bench'" in problem["text"]]
     return node["verdict"] == verdict and any(words in problem for problem in told)
 
 
@@ -55,7 +55,7 @@ def check_another_version(bench):
     daemon.await_start()
     playing = bench.start_playing(write_log(bench.folder / "other", lines))
     daemon.await_status("the other version's name", lambda status: names_it(status, "other_version", "version"))
-    told = [problem for problem in daemon.status()["problems"] if "bench" in problem]
+    told = [problem["text"] for problem in daemon.status()["problems"] if "bench" in problem["text"]]
     expect("exit code of canplayer", 0, playing.wait(daemon_bench.PATIENCE_S))
     daemon.await_frames(len(lines))
     status = daemon.status()
@@ -82,7 +82,7 @@ def check_a_second_board(bench):
     # By then two heartbeats of the second board have come; from now on nothing may.
     daemon.await_status("the second board's name", lambda status: names_it(status, "quarantined", "two boards"))
     named = daemon.status()
-    told = [problem for problem in named["problems"] if "bench" in problem]
+    told = [problem["text"] for problem in named["problems"] if "bench" in problem["text"]]
     expect("exit code of canplayer", 0, playing.wait(daemon_bench.PATIENCE_S))
     daemon.await_frames(len(both))
     status = daemon.status()

@@ -65,7 +65,7 @@ TEST(FileSetTest, puts_all_files_in_place_and_takes_the_retired_away) {
     const ScratchFolder folder;
     fill_old(folder.path());
     const auto committed = replace_by_new(folder.path());
-    ASSERT_TRUE(committed) << committed.error().message;
+    ASSERT_TRUE(committed) << committed.error().message();
     EXPECT_EQ(reported(folder.path()), kNew);
 }
 
@@ -91,10 +91,11 @@ TEST(FileSetTest, of_two_at_once_the_second_is_refused_with_the_directory_and_a_
     write(first->draft().shown() / "can.log", "new");
     const auto second = FileSet::begin(folder.path());
     ASSERT_FALSE(second);
-    EXPECT_EQ(second.error().code, ExitCode::cannot_create);
-    EXPECT_THAT(second.error().message,
-                testing::AllOf(HasSubstr(folder.path().string() + ": another octoskin"), HasSubstr("wait"),
-                               HasSubstr("another directory")));
+    EXPECT_EQ(second.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(second.error().error.code, ErrorCode::in_use);
+    EXPECT_EQ(second.error().error.file, folder.path());
+    EXPECT_THAT(second.error().error.remedy,
+                testing::AllOf(HasSubstr("wait"), HasSubstr("another directory")));
     EXPECT_EQ(ScratchFolder::read(first->draft().shown() / "can.log"), "new");
 }
 
@@ -107,15 +108,16 @@ TEST(FileSetTest, of_a_folder_that_a_daemon_keeps_its_map_in_nothing_is_replaced
         ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
         const auto refused = FileSet::begin(scratch.path());
         ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+        EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
         ::close(lock);
     }
     EXPECT_TRUE(FileSet::begin(scratch.path())) << "the daemon has ended, and left no snapshot";
     write(scratch / kDaemonsSnapshot, "");
     const auto refused = FileSet::begin(scratch.path());
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
-    EXPECT_THAT(refused.error().message, HasSubstr(kDaemonsSnapshot));
+    EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(refused.error().error.code, ErrorCode::already_exists);
+    EXPECT_EQ(refused.error().error.file, scratch / kDaemonsSnapshot);
     EXPECT_EQ(reported(scratch.path()), "fused.ot=the daemon's fused.snapshot= lock=");
 }
 
@@ -129,7 +131,7 @@ TEST(FileSetTest, keeps_no_daemon_from_beginning_until_its_files_come) {
     EXPECT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0) << "that of a daemon that begins meanwhile";
     const auto refused = set->commit(kFiles, {});
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+    EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
     ::close(lock);
 }
 
@@ -180,7 +182,8 @@ TEST(FileSetTest, a_directory_in_the_way_is_named_and_changes_nothing) {
         const std::string before = reported(folder.path());
         const auto committed = replace_by_new(folder.path());
         ASSERT_FALSE(committed) << in_the_way;
-        EXPECT_THAT(committed.error().message, HasSubstr((folder / in_the_way).string() + ": is not a file"));
+        EXPECT_EQ(committed.error().error.code, ErrorCode::wrong_kind_of_file);
+        EXPECT_EQ(committed.error().error.file, folder / in_the_way);
         EXPECT_EQ(reported(folder.path()), before);
     }
 }
@@ -220,8 +223,12 @@ TEST(FileSetTest, what_was_killed_is_not_brought_to_its_end_where_a_daemon_has_b
         const std::string before = reported(folder.path());
         const auto settled = settle(folder.path());
         ASSERT_FALSE(settled) << of_daemon;
-        EXPECT_EQ(settled.error().code, ExitCode::cannot_create);
-        EXPECT_THAT(settled.error().message, HasSubstr("wait in " + (folder / ".octoskin-ready").string()));
+        EXPECT_EQ(settled.error().exit, ExitCode::cannot_create);
+        const bool is_locked = of_daemon == std::string_view(kDaemonsLock);
+        const Error& error = settled.error().error;
+        EXPECT_EQ(error.code, is_locked ? ErrorCode::in_use : ErrorCode::unfinished_move);
+        EXPECT_THAT(is_locked ? error.others : error.what,
+                    HasSubstr("wait in " + (folder / ".octoskin-ready").string()));
         EXPECT_EQ(reported(folder.path()), before);
         ::close(lock);
     }
@@ -241,9 +248,11 @@ TEST(FileSetTest, an_error_while_it_moves_takes_all_of_it_back_until_it_can_be_d
         fs::create_directory(folder / obstacle);
         const auto settled = settle(folder.path());
         ASSERT_FALSE(settled) << obstacle;
-        EXPECT_THAT(settled.error().message,
-                    testing::AllOf(HasSubstr((folder / obstacle).string() + ": is not a file"),
-                                   HasSubstr("wait in " + (folder / ".octoskin-ready").string())));
+        EXPECT_EQ(settled.error().error.code, ErrorCode::wrong_kind_of_file);
+        EXPECT_EQ(settled.error().error.file, folder / obstacle);
+        EXPECT_THAT(settled.error().error.remedy, HasSubstr("octoskin repair " + folder.path().string()));
+        EXPECT_THAT(settled.error().error.others,
+                    HasSubstr("wait in " + (folder / ".octoskin-ready").string()));
         EXPECT_EQ(reported(folder.path()), expected);
         fs::remove(folder / obstacle);
         ASSERT_TRUE(settle(folder.path())) << obstacle;
@@ -258,10 +267,10 @@ TEST(FileSetTest, what_cannot_be_finished_is_left_as_it_lies_and_said_once) {
     fs::create_directory(folder / "can.log");
     const auto refused = settle(folder.path());
     ASSERT_FALSE(refused);
-    const std::string what = "can.log: is not a file";
-    const auto first = refused.error().message.find(what);
-    EXPECT_NE(first, std::string::npos);
-    EXPECT_EQ(refused.error().message.find(what, first + 1), std::string::npos) << refused.error().message;
+    const Error& error = refused.error().error;
+    EXPECT_EQ(error.code, ErrorCode::wrong_kind_of_file);
+    EXPECT_EQ(error.file, folder / "can.log");
+    EXPECT_THAT(error.what + error.others, testing::Not(HasSubstr("can.log"))) << refused.error().message();
     EXPECT_TRUE(fs::is_directory(folder / "can.log")) << "a folder that lies in the way is not moved";
     EXPECT_EQ(reported(folder / ".octoskin-ready"), ".journal=octoskin-file-set/1\nput can.log\n");
 }
@@ -278,7 +287,9 @@ TEST(FileSetTest, follows_no_journal_out_of_its_folder) {
         folder.write("in/.octoskin-ready/can.log", "new");
         const auto settled = settle(folder / "in");
         ASSERT_FALSE(settled) << line;
-        EXPECT_THAT(settled.error().message, HasSubstr("remove " + (folder / "in/.octoskin-ready").string()));
+        EXPECT_EQ(settled.error().error.code, ErrorCode::foreign_format) << line;
+        EXPECT_EQ(settled.error().error.file, folder / "in/.octoskin-ready/.journal");
+        EXPECT_THAT(settled.error().error.remedy, HasSubstr((folder / "in/.octoskin-ready").string()));
         EXPECT_EQ(ScratchFolder::read(folder / "escaped"), "mine");
         EXPECT_FALSE(fs::exists(folder / "in/can.log"));
     }
@@ -307,8 +318,8 @@ TEST(FileSetTest, follows_no_link_out_of_its_folder) {
                      std::string("octoskin-file-set/1\n") + trap.line + "\nput meta.yaml\n");
         const auto settled = settle(folder / "in");
         ASSERT_FALSE(settled) << trap.line;
-        EXPECT_THAT(settled.error().message,
-                    HasSubstr((folder / trap.link).string() + ": is a symbolic link"));
+        EXPECT_EQ(settled.error().error.code, ErrorCode::link);
+        EXPECT_EQ(settled.error().error.file, folder / trap.link);
         EXPECT_EQ(reported(folder / "victim"), "fused.ot=mine") << trap.line;
         EXPECT_EQ(ScratchFolder::read(folder / "in/robot.urdf"), "old") << trap.line;
         EXPECT_FALSE(fs::exists(folder / "in/meta.yaml")) << trap.line;

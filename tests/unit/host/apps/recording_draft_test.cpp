@@ -29,7 +29,7 @@ TEST(RecordingDraftTest, appears_whole_when_committed) {
     const ScratchFolder folder;
     const RecordingPaths recording(folder / "a/b");
     auto draft = RecordingDraft::create(recording.directory, false);
-    ASSERT_TRUE(draft) << draft.error().message;
+    ASSERT_TRUE(draft) << draft.error().message();
     fill(*draft, "log");
     EXPECT_FALSE(std::filesystem::exists(recording.can_log().shown()));
     ASSERT_TRUE(draft->commit());
@@ -55,8 +55,10 @@ TEST(RecordingDraftTest, never_enters_an_occupied_directory_unasked) {
     folder.write("letter.txt", "mine");
     const auto refused = RecordingDraft::create(folder.path(), false);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
-    EXPECT_THAT(refused.error().message, HasSubstr("--force"));
+    EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(refused.error().error.code, ErrorCode::already_exists);
+    EXPECT_EQ(refused.error().error.file, folder.path());
+    EXPECT_THAT(refused.error().error.remedy, HasSubstr("--force"));
     EXPECT_EQ(folder.entries(), 1);
 }
 
@@ -70,7 +72,7 @@ TEST(RecordingDraftTest, replaces_a_simulated_recording_and_its_maps_and_nothing
     folder.write("letter.txt", "mine");
     folder.write("maps/mine.ot", "mine");
     auto draft = RecordingDraft::create(folder.path(), true);
-    ASSERT_TRUE(draft) << draft.error().message;
+    ASSERT_TRUE(draft) << draft.error().message();
     fill(*draft, "new log");
     EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "old");
     ASSERT_TRUE(draft->commit());
@@ -104,7 +106,9 @@ TEST(RecordingDraftTest, never_replaces_what_is_not_known_to_be_simulated) {
         std::filesystem::remove(folder / "meta.yaml");
         const auto refused = RecordingDraft::create(folder.path(), true);
         ASSERT_FALSE(refused);
-        EXPECT_THAT(refused.error().message, HasSubstr("has a can.log"));
+        EXPECT_EQ(refused.error().error.code, ErrorCode::already_exists);
+        EXPECT_EQ(refused.error().error.file, folder.path());
+        EXPECT_THAT(refused.error().error.value, HasSubstr("can.log"));
         EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "a robot's");
     }
 }
@@ -115,7 +119,7 @@ TEST(RecordingDraftTest, clears_away_what_a_killed_one_left) {
     folder.write(".octoskin-part/depth.oni", "half");
     folder.write("lock", "1");
     auto draft = RecordingDraft::create(folder.path(), false);
-    ASSERT_TRUE(draft) << draft.error().message;
+    ASSERT_TRUE(draft) << draft.error().message();
     fill(*draft, "log");
     ASSERT_TRUE(draft->commit());
     EXPECT_FALSE(std::filesystem::exists(folder / "depth.oni"));
@@ -128,7 +132,7 @@ TEST(RecordingDraftTest, takes_the_maps_origin_away_with_the_maps) {
     folder.write("maps/fused.ot", "old");
     folder.write("maps/maps.yaml", "old");
     auto draft = RecordingDraft::create(folder.path(), true);
-    ASSERT_TRUE(draft) << draft.error().message;
+    ASSERT_TRUE(draft) << draft.error().message();
     fill(*draft, "log");
     ASSERT_TRUE(draft->commit());
     EXPECT_FALSE(std::filesystem::exists(folder / "maps"));
@@ -140,20 +144,25 @@ TEST(RecordingDraftTest, two_at_once_and_one_that_is_read_are_refused) {
     folder.write("can.log", "old");
     {
         const auto first = RecordingDraft::create(folder.path(), true);
-        ASSERT_TRUE(first) << first.error().message;
+        ASSERT_TRUE(first) << first.error().message();
         const auto second = RecordingDraft::create(folder.path(), true);
         ASSERT_FALSE(second);
-        EXPECT_THAT(second.error().message, HasSubstr("another octoskin is writing here"));
+        EXPECT_EQ(second.error().error.code, ErrorCode::in_use);
         const auto reader = lock_recording(RecordingPaths(folder.path()));
         ASSERT_FALSE(reader);
-        EXPECT_THAT(reader.error().message, HasSubstr("is replacing this recording"));
+        EXPECT_EQ(reader.error().exit, ExitCode::bad_data);
+        EXPECT_EQ(reader.error().error.code, ErrorCode::in_use);
+        EXPECT_EQ(reader.error().error.file, folder.path());
+        EXPECT_THAT(reader.error().error.what, HasSubstr("replacing"));
     }
     const auto one = lock_recording(RecordingPaths(folder.path()));
     const auto two = lock_recording(RecordingPaths(folder.path()));
     ASSERT_TRUE(one && two);
     const auto writer = RecordingDraft::create(folder.path(), true);
     ASSERT_FALSE(writer);
-    EXPECT_THAT(writer.error().message, HasSubstr("another octoskin is reading this recording"));
+    EXPECT_EQ(writer.error().error.code, ErrorCode::in_use);
+    EXPECT_EQ(writer.error().error.file, folder.path());
+    EXPECT_THAT(writer.error().error.what, HasSubstr("reading"));
     EXPECT_EQ(folder.entries(), 2);
 }
 
@@ -167,7 +176,8 @@ TEST(RecordingDraftTest, a_directory_in_the_way_leaves_the_former_recording_whol
     std::filesystem::create_directory(folder / "robot.urdf");
     const auto committed = draft->commit();
     ASSERT_FALSE(committed);
-    EXPECT_THAT(committed.error().message, HasSubstr("robot.urdf: is not a file"));
+    EXPECT_EQ(committed.error().error.code, ErrorCode::wrong_kind_of_file);
+    EXPECT_EQ(committed.error().error.file, folder / "robot.urdf");
     EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "old");
     EXPECT_TRUE(std::filesystem::exists(folder / "meta.yaml"));
 }
@@ -185,8 +195,9 @@ TEST(RecordingDraftTest, is_not_begun_where_it_could_not_come_into_its_place) {
                 return Done{};
             }();
             ASSERT_FALSE(refused) << place;
-            EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
-            EXPECT_THAT(refused.error().message, HasSubstr((folder / place).string() + ": is not a file"));
+            EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
+            EXPECT_EQ(refused.error().error.code, ErrorCode::wrong_kind_of_file);
+            EXPECT_EQ(refused.error().error.file, folder / place);
         }
         EXPECT_EQ(folder.entries(), 2) << "nothing is left of it";
     }
@@ -208,7 +219,7 @@ TEST(RecordingDraftTest, believes_no_meta_that_says_two_things) {
     write(folder / "meta.yaml", std::string(kSimulated) + "source: robot\n");
     const auto refused = RecordingDraft::create(folder.path(), true);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+    EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
 }
 
 }  // namespace

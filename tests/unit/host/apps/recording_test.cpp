@@ -58,7 +58,10 @@ TEST_F(RecordingTest, unknown_key_is_named_with_its_line) {
     write(recording_.meta(), "schema: octoskin-recording/1\nseed: 1\nsead: 2\n");
     const auto read = read_meta(recording_);
     ASSERT_FALSE(read);
-    EXPECT_THAT(read.error().message(), testing::HasSubstr("meta.yaml:3: sead: expected a known key"));
+    EXPECT_EQ(read.error().code, ErrorCode::unknown_key);
+    EXPECT_EQ(read.error().file, recording_.meta().shown());
+    EXPECT_EQ(read.error().line, 3);
+    EXPECT_EQ(read.error().key, "sead");
 }
 
 TEST_F(RecordingTest, foreign_or_broken_meta_is_an_error) {
@@ -82,8 +85,9 @@ TEST_F(RecordingTest, a_file_in_its_place_is_said_to_be_one) {
     write(recording_.can_log(), "x");
     const auto checked = check_recording(RecordingPaths(recording_.can_log()));
     ASSERT_FALSE(checked);
-    EXPECT_THAT(checked.error().message(), testing::AllOf(testing::HasSubstr("is a file"),
-                                                          testing::HasSubstr(recording_.directory.string())));
+    EXPECT_EQ(checked.error().code, ErrorCode::wrong_kind_of_file);
+    EXPECT_EQ(checked.error().file, recording_.can_log().shown());
+    EXPECT_THAT(checked.error().remedy, testing::HasSubstr(recording_.directory.string()));
 }
 
 TEST_F(RecordingTest, needs_no_rig_of_its_own_if_another_is_given) {
@@ -122,7 +126,7 @@ TEST_F(RecordingTest, a_value_of_another_type_or_a_key_given_twice_is_refused) {
         const auto read = read_meta(recording_);
         ASSERT_FALSE(read) << line;
         EXPECT_GE(read.error().line, 2) << line;
-        EXPECT_THAT(read.error().message(), testing::HasSubstr("meta.yaml:")) << line;
+        EXPECT_EQ(read.error().file, recording_.meta().shown()) << line;
     }
 }
 
@@ -150,10 +154,12 @@ TEST(SourceFileTest, checksum_is_that_of_all_bytes_in_order) {
 
 TEST_F(RecordingTest, each_missing_file_is_named) {
     const RecordingPaths absent(recording_.directory / "absent");
-    EXPECT_THAT(check_recording(absent).error().what, testing::HasSubstr("no such directory"));
+    EXPECT_EQ(check_recording(absent).error().code, ErrorCode::not_found);
+    EXPECT_EQ(check_recording(absent).error().file, absent.directory);
     for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) {
         const auto checked = check_recording(recording_);
         ASSERT_FALSE(checked);
+        EXPECT_EQ(checked.error().code, ErrorCode::not_found);
         EXPECT_EQ(checked.error().file, file.shown());
         write(file, "x");
     }
@@ -179,9 +185,10 @@ TEST_F(RecordingTest, what_lies_in_a_files_place_and_is_none_is_refused_by_name)
         const auto checked = check_recording(recording_);
         ASSERT_FALSE(checked) << name;
         EXPECT_EQ(checked.error().file, file);
-        EXPECT_THAT(checked.error().what, testing::HasSubstr("is a symbolic link"));
+        EXPECT_EQ(checked.error().code, ErrorCode::link);
         std::filesystem::remove(file);
         ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+        EXPECT_EQ(check_recording(recording_).error().code, ErrorCode::wrong_kind_of_file);
         EXPECT_EQ(check_recording(recording_).error().file, file);
         std::filesystem::remove(file);
         if (is_there) std::filesystem::rename(kept, file);
@@ -195,7 +202,9 @@ TEST_F(RecordingTest, one_that_was_left_half_moved_is_refused_with_what_finishes
     const auto checked = check_recording(recording_);
     ASSERT_FALSE(checked);
     EXPECT_EQ(checked.error().file, recording_.directory);
-    EXPECT_THAT(checked.error().what, testing::HasSubstr("octoskin repair " + recording_.directory.string()));
+    EXPECT_EQ(checked.error().code, ErrorCode::unfinished_move);
+    EXPECT_THAT(checked.error().remedy,
+                testing::HasSubstr("octoskin repair " + recording_.directory.string()));
     EXPECT_TRUE(std::filesystem::exists(recording_.directory / ".octoskin-ready"));
 }
 
@@ -206,7 +215,8 @@ TEST_F(RecordingTest, a_folder_with_a_recording_in_it_says_where_that_is) {
     const auto checked = check_recording(recording_);
     ASSERT_FALSE(checked);
     EXPECT_EQ(checked.error().file, recording_.can_log().shown());
-    EXPECT_THAT(checked.error().what, testing::HasSubstr("did you mean " + inner.string() + "?"));
+    EXPECT_EQ(checked.error().code, ErrorCode::not_found);
+    EXPECT_THAT(checked.error().remedy, testing::HasSubstr(inner.string()));
 }
 
 }  // namespace

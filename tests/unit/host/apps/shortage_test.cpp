@@ -20,7 +20,9 @@ TEST(Shortage, is_what_the_system_has_too_little_of) {
     for (const int error_number : {EMFILE, ENFILE, EAGAIN, ENOMEM, EFBIG}) {
         const auto shortage = shortage_in(failed(error_number));
         ASSERT_TRUE(shortage) << error_number;
-        EXPECT_EQ(static_cast<int>(shortage->code), 71);
+        EXPECT_EQ(static_cast<int>(shortage->exit), 71);
+        EXPECT_EQ(shortage->error.code,
+                  error_number == EFBIG ? ErrorCode::too_large : ErrorCode::no_resources);
     }
     EXPECT_TRUE(shortage_in(std::bad_alloc()));
     const std::error_code system(EMFILE, std::system_category());
@@ -43,8 +45,8 @@ TEST(Shortage, names_the_limit_that_was_reached_and_how_it_is_raised) {
     const auto shortage = shortage_in(failed(EMFILE));
     ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
     ASSERT_TRUE(shortage);
-    EXPECT_NE(shortage->message.find("321"), std::string::npos) << shortage->message;
-    EXPECT_NE(shortage->message.find("ulimit -n"), std::string::npos) << shortage->message;
+    EXPECT_NE(shortage->error.what.find("321"), std::string::npos) << shortage->message();
+    EXPECT_NE(shortage->error.remedy.find("ulimit -n"), std::string::npos) << shortage->message();
 }
 
 TEST(Shortage, of_a_thread_names_the_limit_of_data_that_its_stack_counts_for) {
@@ -55,8 +57,8 @@ TEST(Shortage, of_a_thread_names_the_limit_of_data_that_its_stack_counts_for) {
     const auto shortage = shortage_in(failed(EAGAIN));
     ASSERT_EQ(::setrlimit(RLIMIT_DATA, &before), 0);
     ASSERT_TRUE(shortage);
-    EXPECT_NE(shortage->message.find("54321"), std::string::npos) << shortage->message;
-    EXPECT_NE(shortage->message.find("ulimit -d"), std::string::npos) << shortage->message;
+    EXPECT_NE(shortage->error.what.find("54321"), std::string::npos) << shortage->message();
+    EXPECT_NE(shortage->error.remedy.find("ulimit -d"), std::string::npos) << shortage->message();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/image/elf_builder.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -12,7 +13,12 @@ namespace octoskin::image {
 namespace {
 
 using test::ElfBuilder;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::what_is;
 
 TEST(ElfImage, has_what_is_programmed_and_nothing_else) {
     ElfBuilder builder;
@@ -43,8 +49,10 @@ TEST(ElfImage, refuses_what_is_no_program_for_arm) {
     }
     const auto absent = ElfImage::load("/nowhere/image.elf");
     ASSERT_FALSE(absent);
-    EXPECT_THAT(absent.error().what, HasSubstr("/nowhere/image.elf: cannot be read"));
-    EXPECT_FALSE(ElfImage::load("/"));
+    EXPECT_EQ(absent.error().file, "/nowhere/image.elf");
+    EXPECT_EQ(absent.error().what, "cannot be read");
+    EXPECT_TRUE(has_its_fields(absent.error()));
+    EXPECT_THAT(ElfImage::load("/").error(), code_is(ErrorCode::wrong_kind_of_file));
 }
 
 TEST(ElfImage, reads_no_more_of_a_file_than_an_image_has) {
@@ -53,7 +61,8 @@ TEST(ElfImage, reads_no_more_of_a_file_than_an_image_has) {
     std::filesystem::resize_file(file, std::uintmax_t{64} << 20U);
     EXPECT_TRUE(ElfImage::load(file.string()));
     std::filesystem::resize_file(file, std::uintmax_t{1} << 40U);  // of holes
-    EXPECT_THAT(ElfImage::load(file.string()).error().what, HasSubstr("over 67108864 bytes"));
+    EXPECT_THAT(ElfImage::load(file.string()).error(),
+                AllOf(code_is(ErrorCode::too_large), file_is("image.elf"), what_is(HasSubstr("67108864"))));
 }
 
 TEST(ElfImage, refuses_more_segments_than_an_image_has) {
@@ -63,7 +72,8 @@ TEST(ElfImage, refuses_more_segments_than_an_image_has) {
     builder.segments.resize(65, {.physical_address = 0x0800'0400, .bytes = {1}});
     const auto image = ElfImage::parse(builder.bytes());
     ASSERT_FALSE(image);
-    EXPECT_THAT(image.error().what, HasSubstr("65 segments, over 64"));
+    EXPECT_THAT(image.error(), AllOf(code_is(ErrorCode::limit_exceeded),
+                                     what_is(AllOf(HasSubstr("65 segments"), HasSubstr("64")))));
 }
 
 TEST(ElfImage, every_truncation_is_refused_or_has_all_that_is_programmed) {

@@ -12,6 +12,7 @@
 
 #include "common/config/node_config.hpp"
 #include "hw/rigfile/rig.hpp"
+#include "tests/support/errors/error_fields.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -98,7 +99,7 @@ class RigText : public testing::Test {
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    Result<Rig, RigError> read(const std::string& text) {
+    Result<Rig, Error> read(const std::string& text) {
         std::ofstream(folder_ / "rig.yaml") << text;
         return read_rig(folder_ / "rig.yaml");
     }
@@ -417,7 +418,7 @@ TEST_F(RigText, damaged_text_never_does_more_than_be_refused) {
         const auto rig = read(text);
         if (rig) continue;
         ++refused;
-        EXPECT_FALSE(rig.error().what.empty());
+        EXPECT_TRUE(testing_support::has_its_fields(rig.error()));
     }
     EXPECT_GT(refused, 30);
 }

@@ -9,11 +9,20 @@
 #include <string>
 
 #include "hw/rigfile/robot_description.hpp"
+#include "tests/support/errors/error_fields.hpp"
 
 namespace octoskin::rig {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::has_its_fields;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 using Padding = std::map<std::string, double>;
 
 const std::filesystem::path kPanda = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/robots/panda.urdf";
@@ -22,7 +31,7 @@ class Capsules : public testing::Test {
   protected:
     void TearDown() override { std::filesystem::remove(file_); }
     /// The capsules of a robot with one link, "hull", and this in it.
-    Result<std::vector<Capsule>, RigError> read(const std::string& collisions, const Padding& padding = {}) {
+    Result<std::vector<Capsule>, Error> read(const std::string& collisions, const Padding& padding = {}) {
         write_robot(collisions);
         return read_capsules(file_, padding);
     }
@@ -119,21 +128,19 @@ TEST_F(Capsules, padding_of_a_link_is_added_to_its_radius) {
 TEST_F(Capsules, padding_of_an_unknown_link_is_refused) {
     const auto capsules = read(sphere("0 0 0", "0.05"), {{"hall", 0.02}});
     ASSERT_FALSE(capsules);
-    EXPECT_EQ(capsules.error().key, "link hall");
+    EXPECT_THAT(capsules.error(), AllOf(code_is(ErrorCode::unknown_name), key_is("link hall")));
 }
 
 TEST_F(Capsules, box_and_mesh_are_refused_by_link_and_name) {
     const auto box = read("<collision name=\"lid\"><geometry><box size=\"1 1 1\"/></geometry></collision>\n");
     ASSERT_FALSE(box);
-    EXPECT_EQ(box.error().key, "link hull");
-    EXPECT_EQ(box.error().line, 2);
-    EXPECT_THAT(
-        box.error().message(),
-        HasSubstr("<collision name=\"lid\"> is a box: expected a cylinder or a sphere (two spheres and a "
-                  "cylinder are a capsule); put one around it in its place, or remove it"));
+    EXPECT_THAT(box.error(), AllOf(code_is(ErrorCode::unsupported), key_is("link hull"), line_is(2),
+                                   what_is(HasSubstr("<collision name=\"lid\">")), value_is("a box"),
+                                   remedy_is(HasSubstr("fits_capsules: true"))));
+    EXPECT_TRUE(has_its_fields(box.error()));
     const auto mesh = read("<collision><geometry><mesh filename=\"hull.stl\"/></geometry></collision>\n");
     ASSERT_FALSE(mesh);
-    EXPECT_THAT(mesh.error().message(), HasSubstr("is a mesh"));
+    EXPECT_THAT(mesh.error(), AllOf(code_is(ErrorCode::unsupported), value_is("a mesh")));
 }
 
 TEST_F(Capsules, box_is_the_capsule_around_it_if_the_rig_says_so) {
@@ -152,7 +159,7 @@ TEST_F(Capsules, mesh_is_refused_even_then) {
                             "filename=\"hull.stl\"/></geometry></collision></link></robot>";
     const auto capsules = read_capsules(file_, {}, BoxRule::fitted);
     ASSERT_FALSE(capsules);
-    EXPECT_THAT(capsules.error().message(), HasSubstr("is a mesh"));
+    EXPECT_THAT(capsules.error(), AllOf(code_is(ErrorCode::unsupported), value_is("a mesh")));
 }
 
 TEST_F(Capsules, what_the_rig_attaches_is_real_and_padded_like_its_link) {
@@ -230,7 +237,9 @@ TEST_F(Capsules, absurd_size_is_refused) {
     for (const char* radius : {"0", "-0.1", "50"}) {
         const auto capsules = read(sphere("0 0 0", radius));
         ASSERT_FALSE(capsules) << radius;
-        EXPECT_THAT(capsules.error().message(), HasSubstr("metres?")) << radius;
+        EXPECT_THAT(capsules.error(), AllOf(code_is(ErrorCode::out_of_range), key_is("link hull"),
+                                            remedy_is(HasSubstr("metres?"))))
+            << radius;
     }
     EXPECT_FALSE(read(cylinder("xyz=\"0 0 0\"", "0.1", "-1")));
     EXPECT_FALSE(read(sphere("0 0 0", "nan")));

@@ -9,26 +9,35 @@
 #include "hw/rigfile/bounded_text.hpp"
 #include "hw/rigfile/file_kind.hpp"
 #include "hw/rigfile/robot_description.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::remedy_is;
+using testing_support::what_is;
 
 TEST(EndlessFile, is_refused_as_a_rig_and_as_a_robot) {
     const testing_support::ScratchFolder folder;
     const auto pipe = folder / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     const std::pair<std::filesystem::path, const char*> others[] = {
-        {"/dev/zero", "is a device"}, {pipe, "is a named pipe"}, {folder.path(), "is a directory"}};
+        {"/dev/zero", "a device"}, {pipe, "a named pipe"}, {folder.path(), "a directory"}};
     for (const auto& [path, kind] : others) {
         const auto rig = read_rig(path);
         ASSERT_FALSE(rig);
-        EXPECT_THAT(rig.error().message(), HasSubstr(path.string() + ": " + kind));
+        EXPECT_EQ(rig.error().file, path);
+        EXPECT_THAT(rig.error(), AllOf(code_is(ErrorCode::wrong_kind_of_file), what_is(HasSubstr(kind)),
+                                       remedy_is(HasSubstr("an ordinary YAML file"))));
         const auto robot = read_capsules(path, {});
         ASSERT_FALSE(robot);
-        EXPECT_THAT(robot.error().message(), HasSubstr(path.string() + ": " + kind));
+        EXPECT_EQ(robot.error().file, path);
+        EXPECT_THAT(robot.error(), AllOf(code_is(ErrorCode::wrong_kind_of_file), what_is(HasSubstr(kind)),
+                                         remedy_is(HasSubstr("an ordinary URDF file"))));
     }
     EXPECT_EQ(other_than_a_file(folder.write("file", "")), "");
     EXPECT_EQ(other_than_a_file(folder / "absent"), "");

@@ -102,6 +102,7 @@ TEST_F(Extends, robot_given_instead_is_the_one_that_is_checked) {
     const auto panda = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/robots/panda.urdf";
     const auto rig = read_rig(kData / "one-sensor.yaml", panda);
     ASSERT_FALSE(rig);
+    EXPECT_EQ(rig.error().code, ErrorCode::unknown_name);
     EXPECT_EQ(rig.error().key, "robot.base_link");
     const auto named_absent = write(
         "rig.yaml", "extends: " + (kData / "one-sensor.yaml").string() + "\nrobot: {urdf: gone.urdf}\n");

@@ -8,6 +8,7 @@
 
 #include "hw/rigfile/i2c_load.hpp"
 #include "hw/rigfile/rig.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
@@ -15,11 +16,20 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class FirstDayKeys : public testing::Test {
   protected:
     /// A node of two sensors with these keys, one a line.
-    Result<Rig, RigError> read(const std::string& keys) {
+    Result<Rig, Error> read(const std::string& keys) {
         const std::string base = std::string(OCTOSKIN_SOURCE_DIR) + "/hw/rigs/bench_one_board.yaml";
         const std::string board = std::string(OCTOSKIN_SOURCE_DIR) + "/hw/boards/nucleo_g474re.yaml";
         const std::string sensor = "{bus: 0, pose: {xyz_m: [0, 0, 0], rpy_deg: [0, 0, 0]}, name: ";
@@ -35,10 +45,7 @@ class FirstDayKeys : public testing::Test {
         if (!rig) throw std::runtime_error(rig.error().message());
         return rig->nodes.at(0).config;
     }
-    std::string error(const std::string& keys) {
-        const auto rig = read(keys);
-        return rig ? "none" : rig.error().message();
-    }
+    Error error(const std::string& keys) { return error_in(read(keys)); }
     testing_support::ScratchFolder folder_;
 };
 
@@ -67,27 +74,33 @@ TEST_F(FirstDayKeys, leave_registers_out_in_the_order_of_their_numbers) {
 
 TEST_F(FirstDayKeys, refuse_registers_that_are_not_read_back_or_come_twice) {
     EXPECT_THAT(error("    verification: {leave_out: [0x31]}\n"),
-                AllOf(HasSubstr("rig.yaml:6"), HasSubstr("nodes[0].verification.leave_out"),
-                      HasSubstr("found 0x31")));
+                AllOf(file_is("rig.yaml"), line_is(6), key_is(HasSubstr("nodes[0].verification.leave_out")),
+                      value_is(StartsWith("0x31"))));
     EXPECT_THAT(error("    verification: {leave_out: [0x86]}\n"),
-                HasSubstr("nodes[0].verification.leave_out"));
-    EXPECT_THAT(error("    verification: {leave_out: [0x47, 71]}\n"), HasSubstr("found 0x47 again"));
+                key_is(HasSubstr("nodes[0].verification.leave_out")));
+    EXPECT_THAT(error("    verification: {leave_out: [0x47, 71]}\n"),
+                AllOf(code_is(ErrorCode::duplicate), value_is("0x47 again")));
     std::string many;
     for (int index = 0x33; index < 0x33 + 33; ++index) many += std::to_string(index) + ", ";
     EXPECT_THAT(error("    verification: {leave_out: [" + many + "]}\n"),
-                AllOf(HasSubstr("at most 32"), HasSubstr("found 33"), HasSubstr("enabled: false")));
-    EXPECT_THAT(error("    verification: {leave: [0x47]}\n"), HasSubstr("known here are enabled, leave_out"));
+                AllOf(code_is(ErrorCode::limit_exceeded), what_is(HasSubstr("at most 32")), value_is("33"),
+                      remedy_is(HasSubstr("enabled: false"))));
+    EXPECT_THAT(error("    verification: {leave: [0x47]}\n"),
+                AllOf(code_is(ErrorCode::unknown_key), remedy_is(HasSubstr("enabled, leave_out"))));
 }
 
 TEST_F(FirstDayKeys, keep_the_jitter_within_what_a_node_can_follow) {
     EXPECT_EQ(config("    ready_jitter_us: 1000\n").ready_jitter_us, 1'000);
     EXPECT_THAT(error("    ready_jitter_us: 1001\n"),
-                AllOf(HasSubstr("nodes[0].ready_jitter_us"), HasSubstr("inter_measurement_ms of 20")));
-    EXPECT_THAT(error("    ready_jitter_us: 29\n"), HasSubstr("nodes[0].ready_jitter_us"));
-    EXPECT_THAT(error("    ready_jitter_us: 2001\n"), HasSubstr("nodes[0].ready_jitter_us"));
+                AllOf(code_is(ErrorCode::conflict), key_is("nodes[0].ready_jitter_us"),
+                      what_is(HasSubstr("inter_measurement_ms of 20")), value_is("1001")));
+    for (const char* outside : {"29", "2001"})
+        EXPECT_THAT(error(std::string("    ready_jitter_us: ") + outside + "\n"),
+                    AllOf(code_is(ErrorCode::out_of_range), key_is("nodes[0].ready_jitter_us")));
     EXPECT_EQ(config("    ready_jitter_us: 100\n    holds_phases: true\n").ready_jitter_us, 100);
     EXPECT_THAT(error("    ready_jitter_us: 101\n    holds_phases: true\n"),
-                AllOf(HasSubstr("nodes[0].ready_jitter_us"), HasSubstr("holds_phases")));
+                AllOf(code_is(ErrorCode::conflict), key_is("nodes[0].ready_jitter_us"),
+                      what_is(HasSubstr("holds_phases")), value_is("101")));
 }
 
 // 518 bits a reading, and 48 for each further poll.

@@ -77,10 +77,12 @@ TEST(LinksWithoutBody, may_be_listed_if_their_body_is_too_little) {
     EXPECT_EQ(without_body(*speck), Names{"upper"});
     const auto ball = listed(box + "<collision><geometry><sphere radius=\"0.1\"/></geometry></collision>");
     ASSERT_FALSE(ball);
+    EXPECT_EQ(ball.error().code, ErrorCode::conflict);
     EXPECT_EQ(ball.error().line, 2);
     EXPECT_EQ(ball.error().key, "robot.links_without_body");
     const auto mesh = listed(box + "<collision><geometry><mesh filename=\"m.dae\"/></geometry></collision>");
     ASSERT_FALSE(mesh) << "the robot's own fault";
+    EXPECT_EQ(mesh.error().code, ErrorCode::unsupported);
     EXPECT_EQ(mesh.error().file.filename(), "arm.urdf");
 }
 

@@ -18,17 +18,25 @@
 #include "hw/rigfile/document.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "tests/support/declared_keys.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
 namespace {
 
+using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::is_no_error;
 using testing_support::refusal_of;
 using testing_support::scalar;
 using testing_support::ScratchFolder;
 using testing_support::value_at;
+using testing_support::value_is;
+using testing_support::what_is;
 
 /// Its board, image and period are the greatest ones, so that no limit is narrower than its declaration.
 const std::string kWideRig = R"(name: wide
@@ -81,20 +89,20 @@ class RigKeys : public testing::Test {
     }
 
     /// The wide rig with one value changed.
-    Result<Rig, RigError> read_with(std::string_view path, const std::string& text) {
+    Result<Rig, Error> read_with(std::string_view path, const std::string& text) {
         Value top = wide_rig();
         Value& value = value_at(top, full_path(path));
         value = scalar(value.key, text);
         return read(top);
     }
-    Result<Rig, RigError> read_with_numbers(const NumbersKey& key, double number) {
+    Result<Rig, Error> read_with_numbers(const NumbersKey& key, double number) {
         Value top = wide_rig();
         Value& value = value_at(top, full_path(key.path));
         value.kind = Value::Kind::list;
         value.items.assign(key.count, scalar("", fmt::format("{}", number)));
         return read(top);
     }
-    Result<Rig, RigError> read_without(std::string_view path) {
+    Result<Rig, Error> read_without(std::string_view path) {
         Value top = wide_rig();
         if (path.ends_with("[]") || path.ends_with("{}")) path.remove_suffix(2);
         Value& value = value_at(top, full_path(path));
@@ -105,16 +113,12 @@ class RigKeys : public testing::Test {
 
   private:
     Value wide_rig() { return load_document(folder_.write("wide.yaml", kWideRig)); }
-    Result<Rig, RigError> read(const Value& top) {
+    Result<Rig, Error> read(const Value& top) {
         return read_rig(folder_.write("rig.yaml", document_text(top)));
     }
 
     ScratchFolder folder_;
 };
-
-std::string message_of(const Result<Rig, RigError>& rig) {
-    return rig ? "no error" : rig.error().message();
-}
 
 std::vector<AnyKey> all_keys() {
     std::vector<AnyKey> keys;
@@ -130,12 +134,16 @@ TEST_F(RigKeys, numbers_are_refused_just_outside_of_the_declared_range_and_not_a
         const auto* const* key = std::get_if<const NumberKey*>(&any);
         if (key == nullptr) continue;
         const auto [min, max] = (*key)->range;
-        const std::string refusal = refusal_of(any) + ", found";
-        for (const double outside : {std::nextafter(min, -kInfinity), std::nextafter(max, kInfinity)})
-            EXPECT_THAT(message_of(read_with((*key)->path, fmt::format("{}", outside))), HasSubstr(refusal))
+        for (const double outside : {std::nextafter(min, -kInfinity), std::nextafter(max, kInfinity)}) {
+            const std::string value = fmt::format("{}", outside);
+            EXPECT_THAT(error_in(read_with((*key)->path, value)),
+                        AllOf(code_is(ErrorCode::out_of_range), what_is(refusal_of(any)),
+                              value_is("'" + value + "'")))
                 << (*key)->path;
+        }
         for (const double end : {min, max})
-            EXPECT_THAT(message_of(read_with((*key)->path, fmt::format("{}", end))), Not(HasSubstr(refusal)))
+            EXPECT_THAT(error_in(read_with((*key)->path, fmt::format("{}", end))),
+                        Not(what_is(refusal_of(any))))
                 << (*key)->path;
         ++checked;
     }
@@ -148,23 +156,27 @@ TEST_F(RigKeys, whole_numbers_are_refused_just_outside_of_the_declared_range_and
         const auto* const* key = std::get_if<const IntegerKey*>(&any);
         if (key == nullptr) continue;
         const auto [min, max] = (*key)->range;
-        const std::string refusal = fmt::format("expected a whole number from {} to {}, found", min, max);
-        for (const std::int64_t outside : {min - 1, max + 1})
-            EXPECT_THAT(message_of(read_with((*key)->path, fmt::format("{}", outside))), HasSubstr(refusal))
+        const std::string refusal = fmt::format("expected a whole number from {} to {}", min, max);
+        for (const std::int64_t outside : {min - 1, max + 1}) {
+            const std::string value = fmt::format("{}", outside);
+            EXPECT_THAT(
+                error_in(read_with((*key)->path, value)),
+                AllOf(code_is(ErrorCode::out_of_range), what_is(refusal), value_is("'" + value + "'")))
                 << (*key)->path;
+        }
         for (const std::int64_t end : {min, max})
-            EXPECT_THAT(message_of(read_with((*key)->path, fmt::format("{}", end))), Not(HasSubstr(refusal)))
+            EXPECT_THAT(error_in(read_with((*key)->path, fmt::format("{}", end))), Not(what_is(refusal)))
                 << (*key)->path;
         ++checked;
         if ((*key)->values.empty()) {
-            EXPECT_EQ(refusal, refusal_of(any) + ", found");
+            EXPECT_EQ(refusal, refusal_of(any));
             continue;
         }
-        EXPECT_THAT(message_of(read_with((*key)->path, fmt::format("{}", min))),
-                    HasSubstr("expected " + expected_text(any)))
+        EXPECT_THAT(error_in(read_with((*key)->path, fmt::format("{}", min))),
+                    what_is(HasSubstr("expected " + expected_text(any))))
             << (*key)->path;
         for (const std::int64_t value : (*key)->values)
-            EXPECT_EQ(message_of(read_with((*key)->path, fmt::format("{}", value))), "no error")
+            EXPECT_THAT(error_in(read_with((*key)->path, fmt::format("{}", value))), is_no_error())
                 << (*key)->path;
     }
     EXPECT_GT(checked, 25);
@@ -177,11 +189,13 @@ TEST_F(RigKeys, lists_of_numbers_are_refused_outside_of_the_declared_range) {
         if (key == nullptr) continue;
         const auto [min, max] = (*key)->range;
         for (const double outside : {1.001 * min, 1.001 * max})
-            EXPECT_THAT(message_of(read_with_numbers(**key, outside)),
-                        HasSubstr(fmt::format(" from {} to {}, found", min, max)))
+            EXPECT_THAT(error_in(read_with_numbers(**key, outside)),
+                        AllOf(code_is(ErrorCode::out_of_range),
+                              what_is(EndsWith(fmt::format(" from {} to {}", min, max)))))
                 << (*key)->path;
         for (const double end : {min, max})
-            EXPECT_THAT(message_of(read_with_numbers(**key, end)), Not(HasSubstr(" from "))) << (*key)->path;
+            EXPECT_THAT(error_in(read_with_numbers(**key, end)), Not(what_is(HasSubstr(" from "))))
+                << (*key)->path;
         ++checked;
     }
     EXPECT_EQ(checked, 6);
@@ -195,8 +209,10 @@ TEST_F(RigKeys, flags_and_words_are_refused_with_the_declared_words) {
                              std::holds_alternative<const WordKey<DistanceMode>*>(key) ||
                              std::holds_alternative<const WordKey<StreamGate>*>(key);
         if (!is_word) continue;
-        EXPECT_THAT(message_of(read_with(path_of(key), "perhaps")),
-                    HasSubstr("expected " + expected_text(key) + ", found 'perhaps'"))
+        EXPECT_THAT(error_in(read_with(path_of(key), "perhaps")),
+                    AllOf(code_is(std::holds_alternative<const FlagKey*>(key) ? ErrorCode::wrong_type
+                                                                              : ErrorCode::unknown_word),
+                          what_is("expected " + expected_text(key)), value_is("'perhaps'")))
             << path_of(key);
         ++checked;
     }
@@ -209,11 +225,11 @@ TEST_F(RigKeys, a_required_key_is_required_and_any_other_may_be_missing) {
         const bool is_conditional =
             path.starts_with("pose.") || path == "bus.data_bitrate_bps" || path == "extends";
         if (is_conditional) continue;
-        const std::string message = message_of(read_without(path));
+        const Error error = error_in(read_without(path));
         if (default_text(key) == "required") {
-            EXPECT_THAT(message, HasSubstr("expected this key, found none")) << path;
+            EXPECT_THAT(error, code_is(ErrorCode::missing_key)) << path;
         } else {
-            EXPECT_EQ(message, "no error") << path;
+            EXPECT_THAT(error, is_no_error()) << path;
         }
     }
 }
@@ -226,7 +242,8 @@ TEST_F(RigKeys, a_missing_key_has_its_declared_default) {
         if (!has_value) continue;
         const auto without = read_without(path_of(key));
         const auto with = read_with(path_of(key), default_text(key));
-        ASSERT_TRUE(without && with) << path_of(key) << message_of(without) << message_of(with);
+        ASSERT_TRUE(without && with) << path_of(key) << error_in(without).message()
+                                     << error_in(with).message();
         EXPECT_EQ(canonical_text(*with, "r"), canonical_text(*without, "r")) << path_of(key);
         ++checked;
     }

@@ -1,14 +1,22 @@
 // What was found of a sensor goes into the file that a person keeps, and nothing else of it changes.
 #include "hw/rigfile/sensor_edit.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::file_is;
+using testing_support::what_is;
 
 const std::filesystem::path kRigs = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/rigs";
 
@@ -65,8 +73,7 @@ TEST(SensorEdit, finds_nothing_where_nothing_is) {
 class ShippedRig : public testing::Test {
   protected:
     /// As `edit_sensor` with a plain way to save.
-    Result<std::filesystem::path, RigError> change(const std::filesystem::path& file,
-                                                   const SensorEdit& edit) {
+    Result<std::filesystem::path, Error> change(const std::filesystem::path& file, const SensorEdit& edit) {
         return edit_sensor(file, edit, [this](const FilePlace& place, const std::string& text) {
             if (saves_left_-- <= 0) return std::optional<std::string>("no ink");
             std::ofstream(place.shown(), std::ios::binary) << text;
@@ -127,7 +134,9 @@ TEST_F(ShippedRig, is_not_changed_for_a_sensor_that_only_a_file_beneath_it_still
     ASSERT_TRUE(read_rig(heir)) << read_rig(heir).error().message();
     const auto refused = change(heir, edit("back"));
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().what, "has no sensor 'back' of a node 'bench'");
+    EXPECT_THAT(refused.error(),
+                AllOf(code_is(ErrorCode::unknown_name), file_is("heir.yaml"),
+                      what_is(AllOf(HasSubstr("sensor 'back'"), HasSubstr("node 'bench'")))));
     EXPECT_EQ(testing_support::ScratchFolder::read(base), before);
     ASSERT_TRUE(change(heir, edit("front")));
     EXPECT_EQ(testing_support::ScratchFolder::read(base), before);
@@ -137,11 +146,13 @@ TEST_F(ShippedRig, that_cannot_be_saved_or_put_back_is_told_with_the_reason) {
     const auto file = folder_ / "rigs/bench_one_board.yaml";
     const std::string before = testing_support::ScratchFolder::read(file);
     saves_left_ = 0;
-    EXPECT_EQ(change(file, edit("back")).error().what, "no ink");
+    EXPECT_THAT(change(file, edit("back")).error(),
+                AllOf(code_is(ErrorCode::system_error), file_is(file.filename()), what_is("no ink")));
     EXPECT_EQ(testing_support::ScratchFolder::read(file), before);
     saves_left_ = 1;
-    EXPECT_EQ(change(file, edit("back", "device_offset_mm", "4000")).error().what,
-              "was changed and cannot be put back: no ink");
+    EXPECT_THAT(change(file, edit("back", "device_offset_mm", "4000")).error(),
+                AllOf(code_is(ErrorCode::system_error), file_is(file.filename()),
+                      what_is("was changed and cannot be put back: no ink")));
 }
 
 }  // namespace

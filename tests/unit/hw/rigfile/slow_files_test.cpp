@@ -12,12 +12,21 @@
 #include "hw/rigfile/document.hpp"
 #include "hw/rigfile/nesting.hpp"
 #include "hw/rigfile/robot_description.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::file_is;
+using testing_support::is_no_error;
+using testing_support::line_is;
+using testing_support::no_error;
+using testing_support::value_is;
+using testing_support::what_is;
 
 constexpr double kSecondsMax = 1.0;
 
@@ -39,13 +48,13 @@ std::string repeated(const std::string& text, std::size_t size) {
     return all;
 }
 
-/// What is wrong with it; empty: nothing.
-std::string load(const std::filesystem::path& file) {
+/// What is wrong with it; `no_error`: nothing.
+Error load(const std::filesystem::path& file) {
     try {
         (void)load_document(file);
-        return {};
-    } catch (const Fault& fault) {
-        return fault.error.message();
+        return no_error();
+    } catch (const Error& error) {
+        return error;
     }
 }
 
@@ -95,19 +104,21 @@ TEST(SlowFile, of_yaml_is_read_or_refused_within_a_second) {
         {"zero bytes", "a: " + std::string(kYamlMax - 3, '\0')}};
     for (const auto& [name, text] : files) {
         const auto file = folder.write("slow.yaml", text);
-        std::string fault;
-        const double took = processor_seconds([&] { fault = load(file); });
-        EXPECT_LT(took, kSecondsMax) << name << ": " << fault;
+        Error error;
+        const double took = processor_seconds([&] { error = load(file); });
+        EXPECT_LT(took, kSecondsMax) << name << ": " << error.message();
     }
 }
 
 TEST(SlowFile, of_yaml_has_its_limits_named) {
     const testing_support::ScratchFolder folder;
-    EXPECT_EQ(load(folder.write("most.yaml", keys(999, 2'000))), "");
+    EXPECT_THAT(load(folder.write("most.yaml", keys(999, 2'000))), is_no_error());
     EXPECT_THAT(load(folder.write("more.yaml", keys(1'001, 2'000))),
-                HasSubstr("more.yaml:1002: expected at most 1000 keys in a table, found more"));
+                AllOf(code_is(ErrorCode::limit_exceeded), file_is("more.yaml"), line_is(1002),
+                      what_is(HasSubstr("1000 keys in a table"))));
     EXPECT_THAT(load(folder.write("deep.yaml", "a: 1\nb: " + std::string(65, '['))),
-                HasSubstr("deep.yaml:2: expected at most 64 brackets within each other, found more"));
+                AllOf(code_is(ErrorCode::limit_exceeded), file_is("deep.yaml"), line_is(2),
+                      what_is(HasSubstr("64 brackets"))));
     EXPECT_FALSE(deep_brackets("a: " + repeated("[[[1]]],", 100'000)));
 }
 
@@ -146,8 +157,8 @@ TEST(SlowFile, of_a_robot_has_its_crowded_element_named) {
     for (int i = 0; i < 101; ++i) attributes += " a" + std::to_string(i) + "='='";
     const auto fault = crowded_element("<robot>\n<link" + attributes + "/></robot>");
     ASSERT_TRUE(fault);
-    EXPECT_EQ(fault->line, 2);
-    EXPECT_EQ(fault->what, "expected at most 100 attributes in an element, found 101");
+    EXPECT_THAT(*fault, AllOf(code_is(ErrorCode::limit_exceeded), line_is(2),
+                              what_is(HasSubstr("100 attributes")), value_is("101")));
     EXPECT_FALSE(
         crowded_element("<!-- <link" + attributes + "/> --><a><![CDATA[<b" + attributes + ">]]></a>"));
     EXPECT_FALSE(crowded_element("<a b='" + repeated("c=d ", 4'000) + "'/>"));

@@ -12,19 +12,30 @@
 #include "hw/rigfile/rig.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/urdf_document.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::rig {
 namespace {
 
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::has_its_fields;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::others_are;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 const std::filesystem::path kSource = OCTOSKIN_SOURCE_DIR;
 
 class UrdfEdges : public testing::Test {
   protected:
-    Result<UrdfDocument, RigError> read(const std::string& text) {
+    Result<UrdfDocument, Error> read(const std::string& text) {
         return UrdfDocument::read(folder_.write("arm.urdf", text));
     }
     /// Line 1, then link a with what is in it on line 2, then link b and the joint between them.
@@ -110,8 +121,9 @@ TEST_F(UrdfEdges, what_xacro_has_not_expanded_is_named_with_its_line) {
           Case{arm("<collision><geometry><xacro:box/></geometry></collision>"), 2}}) {
         const auto document = read(each.text);
         ASSERT_FALSE(document) << each.text;
-        EXPECT_EQ(document.error().line, each.line) << document.error().message();
-        EXPECT_THAT(document.error().message(), HasSubstr("run xacro first"));
+        EXPECT_THAT(document.error(), AllOf(code_is(ErrorCode::unsupported), line_is(each.line),
+                                            remedy_is(HasSubstr("run xacro first"))));
+        EXPECT_TRUE(has_its_fields(document.error()));
     }
 }
 
@@ -123,7 +135,8 @@ TEST_F(UrdfEdges, a_file_in_utf_16_is_named_as_such) {
             for (const char c : text) wide += is_big_endian ? std::string{'\0', c} : std::string{c, '\0'};
             const auto document = read(wide);
             ASSERT_FALSE(document);
-            EXPECT_THAT(document.error().message(), HasSubstr("UTF-16"));
+            EXPECT_THAT(document.error(), AllOf(code_is(ErrorCode::unsupported), what_is(HasSubstr("UTF-16")),
+                                                remedy_is(HasSubstr("iconv -f UTF-16 -t UTF-8"))));
         }
     }
     EXPECT_TRUE(read("\xEF\xBB\xBF" + text)) << "the mark of UTF-8";
@@ -132,8 +145,8 @@ TEST_F(UrdfEdges, a_file_in_utf_16_is_named_as_such) {
 TEST_F(UrdfEdges, what_is_before_the_xml_declaration_is_named) {
     const auto document = read("<!-- made by hand -->\n<?xml version=\"1.0\"?>\n" + arm(""));
     ASSERT_FALSE(document);
-    EXPECT_EQ(document.error().line, 2);
-    EXPECT_THAT(document.error().message(), HasSubstr("remove the text before it"));
+    EXPECT_THAT(document.error(), AllOf(code_is(ErrorCode::bad_syntax), line_is(2),
+                                        what_is(HasSubstr("remove the text before it"))));
     EXPECT_TRUE(read("<?xml version=\"1.0\"?>\n<!-- made by hand -->\n" + arm("")));
 }
 
@@ -152,14 +165,12 @@ TEST_F(UrdfEdges, every_link_whose_body_cannot_be_taken_is_in_one_message) {
                         "</robot>\n");
     const auto refused = read_capsules(file, {});
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().line, 2);
-    EXPECT_EQ(refused.error().key, "link z");
-    EXPECT_THAT(refused.error().what,
-                AllOf(HasSubstr("is a mesh"),
-                      HasSubstr("2 more refused: link y (line 4, box), link a (line 5, mesh)")));
+    EXPECT_THAT(refused.error(),
+                AllOf(line_is(2), key_is("link z"), value_is("a mesh"),
+                      others_are("2 more refused: link y (line 4, box), link a (line 5, mesh)")));
     const auto fitted = read_capsules(file, {}, BoxRule::fitted);
     ASSERT_FALSE(fitted);
-    EXPECT_THAT(fitted.error().what, HasSubstr("1 more refused: link a (line 5, mesh)"));
+    EXPECT_EQ(fitted.error().others, "1 more refused: link a (line 5, mesh)");
 }
 
 TEST_F(UrdfEdges, of_many_links_whose_body_cannot_be_taken_the_first_are_named_and_all_are_counted) {
@@ -170,9 +181,9 @@ TEST_F(UrdfEdges, of_many_links_whose_body_cannot_be_taken_the_first_are_named_a
     const auto refused =
         read_capsules(folder_.write("arm.urdf", "<robot name=\"r\">\n" + links + "</robot>"), {});
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().what, HasSubstr("999 more refused: "));
-    EXPECT_THAT(refused.error().what, HasSubstr(", and 979 further ones"));
-    EXPECT_LT(refused.error().what.size(), 10'000U);
+    EXPECT_THAT(refused.error().others,
+                AllOf(StartsWith("999 more refused: "), EndsWith(", and 979 further ones")));
+    EXPECT_LT(refused.error().reason().size(), 10'000U);
 }
 
 TEST_F(UrdfEdges, a_capsule_is_the_body_that_a_cylinder_and_two_spheres_are) {
@@ -194,8 +205,8 @@ TEST_F(UrdfEdges, a_capsule_is_the_body_that_a_cylinder_and_two_spheres_are) {
         const auto refused =
             body_of("<collision>\n<geometry><capsule " + std::string(numbers) + "/></geometry></collision>");
         ASSERT_FALSE(refused) << numbers;
-        EXPECT_EQ(refused.error().line, 3) << numbers;
-        EXPECT_EQ(refused.error().key, "link a") << numbers;
+        EXPECT_THAT(refused.error(), AllOf(code_is(ErrorCode::bad_value), line_is(3), key_is("link a")))
+            << numbers;
     }
     EXPECT_EQ(body_of("<collision><geometry><capsule radius=\"-1\" length=\"0.3\"/></geometry></collision>")
                   .error()
@@ -214,10 +225,10 @@ TEST_F(UrdfEdges, every_shape_that_is_none_is_in_one_message_with_its_line) {
                                       "</robot>\n"),
         {});
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().line, 3);
-    EXPECT_EQ(refused.error().key, "link z");
-    EXPECT_THAT(refused.error().what,
-                HasSubstr("2 more refused: link y (line 5, capsule), link x (line 7, plane)"));
+    EXPECT_THAT(
+        refused.error(),
+        AllOf(code_is(ErrorCode::unsupported), line_is(3), key_is("link z"), value_is("a <ellipsoid>"),
+              others_are("2 more refused: link y (line 5, capsule), link x (line 7, plane)")));
 }
 
 TEST_F(UrdfEdges, an_axis_of_length_1_to_three_digits_is_made_exact) {
@@ -279,8 +290,8 @@ TEST(ElementName, with_a_control_character_or_without_end_is_refused) {
         const auto rig = read_rig(folder.write(
             "rig.yaml", "extends: " + base + "\nname: named\njoints: {names: [\"" + name + "\"]}\n"));
         ASSERT_FALSE(rig) << name;
-        EXPECT_EQ(rig.error().key, "joints.names");
-        EXPECT_THAT(rig.error().what, HasSubstr("control characters"));
+        EXPECT_THAT(rig.error(), AllOf(code_is(ErrorCode::bad_name), key_is("joints.names"),
+                                       what_is(HasSubstr("control characters"))));
     }
 }
 

@@ -8,21 +8,35 @@
 
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/urdf_document.hpp"
+#include "tests/support/errors/error_fields.hpp"
 
 namespace octoskin::rig {
 namespace {
 
+using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::has_its_fields;
+using testing_support::is_no_error;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::others_are;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class UrdfUnits : public testing::Test {
   protected:
     void TearDown() override { std::filesystem::remove(file_); }
     /// A robot with two links and, on line 3, what joins them.
-    std::string error_of(const std::string& joint) {
+    Error error_of(const std::string& joint) {
         std::ofstream(file_) << "<robot name=\"r\">\n<link name=\"a\"/><link name=\"b\"/>\n"
                              << joint << "\n</robot>\n";
-        const auto document = UrdfDocument::read(file_);
-        return document ? "" : document.error().message();
+        return error_in(UrdfDocument::read(file_));
     }
     static std::string joint(const std::string& type, const std::string& xyz, const std::string& lower,
                              const std::string& upper) {
@@ -37,60 +51,64 @@ class UrdfUnits : public testing::Test {
 };
 
 TEST_F(UrdfUnits, of_an_arm_are_accepted) {
-    EXPECT_EQ(error_of(joint("revolute", "0 0 0.45", "-2.8", "2.8")), "");
-    EXPECT_EQ(error_of(joint("revolute", "0 0 10", "-12.5", "12.5")), "");
-    EXPECT_EQ(error_of(joint("prismatic", "0 0 -10", "0", "10")), "");
+    EXPECT_THAT(error_of(joint("revolute", "0 0 0.45", "-2.8", "2.8")), is_no_error());
+    EXPECT_THAT(error_of(joint("revolute", "0 0 10", "-12.5", "12.5")), is_no_error());
+    EXPECT_THAT(error_of(joint("prismatic", "0 0 -10", "0", "10")), is_no_error());
 }
 
 TEST_F(UrdfUnits, millimetres_in_an_origin_are_refused) {
     for (const char* xyz : {"0 0 450", "10.1 0 0", "0 -450 0", "0 0 1e30"}) {
-        EXPECT_THAT(error_of(joint("revolute", xyz, "-1", "1")),
-                    testing::AllOf(HasSubstr(":3: joint j"), HasSubstr("is it written in millimetres?")))
+        const Error error = error_of(joint("revolute", xyz, "-1", "1"));
+        EXPECT_THAT(error, AllOf(code_is(ErrorCode::out_of_range), line_is(3), key_is("joint j"),
+                                 remedy_is(HasSubstr("millimetres"))))
             << xyz;
+        EXPECT_TRUE(has_its_fields(error));
     }
 }
 
 TEST_F(UrdfUnits, degrees_in_a_limit_are_refused) {
     EXPECT_THAT(error_of(joint("revolute", "0 0 0", "-160", "160")),
-                testing::AllOf(HasSubstr(":3: joint j"), HasSubstr("limits -160 to 160"),
-                               HasSubstr("are they written in degrees?")));
-    EXPECT_THAT(error_of(joint("revolute", "0 0 0", "0", "90")), HasSubstr("degrees"));
+                AllOf(code_is(ErrorCode::out_of_range), line_is(3), key_is("joint j"),
+                      value_is("-160 to 160"), remedy_is(HasSubstr("degrees"))));
+    EXPECT_THAT(error_of(joint("revolute", "0 0 0", "0", "90")), remedy_is(HasSubstr("degrees")));
 }
 
 TEST_F(UrdfUnits, wrong_ones_of_several_joints_are_in_one_message) {
     const std::string second =
         "\n<link name=\"c\"/><joint name=\"k\" type=\"fixed\"><parent link=\"b\"/>"
         "<child link=\"c\"/>\n<origin ";
-    EXPECT_THAT(error_of(joint("revolute", "0 0 450", "-1", "1") + second + "xyz=\"0 500 0\"/></joint>"),
-                testing::AllOf(HasSubstr(":3: joint j"), HasSubstr("1 more refused: joint k (line 4")));
-    EXPECT_THAT(error_of("<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>"
-                         "<origin rpy=\"0 90 0\"/></joint>" +
-                         second + "rpy=\"0 0 90\"/></joint>"),
-                testing::AllOf(HasSubstr(":3: joint j"), HasSubstr("1 more refused: joint k (line 5")));
+    EXPECT_THAT(
+        error_of(joint("revolute", "0 0 450", "-1", "1") + second + "xyz=\"0 500 0\"/></joint>"),
+        AllOf(line_is(3), key_is("joint j"), others_are(StartsWith("1 more refused: joint k (line 4"))));
+    EXPECT_THAT(
+        error_of("<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>"
+                 "<origin rpy=\"0 90 0\"/></joint>" +
+                 second + "rpy=\"0 0 90\"/></joint>"),
+        AllOf(line_is(3), key_is("joint j"), others_are(StartsWith("1 more refused: joint k (line 5"))));
 }
 
 TEST_F(UrdfUnits, millimetres_in_a_sliding_limit_are_refused) {
     EXPECT_THAT(error_of(joint("prismatic", "0 0 0", "0", "500")),
-                HasSubstr("are they written in millimetres?"));
+                AllOf(code_is(ErrorCode::out_of_range), remedy_is(HasSubstr("millimetres"))));
 }
 
 TEST_F(UrdfUnits, degrees_in_a_turn_are_refused_wherever_it_counts) {
     const std::string joint = "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>\n";
-    EXPECT_EQ(error_of(joint + "<origin rpy=\"6.2832 -6.2832 0\"/></joint>"), "");
+    EXPECT_THAT(error_of(joint + "<origin rpy=\"6.2832 -6.2832 0\"/></joint>"), is_no_error());
     for (const char* rpy : {"0 0 90", "-45 0 0", "0 6.3 0", "1e300 0 0", "inf 0 0"}) {
         EXPECT_THAT(error_of(joint + "<origin rpy=\"" + rpy + "\"/></joint>"),
-                    testing::AnyOf(testing::AllOf(HasSubstr(":4: joint j"), HasSubstr(rpy),
-                                                  HasSubstr("is it written in degrees?")),
-                                   HasSubstr("not a usable URDF")))
+                    AnyOf(AllOf(code_is(ErrorCode::out_of_range), line_is(4), key_is("joint j"),
+                                value_is(HasSubstr(rpy)), remedy_is(HasSubstr("degrees"))),
+                          what_is(HasSubstr("not a usable URDF"))))
             << rpy;
     }
     const std::string link = "<link name=\"c\"><collision/>\n<collision>\n<origin rpy=\"0 180 0\"/>";
     EXPECT_THAT(error_of(link + "</collision></link>"),
-                testing::AllOf(HasSubstr(":5: link c"), HasSubstr("is it written in degrees?")));
+                AllOf(line_is(5), key_is("link c"), remedy_is(HasSubstr("degrees"))));
     // What the picture of a robot looks like is none of our business.
     EXPECT_THAT(
         error_of(joint + "</joint><link name=\"d\"><visual><origin rpy=\"0 180 0\"/></visual></link>"),
-        testing::Not(HasSubstr("written in degrees")));
+        Not(remedy_is(HasSubstr("degrees"))));
 }
 
 /// Below link b, a line for each.
@@ -107,11 +125,12 @@ std::string chain_of(int links) {
 }
 
 TEST_F(UrdfUnits, a_robot_of_more_links_than_any_has_is_refused_at_once) {
-    EXPECT_EQ(error_of(chain_of(1998)), "");
+    EXPECT_THAT(error_of(chain_of(1998)), is_no_error());
     // 2 links and 1,999 more with their joints are 4,000 elements; then comes the one too many.
     EXPECT_THAT(error_of(chain_of(1999)),
-                testing::AllOf(HasSubstr(":2002: joint: "), HasSubstr("at most 4000 links and joints")));
-    EXPECT_THAT(error_of(chain_of(100'000)), HasSubstr("at most 4000 links and joints"));
+                AllOf(code_is(ErrorCode::limit_exceeded), line_is(2002), key_is("joint"),
+                      what_is(HasSubstr("4000 links and joints"))));
+    EXPECT_THAT(error_of(chain_of(100'000)), code_is(ErrorCode::limit_exceeded));
 }
 
 TEST_F(UrdfUnits, a_link_of_more_shapes_than_any_has_is_refused) {
@@ -121,15 +140,17 @@ TEST_F(UrdfUnits, a_link_of_more_shapes_than_any_has_is_refused) {
     const std::string joint =
         "<joint name=\"k\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>"
         "<joint name=\"j\" type=\"fixed\"><parent link=\"b\"/><child link=\"c\"/></joint>";
-    EXPECT_EQ(error_of(joint + link + "</link>"), "");
+    EXPECT_THAT(error_of(joint + link + "</link>"), is_no_error());
     const auto capsules = read_capsules(file_, {});
     ASSERT_FALSE(capsules);
-    EXPECT_THAT(capsules.error().message(), testing::AllOf(HasSubstr(":3: link c"), HasSubstr("found 1001")));
+    EXPECT_THAT(capsules.error(),
+                AllOf(code_is(ErrorCode::limit_exceeded), line_is(3), key_is("link c"), value_is("1001")));
 }
 
 TEST_F(UrdfUnits, a_macro_that_is_not_expanded_is_refused) {
     EXPECT_THAT(error_of("<xacro:arm name=\"x\"/>"),
-                testing::AllOf(HasSubstr(":3: xacro:arm"), HasSubstr("run xacro first")));
+                AllOf(code_is(ErrorCode::unsupported), line_is(3), key_is("xacro:arm"),
+                      remedy_is(HasSubstr("run xacro first"))));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST(Calibrating, finds_the_offset_of_a_modelled_sensor_over_a_socket) {
     NodeOnSocket bus(fleet_config(4, 2), setups);
     Dialogue dialogue(question(140), bus.outside().now());
     const auto outcome = converse(dialogue, bus.host(), bus.outside());
-    ASSERT_TRUE(outcome) << outcome.error().message;
+    ASSERT_TRUE(outcome) << outcome.error().message();
     EXPECT_EQ(outcome->offset_quarter_mm, -68);
     EXPECT_EQ(edit_of(question(140), *outcome).key, "device_offset_mm");
     EXPECT_EQ(edit_of(question(140), *outcome).value, "-17.00");
@@ -43,12 +43,14 @@ TEST(Calibrating, finds_the_offset_of_a_modelled_sensor_over_a_socket) {
 TEST(Calibrating, tells_a_persons_mistakes_and_a_dead_node_apart) {
     NodeOnSocket bus(fleet_config(4, 2), std::vector<SensorSetup>(4));
     Dialogue no_such(question(140, 9), bus.outside().now());
-    EXPECT_NE(converse(no_such, bus.host(), bus.outside()).error().message.find("refuses"),
-              std::string::npos);
+    const auto refused = converse(no_such, bus.host(), bus.outside());
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().exit, ExitCode::failed);
+    EXPECT_EQ(refused.error().error.code, ErrorCode::bad_argument) << refused.error().message();
     Question stranger = question(140);
     stranger.node_id = 6;
     Dialogue nobody(stranger, bus.outside().now());
-    EXPECT_EQ(converse(nobody, bus.host(), bus.outside()).error().code, ExitCode::unavailable);
+    EXPECT_EQ(converse(nobody, bus.host(), bus.outside()).error().exit, ExitCode::unavailable);
 }
 
 rig::Rig bench() {
@@ -67,10 +69,19 @@ TEST(Calibrating, finds_node_and_sensor_by_name) {
     EXPECT_EQ(question->inter_measurement_ms, 20);
     const auto no_sensor =
         question_of(bench(), {.node = "1", .sensor = "top", .quantity = {}, .target_mm = 1}, 3);
-    EXPECT_EQ(no_sensor.error().message, "no sensor 'top' on node bench: it has front, left, back, right");
+    ASSERT_FALSE(no_sensor);
+    EXPECT_EQ(no_sensor.error().error.code, ErrorCode::unknown_name);
+    EXPECT_EQ(no_sensor.error().error.key, "--sensor");
+    EXPECT_EQ(no_sensor.error().error.value, "'top'");
+    EXPECT_NE(no_sensor.error().error.what.find("bench, which has front, left, back, right"),
+              std::string::npos);
     const auto no_node =
         question_of(bench(), {.node = "x", .sensor = "back", .quantity = {}, .target_mm = 1}, 3);
-    EXPECT_EQ(no_node.error().message, "no node 'x' in rig bench_one_board: it has bench");
+    ASSERT_FALSE(no_node);
+    EXPECT_EQ(no_node.error().error.code, ErrorCode::unknown_name);
+    EXPECT_EQ(no_node.error().error.key, "--node");
+    EXPECT_EQ(no_node.error().error.value, "'x'");
+    EXPECT_NE(no_node.error().error.what.find("bench_one_board, which has bench"), std::string::npos);
 }
 
 TEST(Calibrating, writes_into_the_rig_and_leaves_mode_and_links_as_they_were) {
@@ -89,7 +100,7 @@ TEST(Calibrating, writes_into_the_rig_and_leaves_mode_and_links_as_they_were) {
     const rig::SensorEdit edit{
         .node = "bench", .sensor = "front", .key = "device_offset_mm", .value = "-17.25"};
     const auto written = write_into_rig(link, edit);
-    ASSERT_TRUE(written) << written.error().message;
+    ASSERT_TRUE(written) << written.error().message();
     EXPECT_TRUE(std::filesystem::is_symlink(link));
     EXPECT_EQ(std::filesystem::status(file).permissions(), perms{0640});
     EXPECT_NE(testing_support::ScratchFolder::read(file).find("device_offset_mm: -17.25"), std::string::npos);
@@ -97,7 +108,7 @@ TEST(Calibrating, writes_into_the_rig_and_leaves_mode_and_links_as_they_were) {
     EXPECT_EQ(folder.entries(), 2) << "nothing left beside it";
     const auto refused = write_into_rig(file, {.node = "bench", .sensor = "top", .key = "x", .value = "1"});
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+    EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
 }
 
 }  // namespace

@@ -52,8 +52,10 @@ Dialogue asked() {
     (void)dialogue.take_frame();
     return dialogue;
 }
-std::string failure(const Dialogue& dialogue) {
-    return dialogue.outcome() && !*dialogue.outcome() ? dialogue.outcome()->error().message : "";
+Error failure(const Dialogue& dialogue) {
+    if (dialogue.outcome() && !*dialogue.outcome()) return dialogue.outcome()->error().error;
+    ADD_FAILURE() << "no error";
+    return {};
 }
 
 TEST(CalibrationDialogue, asks_once_after_a_heartbeat_with_the_rigs_hash) {
@@ -78,7 +80,8 @@ TEST(CalibrationDialogue, names_the_rigs_key_where_a_node_refuses_all_commands) 
     dialogue.on_frame(
         wire::encode(wire::NodeInfo{wire::InfoFault{.kind = wire::FaultKind::commands_refused}}, 7),
         after_ms(15));
-    EXPECT_NE(failure(dialogue).find("refuses_commands"), std::string::npos);
+    EXPECT_EQ(failure(dialogue).code, ErrorCode::no_permission);
+    EXPECT_NE(failure(dialogue).remedy.find("refuses_commands"), std::string::npos);
 }
 
 TEST(CalibrationDialogue, ends_with_what_the_node_found) {
@@ -116,16 +119,18 @@ TEST(CalibrationDialogue, names_each_way_to_fail) {
         if (outcome == CalibrationOutcome::done || outcome == CalibrationOutcome::under_way) continue;
         Dialogue dialogue = asked();
         dialogue.on_frame(frame_of(said(outcome)), after_ms(20));
-        EXPECT_NE(failure(dialogue).find("node 7 'ring' sensor 3 'left': "), std::string::npos) << name;
-        EXPECT_EQ(failure(dialogue).find("does not know"), std::string::npos) << name;
-        EXPECT_EQ(dialogue.outcome()->error().code, ExitCode::failed);
+        EXPECT_EQ(failure(dialogue).key, "node 7 'ring' sensor 3 'left'") << name;
+        EXPECT_NE(failure(dialogue).code, ErrorCode::unsupported) << name << ": an unknown outcome";
+        EXPECT_EQ(dialogue.outcome()->error().exit, ExitCode::failed);
     }
 }
 
 TEST(CalibrationDialogue, does_not_ask_a_node_of_another_configuration_or_version) {
     Dialogue dialogue(question(), kStart);
     dialogue.on_frame(heartbeat(0x1235), after_ms(10));
-    EXPECT_NE(failure(dialogue).find("low half of node_hash 1235, the rig has 1234"), std::string::npos);
+    EXPECT_EQ(failure(dialogue).code, ErrorCode::mismatch);
+    EXPECT_EQ(failure(dialogue).value, "1235");
+    EXPECT_NE(failure(dialogue).what.find("node_hash to be 1234"), std::string::npos);
     EXPECT_EQ(dialogue.take_frame(), std::nullopt);
 
     // A heartbeat of version 2 with a checksum that is right for it: computed apart from the codec.
@@ -145,7 +150,9 @@ TEST(CalibrationDialogue, does_not_ask_a_node_of_another_configuration_or_versio
     frame.data[6] = static_cast<std::uint8_t>(crc >> 8U);
     frame.data[7] = static_cast<std::uint8_t>(crc & 0xFFU);
     other.on_frame(frame, after_ms(10));
-    EXPECT_NE(failure(other).find("protocol version 2, this program 1"), std::string::npos);
+    EXPECT_EQ(failure(other).code, ErrorCode::unsupported);
+    EXPECT_EQ(failure(other).value, "2");
+    EXPECT_NE(failure(other).what.find("protocol version 1"), std::string::npos);
 }
 
 // One lost frame, either way.
@@ -181,9 +188,10 @@ TEST(CalibrationDialogue, gives_up_at_once_a_node_whose_heartbeat_says_that_it_c
         midway.on_frame(beat(0x1234), after_ms(200));
         EXPECT_EQ(midway.outcome().has_value(), is_hopeless) << name;
         if (!is_hopeless) continue;
-        EXPECT_GT(failure(first).size(), 50U) << "a sentence";
-        EXPECT_EQ(failure(first).find("configuration is not that of the rig"), std::string::npos) << name;
-        EXPECT_EQ(first.outcome()->error().code, ExitCode::failed);
+        EXPECT_NE(failure(first).what, "") << name;
+        EXPECT_NE(failure(first).remedy, "") << name;
+        EXPECT_EQ(failure(first).what.find("node_hash"), std::string::npos) << name;
+        EXPECT_EQ(first.outcome()->error().exit, ExitCode::failed);
     }
 }
 
@@ -192,7 +200,8 @@ TEST(CalibrationDialogue, every_wait_ends) {
     silent.on_time(after_ms(1'999));
     EXPECT_EQ(silent.outcome(), std::nullopt);
     silent.on_time(after_ms(2'000));
-    EXPECT_NE(failure(silent).find("no heartbeat"), std::string::npos);
+    EXPECT_EQ(failure(silent).code, ErrorCode::no_answer);
+    EXPECT_NE(failure(silent).what.find("heartbeat"), std::string::npos);
 
     Dialogue deaf = asked();
     deaf.on_time(after_ms(1'010));
@@ -200,14 +209,15 @@ TEST(CalibrationDialogue, every_wait_ends) {
     deaf.on_time(after_ms(3'009));
     EXPECT_EQ(deaf.outcome(), std::nullopt);
     deaf.on_time(after_ms(3'010));
-    EXPECT_NE(failure(deaf).find("does not answer"), std::string::npos);
+    EXPECT_EQ(failure(deaf).code, ErrorCode::no_answer);
+    EXPECT_EQ(deaf.outcome()->error().exit, ExitCode::unavailable);
 
     Dialogue endless = asked();
     endless.on_frame(frame_of(said(CalibrationOutcome::under_way)), after_ms(100));
     endless.on_time(after_ms(100 + 14'290 - 1));
     EXPECT_EQ(endless.outcome(), std::nullopt);
     endless.on_time(after_ms(100 + 14'290));
-    EXPECT_NE(failure(endless).find("its result never arrived"), std::string::npos);
+    EXPECT_EQ(failure(endless).code, ErrorCode::time_limit);
 }
 
 }  // namespace

@@ -33,18 +33,29 @@ class Commanding : public testing::Test {
             .name = "ring", .node_hash = node_hash(fleet_config(4, 2)), .sensors = {"a", "b", "c", "d"}};
         return order;
     }
-    /// What the person reads; for a failure behind its exit code.
-    std::string perform(const Order& order) {
+    Dialogue::Outcome outcome_of(const Order& order) {
         Dialogue dialogue(order, bus_.outside().now());
         const auto held = converse(dialogue, bus_.host(), bus_.outside());
-        if (!held) return held.error().message;
-        const auto& outcome = *dialogue.outcome();
-        if (outcome) return *outcome;
-        return std::to_string(static_cast<int>(outcome.error().code)) + " " + outcome.error().message;
+        if (!held) return unexpected(held.error());
+        return *dialogue.outcome();
+    }
+    /// What the person reads.
+    std::string perform(const Order& order) {
+        const auto outcome = outcome_of(order);
+        return outcome ? *outcome : "failed: " + outcome.error().message();
     }
     std::string perform(CommandCode code, std::uint16_t argument = 0,
                         std::uint8_t sensor = wire::kAllSensors) {
         return perform(order(code, argument, sensor));
+    }
+    /// The error of an order that must fail with this exit code.
+    Error failure(const Order& order, ExitCode exit) {
+        const auto outcome = outcome_of(order);
+        EXPECT_FALSE(outcome) << *outcome;
+        if (outcome) return {};
+        EXPECT_EQ(outcome.error().exit, exit) << outcome.error().message();
+        EXPECT_EQ(outcome.error().error.key, order.whom());
+        return outcome.error().error;
     }
     void go_safe() {
         for (int i = 0; i < 4; ++i) {
@@ -85,8 +96,11 @@ TEST_F(Commanding, another_rate_is_in_force_until_it_is_as_configured_again) {
     EXPECT_THAT(perform(CommandCode::set_rate, 0),
                 AllOf(HasSubstr("set_rate: ranging; "), Not(HasSubstr("another rate"))));
     EXPECT_GT(readings_in_a_second(0), 20U);
-    EXPECT_THAT(perform(CommandCode::set_rate, 10),
-                testing::StartsWith("1 node 5 'ring': it refuses set_rate: 10 ms is less than the timing"));
+    const Error too_fast = failure(order(CommandCode::set_rate, 10), ExitCode::failed);
+    EXPECT_EQ(too_fast.code, ErrorCode::out_of_range);
+    EXPECT_EQ(too_fast.value, "10 ms");
+    EXPECT_THAT(too_fast.what, HasSubstr("refuses set_rate"));
+    EXPECT_THAT(too_fast.remedy, HasSubstr("--period-ms"));
 }
 
 TEST_F(Commanding, identify_blinks_the_light) {
@@ -103,9 +117,10 @@ TEST_F(Commanding, reset_is_believed_only_of_a_run_that_began_anew) {
     EXPECT_THAT(perform(CommandCode::reset), HasSubstr("reset: ")) << "in its first seconds, too";
     EXPECT_GT(bus_.heard().size(), heard);
     bus_.ignore_resets();
-    EXPECT_THAT(
-        perform(CommandCode::reset),
-        testing::StartsWith("1 node 5 'ring': it did not refuse reset, but 5 s later its state is: ranging"));
+    const Error no_reset = failure(order(CommandCode::reset), ExitCode::failed);
+    EXPECT_EQ(no_reset.code, ErrorCode::no_answer);
+    EXPECT_THAT(no_reset.what, HasSubstr("did not refuse reset"));
+    EXPECT_THAT(no_reset.value, testing::StartsWith("ranging"));
 }
 
 TEST_F(Commanding, send_info_prints_every_page) {
@@ -124,29 +139,35 @@ TEST_F(Commanding, send_black_box_is_told_once_the_first_of_it_comes) {
 }
 
 TEST_F(Commanding, a_sensor_that_the_node_has_not_is_never_asked_for) {
-    EXPECT_THAT(perform(CommandCode::stop, 0, 4),
-                testing::StartsWith("64 node 5 'ring': it has no sensor 4; it has 4 of them"));
+    const Error no_sensor = failure(order(CommandCode::stop, 0, 4), ExitCode::usage);
+    EXPECT_EQ(no_sensor.code, ErrorCode::unknown_name);
+    EXPECT_EQ(no_sensor.value, "4");
+    EXPECT_THAT(no_sensor.what, HasSubstr("0 to 3"));
     EXPECT_GT(readings_in_a_second(0), 20U);
 }
 
 TEST_F(Commanding, safe_mode_refuses_what_it_must_and_start_ends_it) {
     go_safe();
-    EXPECT_THAT(perform(CommandCode::stop),
-                testing::StartsWith("1 node 5 'ring': it refuses stop: it takes only start, identify"));
+    const Error safe = failure(order(CommandCode::stop), ExitCode::failed);
+    EXPECT_THAT(safe.what, HasSubstr("refuses stop: it takes only start, identify"));
+    EXPECT_THAT(safe.remedy, HasSubstr("'start'"));
     EXPECT_THAT(perform(CommandCode::send_info), AllOf(HasSubstr("send_info: safe; "), HasSubstr("fault ")));
     EXPECT_THAT(perform(CommandCode::start), HasSubstr("start: ranging; 4 sensors: 4 ranging"));
 }
 
 TEST_F(Commanding, no_heartbeat_and_no_answer_are_two_things) {
     bus_.cut_way_in();
-    EXPECT_THAT(perform(CommandCode::stop),
-                testing::StartsWith("69 node 5 'ring': its heartbeats arrive, but no answer"));
+    const Error no_answer = failure(order(CommandCode::stop), ExitCode::unavailable);
+    EXPECT_EQ(no_answer.code, ErrorCode::no_answer);
+    EXPECT_THAT(no_answer.what, HasSubstr("heartbeats arrive, but no answer"));
     EXPECT_GT(readings_in_a_second(0), 20U);
     bus_.cut_way_out();
-    EXPECT_THAT(perform(CommandCode::stop), testing::StartsWith("69 node 5 'ring': no heartbeat for 2 s"));
+    const Error silent = failure(order(CommandCode::stop), ExitCode::unavailable);
+    EXPECT_EQ(silent.code, ErrorCode::no_answer);
+    EXPECT_THAT(silent.what, HasSubstr("no heartbeat for 2 s"));
     Order stranger = order(CommandCode::stop);
     stranger.node_id = 6;
-    EXPECT_THAT(perform(stranger), HasSubstr("no heartbeat"));
+    EXPECT_THAT(failure(stranger, ExitCode::unavailable).what, HasSubstr("no heartbeat"));
 }
 
 TEST_F(Commanding, a_node_that_falls_silent_after_the_command_is_not_said_to_have_followed) {
@@ -162,16 +183,18 @@ TEST_F(Commanding, a_node_that_falls_silent_after_the_command_is_not_said_to_hav
         inner(descriptor, until);
     };
     ASSERT_TRUE(converse(dialogue, bus_.host(), outside));
-    EXPECT_EQ(dialogue.outcome()->error().code, ExitCode::io_failed);
-    EXPECT_THAT(dialogue.outcome()->error().message, HasSubstr("silent since stop"));
+    EXPECT_EQ(dialogue.outcome()->error().exit, ExitCode::io_failed);
+    EXPECT_EQ(dialogue.outcome()->error().error.code, ErrorCode::no_answer);
+    EXPECT_THAT(dialogue.outcome()->error().error.what, HasSubstr("silent since stop"));
 }
 
 TEST_F(Commanding, a_sensors_name_counts_only_with_the_rigs_configuration) {
     Order by_name = order(CommandCode::stop, 0, 1);
     by_name.known->node_hash ^= 1U;
     by_name.is_sensor_by_name = true;
-    EXPECT_THAT(perform(by_name),
-                testing::StartsWith("78 node 5 'ring': its configuration is not that of the rig"));
+    const Error other_rig = failure(by_name, ExitCode::bad_config);
+    EXPECT_EQ(other_rig.code, ErrorCode::mismatch);
+    EXPECT_THAT(other_rig.what, HasSubstr("its configuration is not that of the rig"));
     EXPECT_TRUE(bus_.heard().empty());
     Order by_number = order(CommandCode::stop, 0, 1);
     by_number.known->node_hash ^= 1U;
@@ -203,7 +226,7 @@ TEST_F(CommandingRefused, the_rigs_key_is_named_whatever_the_command_is) {
     bus_.rig().run_for(Microseconds{3'000'000});
     for (const CommandCode code : {CommandCode::stop, CommandCode::send_info, CommandCode::reset,
                                    CommandCode::identify, CommandCode::set_rate}) {
-        EXPECT_THAT(perform(code), AllOf(HasSubstr("1 node 5"), HasSubstr("refuses_commands")))
+        EXPECT_THAT(failure(order(code), ExitCode::failed).remedy, HasSubstr("refuses_commands"))
             << wire::name(code);
     }
     EXPECT_EQ(bus_.rig().node().state(), wire::NodeState::ranging);
@@ -265,8 +288,8 @@ class ScriptedNode {
         EXPECT_EQ(take()->code, CommandCode::send_info);
         beat(state);
     }
-    [[nodiscard]] std::string failure() const {
-        return dialogue_.outcome() && !*dialogue_.outcome() ? dialogue_.outcome()->error().message : "";
+    [[nodiscard]] Error failure() const {
+        return dialogue_.outcome() && !*dialogue_.outcome() ? dialogue_.outcome()->error().error : Error{};
     }
     [[nodiscard]] const Dialogue& dialogue() const { return dialogue_; }
 
@@ -311,16 +334,21 @@ TEST(CommandDialogue, a_refusal_is_the_counts_growth_and_a_full_count_tells_noth
     ScriptedNode refused(CommandCode::identify);
     refused.go_to_asking_after(7);
     refused.give_pages(8);
-    EXPECT_EQ(refused.failure(), "node 9: it refuses identify: it has no light to blink");
+    EXPECT_EQ(refused.failure().key, "node 9");
+    EXPECT_EQ(refused.failure().code, ErrorCode::unsupported);
+    EXPECT_THAT(refused.failure().what, HasSubstr("refuses identify: it has no light"));
     ScriptedNode full(CommandCode::identify);
     full.go_to_asking_after(255);
     full.give_pages(255);
-    EXPECT_THAT(full.failure(), HasSubstr("is unknown: its counter"));
+    EXPECT_EQ(full.failure().code, ErrorCode::limit_exceeded);
+    EXPECT_EQ(full.failure().value, "255");
+    EXPECT_THAT(full.failure().remedy, HasSubstr("'reset'"));
     ScriptedNode unconfigured(CommandCode::stop);
     unconfigured.go_to_asking_after(0, wire::NodeState::bad_config);
     unconfigured.give_pages(1);
-    EXPECT_EQ(unconfigured.failure(),
-              "node 9: it refuses stop: it has no valid configuration for its board: flash it");
+    EXPECT_EQ(unconfigured.failure().code, ErrorCode::mismatch);
+    EXPECT_THAT(unconfigured.failure().what, HasSubstr("refuses stop: it has no valid configuration"));
+    EXPECT_THAT(unconfigured.failure().remedy, HasSubstr("flash"));
 }
 
 TEST(CommandDialogue, a_start_that_changes_nothing_says_what_stands_against_it) {
@@ -331,7 +359,10 @@ TEST(CommandDialogue, a_start_that_changes_nothing_says_what_stands_against_it) 
     node.pass_ms(4'899);
     EXPECT_FALSE(node.dialogue().outcome());
     node.pass_ms(1);
-    EXPECT_THAT(node.failure(), AllOf(HasSubstr("did not refuse start"), HasSubstr("remove one of the two")));
+    EXPECT_EQ(node.failure().code, ErrorCode::duplicate);
+    EXPECT_THAT(node.failure().what, HasSubstr("did not refuse start"));
+    EXPECT_THAT(node.failure().value, HasSubstr("id_conflict"));
+    EXPECT_THAT(node.failure().remedy, HasSubstr("remove one of the two"));
 }
 
 // Whatever is said or not: 2 s for a heartbeat, 3 x 0.3 s twice, 0.1 s, 5 s; of a reset some seconds more.

@@ -19,11 +19,19 @@ rig::Rig rig_of(const std::string& name) {
 Wish wish(const std::string& node, const std::string& code, const std::string& sensor = "") {
     return {.node = node, .code = code, .sensor = sensor, .period_ms = {}, .seconds = {}};
 }
-std::string refusal_of(const rig::Rig* rig, const Wish& wish) {
+Error refusal_of(const rig::Rig* rig, const Wish& wish) {
     const auto orders = orders_of(rig, wish, 0);
-    if (orders) return "taken";
-    EXPECT_EQ(orders.error().code, ExitCode::usage);
-    return orders.error().message;
+    EXPECT_FALSE(orders);
+    if (orders) return {};
+    EXPECT_EQ(orders.error().exit, ExitCode::usage);
+    return orders.error().error;
+}
+void expect_unknown(const Error& error, const std::string& key, const std::string& value,
+                    const std::string& remedy) {
+    EXPECT_EQ(error.code, ErrorCode::unknown_name) << error.message();
+    EXPECT_EQ(error.key, key);
+    EXPECT_EQ(error.value, value);
+    EXPECT_NE(error.remedy.find(remedy), std::string::npos) << error.message();
 }
 
 TEST(CommandOrder, finds_nodes_and_sensors_by_name_and_by_number) {
@@ -31,7 +39,7 @@ TEST(CommandOrder, finds_nodes_and_sensors_by_name_and_by_number) {
     for (const std::string node : {"bench", "1", "all"}) {
         for (const std::string sensor : {"back", "2"}) {
             const auto orders = orders_of(&bench, wish(node, "stop", sensor), 77);
-            ASSERT_TRUE(orders) << orders.error().message;
+            ASSERT_TRUE(orders) << orders.error().message();
             ASSERT_EQ(orders->size(), 1U);
             const Order& order = orders->front();
             EXPECT_EQ(order.node_id, 1);
@@ -60,18 +68,24 @@ TEST(CommandOrder, all_is_every_sensor_board_of_the_rig_and_not_its_joint_source
 
 TEST(CommandOrder, names_what_there_is_instead) {
     const rig::Rig bench = rig_of("bench_one_board");
-    EXPECT_EQ(refusal_of(&bench, wish("x", "stop")), "no node 'x' in rig bench_one_board: it has bench (1)");
-    EXPECT_EQ(refusal_of(&bench, wish("bench", "stop", "top")),
-              "no sensor 'top' on node 1 'bench': it has front, left, back, right");
+    const Error no_node = refusal_of(&bench, wish("x", "stop"));
+    expect_unknown(no_node, "", "'x'", "bench (1)");
+    EXPECT_NE(no_node.what.find("bench_one_board"), std::string::npos);
+    const Error no_sensor = refusal_of(&bench, wish("bench", "stop", "top"));
+    expect_unknown(no_sensor, "--sensor", "'top'", "front, left, back, right");
+    EXPECT_NE(no_sensor.what.find("node 1 'bench'"), std::string::npos);
     const std::string joints = std::to_string(bench.joints.node_id);
-    EXPECT_EQ(refusal_of(&bench, wish(joints, "stop")),
-              fmt::format("node {} is the rig's joint source: it takes no commands", joints));
-    for (const std::string node : {"bench", "all", "0", "63", "64", "256", "-1", "1x", ""})
-        EXPECT_EQ(refusal_of(nullptr, wish(node, "stop")),
-                  fmt::format("no node '{}': without --rig a node is a number, 1 to 62", node));
+    const Error joint_source = refusal_of(&bench, wish(joints, "stop"));
+    EXPECT_EQ(joint_source.code, ErrorCode::bad_argument);
+    EXPECT_EQ(joint_source.value, fmt::format("node {}, the rig's joint source", joints));
+    for (const std::string node : {"bench", "all", "0", "63", "64", "256", "-1", "1x", ""}) {
+        const Error error = refusal_of(nullptr, wish(node, "stop"));
+        expect_unknown(error, "", "'" + node + "'", "--rig");
+        EXPECT_NE(error.what.find("1 to 62"), std::string::npos);
+    }
     for (const std::string sensor : {"63", "256", "front", "-1"})
-        EXPECT_EQ(refusal_of(nullptr, wish("1", "stop", sensor)),
-                  fmt::format("no sensor '{}': without --rig a sensor is a number, from 0", sensor));
+        expect_unknown(refusal_of(nullptr, wish("1", "stop", sensor)), "--sensor", "'" + sensor + "'",
+                       "--rig");
 }
 
 // An option that would mean nothing is a mistake of whoever typed it.
@@ -82,10 +96,16 @@ TEST(CommandOrder, takes_of_each_option_only_what_the_code_has) {
         const Wish plain = wish("1", name);
         const bool needs_period = code == CommandCode::set_rate;
         EXPECT_EQ(orders_of(nullptr, plain, 0).has_value(), !is_calibration && !needs_period) << name;
+        if (needs_period) {
+            EXPECT_EQ(refusal_of(nullptr, plain).key, "--period-ms");
+        }
         Wish with_period = plain;
         with_period.period_ms = 100;
         const auto rate = orders_of(nullptr, with_period, 0);
         EXPECT_EQ(rate.has_value(), needs_period) << name;
+        if (!rate && !is_calibration) {
+            EXPECT_EQ(rate.error().error.key, "--period-ms") << name;
+        }
         EXPECT_TRUE(!rate || rate->front().command.argument == 100);
         Wish with_seconds = plain;
         with_seconds.seconds = 30;
@@ -99,8 +119,10 @@ TEST(CommandOrder, takes_of_each_option_only_what_the_code_has) {
         EXPECT_EQ(orders_of(nullptr, with_sensor, 0).has_value(), !is_calibration && !is_of_the_node) << name;
     }
     EXPECT_EQ(orders_of(nullptr, wish("1", "identify"), 0)->front().command.argument, 10);
-    EXPECT_NE(refusal_of(nullptr, wish("1", "halt")).find("the commands are start, stop, set_rate"),
-              std::string::npos);
+    const Error halt = refusal_of(nullptr, wish("1", "halt"));
+    EXPECT_EQ(halt.code, ErrorCode::unknown_word);
+    EXPECT_EQ(halt.value, "'halt'");
+    EXPECT_NE(halt.remedy.find("start, stop, set_rate"), std::string::npos);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -18,6 +20,7 @@
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
+#include "host/apps/query/query_answer.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -30,7 +33,7 @@ class AnsweringLater : public testing::Test {
     AnsweringLater() {
         auto opened = ControlSocket::open(file(), loop_,
                                           [](const std::string& request) { return "you said " + request; });
-        EXPECT_TRUE(opened) << opened.error().message;
+        EXPECT_TRUE(opened) << opened.error().message();
         socket_ = std::move(opened).value();
         socket_->answer_later(
             [this](const std::string& request, std::uint64_t ticket, uid_t user) {
@@ -140,6 +143,15 @@ TEST_F(AnsweringLater, tells_it_in_time_though_nobody_else_comes) {
     EXPECT_EQ(gone, taken);
 }
 
+/// The answer to a question too many.
+std::string too_many(const std::string& waiting) {
+    return query_refused({ExitCode::unavailable,
+                          {.code = ErrorCode::limit_exceeded,
+                           .what = "too many questions: " + waiting,
+                           .remedy = "ask again later"}})
+        .dump();
+}
+
 TEST_F(AnsweringLater, is_not_given_up_for_others_however_many_come_and_keeps_nobody_out) {
     std::vector<int> waiting;
     for (std::size_t i = 0; i < ControlSocket::kWaitingOfUserMax; ++i) {
@@ -148,9 +160,7 @@ TEST_F(AnsweringLater, is_not_given_up_for_others_however_many_come_and_keeps_no
     }
     serve([&] {
         for (int i = 0; i < 40; ++i) EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
-        EXPECT_EQ(
-            ask_daemon(file(), "slow").value(),
-            R"({"ok":false,"error":"too many questions: 4 of this user wait; ask again later","code":69})");
+        EXPECT_EQ(ask_daemon(file(), "slow").value(), too_many("4 of this user wait"));
         may_answer_ = true;
         const std::string_view wanted = "at last\n";
         for (const int client : waiting) {
@@ -191,11 +201,11 @@ TEST_F(AnsweringLater, lets_four_of_each_user_wait_and_sixteen_in_all) {
             }
         }
         const auto reported = ask_daemon(file(), "slow");
-        of_root = reported ? *reported : reported.error().message;
+        of_root = reported ? *reported : reported.error().message();
     });
     EXPECT_EQ(gone_.size(), 5U) << "the fifth of each user, and the one of root";
     EXPECT_EQ(tickets_.size(), 21U);
-    EXPECT_EQ(of_root, R"({"ok":false,"error":"too many questions: 16 wait; ask again later","code":69})");
+    EXPECT_EQ(of_root, too_many("16 wait"));
     for (const int client : clients) ::close(client);
 }
 

@@ -26,8 +26,10 @@ TEST(AskDaemon, says_how_to_begin_one_where_there_is_none) {
     const testing_support::ScratchFolder folder;
     const auto nobody = ask_daemon(folder / "nobody", "status");
     ASSERT_FALSE(nobody);
-    EXPECT_EQ(nobody.error().code, ExitCode::unavailable);
-    EXPECT_NE(nobody.error().message.find("octoskin run"), std::string::npos);
+    EXPECT_EQ(nobody.error().exit, ExitCode::unavailable);
+    EXPECT_EQ(nobody.error().error.code, ErrorCode::no_listener);
+    EXPECT_EQ(nobody.error().error.file, folder / "nobody");
+    EXPECT_NE(nobody.error().error.remedy.find("octoskin run"), std::string::npos);
 }
 
 TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_lets_nobody_in) {
@@ -39,9 +41,11 @@ TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_lets_nobody_in) {
     ASSERT_FALSE(answer);
     EXPECT_GE(Clock::now() - begun, 190ms);
     EXPECT_LE(Clock::now() - begun, 1s);
-    EXPECT_EQ(answer.error().code, ExitCode::io_failed);
-    EXPECT_NE(answer.error().message.find("accepts no connection (is it stopped?)"), std::string::npos)
-        << answer.error().message;
+    EXPECT_EQ(answer.error().exit, ExitCode::io_failed);
+    EXPECT_EQ(answer.error().error.code, ErrorCode::no_answer);
+    EXPECT_EQ(answer.error().error.file, folder / "control");
+    EXPECT_NE(answer.error().error.what.find("connection"), std::string::npos) << answer.error().message();
+    EXPECT_NE(answer.error().error.remedy.find("stopped"), std::string::npos) << answer.error().message();
 }
 
 TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_let_us_in_and_is_silent) {
@@ -52,7 +56,8 @@ TEST(AskDaemon, waits_no_longer_than_it_says_for_one_that_let_us_in_and_is_silen
     ASSERT_FALSE(answer);
     EXPECT_GE(Clock::now() - begun, 190ms);
     EXPECT_LE(Clock::now() - begun, 1s);
-    EXPECT_NE(answer.error().message.find("did not answer in time"), std::string::npos);
+    EXPECT_EQ(answer.error().error.code, ErrorCode::no_answer);
+    EXPECT_NE(answer.error().error.what.find("in time"), std::string::npos) << answer.error().message();
 }
 
 /// A question to the map may take a minute; that nobody is there to answer it shows before.
@@ -67,11 +72,13 @@ TEST(AskDaemon, waits_no_longer_for_a_sign_of_life_however_long_the_answer_may_t
         ASSERT_FALSE(answer);
         EXPECT_GE(Clock::now() - begun, 4900ms);
         EXPECT_LE(Clock::now() - begun, 6s);
-        EXPECT_EQ(answer.error().code, ExitCode::io_failed);
-        EXPECT_NE(answer.error().message.find(says), std::string::npos) << answer.error().message;
+        EXPECT_EQ(answer.error().exit, ExitCode::io_failed);
+        EXPECT_EQ(answer.error().error.code, ErrorCode::no_answer);
+        EXPECT_EQ(answer.error().error.file, folder / socket);
+        EXPECT_NE(answer.error().error.what.find(says), std::string::npos) << answer.error().message();
     };
-    std::thread beside([&] { expect_bounded("silent", "did not answer in time"); });  // both wait for 5 s
-    expect_bounded("full", "accepts no connection (is it stopped?)");
+    std::thread beside([&] { expect_bounded("silent", "in time"); });  // both wait for 5 s
+    expect_bounded("full", "connection");
     beside.join();
 }
 
@@ -91,7 +98,7 @@ TEST(AskDaemon, asks_for_a_sign_of_life_before_what_may_take_long) {
     });
     const auto answer = ask_daemon(folder / "control", "query {}", 60s);
     answering.join();
-    ASSERT_TRUE(answer) << answer.error().message;
+    ASSERT_TRUE(answer) << answer.error().message();
     EXPECT_EQ(*answer, "an answer");
     EXPECT_EQ(heard, "hello\nquery {}\n");
 }
@@ -114,7 +121,8 @@ TEST(AskDaemon, takes_no_answer_that_is_nested_deeper_than_any_of_a_daemon) {
     };
     const auto deep = ask_for(std::string(65, '[') + std::string(65, ']') + "\n");
     ASSERT_FALSE(deep);
-    EXPECT_EQ(deep.error().code, ExitCode::bad_data);
+    EXPECT_EQ(deep.error().exit, ExitCode::bad_data);
+    EXPECT_EQ(deep.error().error.code, ErrorCode::foreign_format);
     EXPECT_TRUE(ask_for(std::string(64, '[') + std::string(64, ']') + "\n"));
     EXPECT_TRUE(ask_for("\"\\\"" + std::string(99, '{') + "\"\n")) << "of a text";
 }
@@ -135,10 +143,11 @@ TEST(AskDaemon, says_when_the_daemon_closed_the_connection_and_does_not_wait_the
         closing.join();
         ASSERT_FALSE(answer);
         EXPECT_LE(Clock::now() - begun, 2s);
-        EXPECT_NE(answer.error().message.find(said.empty() ? "closed the connection without an answer"
-                                                           : "closed the connection in mid-answer"),
+        EXPECT_EQ(answer.error().error.code, ErrorCode::no_answer);
+        EXPECT_EQ(answer.error().error.file, folder / "control");
+        EXPECT_NE(answer.error().error.what.find(said.empty() ? "without an answer" : "in mid-answer"),
                   std::string::npos)
-            << answer.error().message;
+            << answer.error().message();
     }
 }
 

@@ -1,19 +1,37 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+
 #include "host/apps/daemon/status.hpp"
+#include "tests/unit/host/apps/daemon/daemon_view_fixture.hpp"
 
 namespace octoskin {
 namespace {
+
+using test::expect_parts_in_text;
+using test::is_problem;
+using test::key_is;
+using test::remedy_has;
+using test::what_has;
+using testing::AllOf;
+using testing::Optional;
 
 constexpr double kRateHz = 20.0;
 constexpr Nanoseconds kPeriod{50'000'000};
 constexpr Nanoseconds kSecond{1'000'000'000};
 constexpr HostTime kBegun{7'000'000'000};
 
-std::string reported(const CameraRecord& camera, Nanoseconds after) {
-    const auto problem = camera_problem(camera, kRateHz, kBegun + after);
-    return problem ? problem->text : "";
+std::optional<Problem> reported(const CameraRecord& camera, Nanoseconds after) {
+    auto problem = camera_problem(camera, kRateHz, kBegun + after);
+    if (problem) expect_parts_in_text(*problem);
+    return problem;
+}
+
+/// A problem of this code of the camera, whose condition contains `part`.
+auto is_of_camera(ProblemCode code, const std::string& part = {}) {
+    return Optional(is_problem(code, "camera", part));
 }
 
 CameraRecord looked_for() {
@@ -25,29 +43,31 @@ CameraRecord looked_for() {
 
 TEST(CameraProblem, is_that_it_was_never_opened) {
     const CameraRecord camera = looked_for();
-    EXPECT_EQ(reported(camera, kSecond), "camera: not opened yet");
-    EXPECT_EQ(reported(camera, 6 * kSecond), "camera: no frame has come yet: not opened yet");
+    EXPECT_THAT(reported(camera, kSecond), is_of_camera(ProblemCode::camera_closed, "not opened yet"));
+    EXPECT_THAT(reported(camera, 6 * kSecond), is_of_camera(ProblemCode::camera_no_frames, "not opened yet"));
 }
 
 TEST(CameraProblem, is_that_it_opens_and_never_shows_anything_however_often) {
     CameraRecord camera = looked_for();
     camera.is_open = true;
-    EXPECT_EQ(reported(camera, 4 * kSecond), "") << "it may just need time";
-    EXPECT_EQ(reported(camera, 6 * kSecond), "camera: no frame has come yet, and it is open");
-    const auto open = camera_problem(camera, kRateHz, kBegun + 6 * kSecond);
+    EXPECT_EQ(reported(camera, 4 * kSecond), std::nullopt) << "it may just need time";
+    const auto open = reported(camera, 6 * kSecond);
+    EXPECT_THAT(open, is_of_camera(ProblemCode::camera_no_frames, "it is open"));
     camera.is_open = false;
     camera.why = "no data in time";
-    EXPECT_EQ(reported(camera, 7 * kSecond), "camera: no frame has come yet: no data in time");
-    EXPECT_EQ(camera_problem(camera, kRateHz, kBegun + 7 * kSecond)->about, open->about)
-        << "the same problem";
+    const auto closed = reported(camera, 7 * kSecond);
+    EXPECT_THAT(closed, is_of_camera(ProblemCode::camera_no_frames, "no data in time"));
+    ASSERT_TRUE(open && closed);
+    EXPECT_TRUE(closed->is_same(*open));
 }
 
 TEST(CameraProblem, is_that_no_frame_has_a_time) {
     CameraRecord camera = looked_for();
     camera.is_open = true;
     camera.frames = camera.untimed = 90;
-    EXPECT_EQ(reported(camera, 6 * kSecond),
-              "camera: 90 frames came, none with a known capture time, and it is open");
+    EXPECT_THAT(reported(camera, 6 * kSecond),
+                Optional(AllOf(is_problem(ProblemCode::camera_no_frames, "camera", "90 frames"),
+                               what_has("it is open"))));
 }
 
 TEST(CameraProblem, is_that_frames_have_no_time_any_more_while_they_come) {
@@ -55,12 +75,11 @@ TEST(CameraProblem, is_that_frames_have_no_time_any_more_while_they_come) {
     camera.is_open = true;
     camera.newest = kBegun + 6 * kSecond;
     camera.newest_untimed = kBegun + 9 * kSecond;
-    EXPECT_THAT(reported(camera, 9 * kSecond + 3 * kPeriod),
-                testing::StartsWith("camera: frames come, but none for three"));
-    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}),
-              "camera: no frame for three periods");
+    EXPECT_THAT(reported(camera, 9 * kSecond + 3 * kPeriod), is_of_camera(ProblemCode::camera_untimed));
+    EXPECT_THAT(reported(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}),
+                is_of_camera(ProblemCode::camera_silent));
     camera.newest = kBegun + 9 * kSecond;
-    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), "");
+    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), std::nullopt);
 }
 
 TEST(CameraProblem, is_that_it_shows_one_image_again_and_again) {
@@ -68,29 +87,30 @@ TEST(CameraProblem, is_that_it_shows_one_image_again_and_again) {
     camera.is_open = true;
     camera.newest = kBegun + 6 * kSecond;
     camera.newest_repeated = kBegun + 9 * kSecond;
-    const auto problem = camera_problem(camera, kRateHz, kBegun + 9 * kSecond + 3 * kPeriod);
+    const auto problem = reported(camera, 9 * kSecond + 3 * kPeriod);
     ASSERT_TRUE(problem);
-    EXPECT_EQ(problem->about, "camera repeats");
+    EXPECT_EQ(problem->code, ProblemCode::camera_repeats);
+    EXPECT_EQ(problem->key, "repeated");
     camera.newest = kBegun + 9 * kSecond;
-    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), "");
+    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), std::nullopt);
     camera.repeats_often = true;
-    const auto still = camera_problem(camera, kRateHz, kBegun + 9 * kSecond + 3 * kPeriod);
+    const auto still = reported(camera, 9 * kSecond + 3 * kPeriod);
     ASSERT_TRUE(still) << "one that differs now and then ends nothing";
-    EXPECT_EQ(still->about, problem->about);
+    EXPECT_TRUE(still->is_same(*problem));
     camera.newest = kBegun + 11 * kSecond;
-    EXPECT_EQ(reported(camera, 11 * kSecond), "") << "none for long";
+    EXPECT_EQ(reported(camera, 11 * kSecond), std::nullopt) << "none for long";
 }
 
 TEST(CameraProblem, is_that_it_fell_silent_and_nothing_while_it_is_well) {
     CameraRecord camera = looked_for();
     camera.is_open = true;
     camera.newest = kBegun + 9 * kSecond;
-    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), "");
-    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}),
-              "camera: no frame for three periods");
+    EXPECT_EQ(reported(camera, 9 * kSecond + 3 * kPeriod), std::nullopt);
+    EXPECT_THAT(reported(camera, 9 * kSecond + 3 * kPeriod + Nanoseconds{1}),
+                is_of_camera(ProblemCode::camera_silent));
     camera.is_open = false;
     camera.why = "gone";
-    EXPECT_EQ(reported(camera, 9 * kSecond), "camera: gone");
+    EXPECT_THAT(reported(camera, 9 * kSecond), is_of_camera(ProblemCode::camera_closed, "gone"));
 }
 
 TEST(CameraProblem, is_no_silence_of_one_that_is_as_slow_as_its_mode) {
@@ -98,11 +118,12 @@ TEST(CameraProblem, is_no_silence_of_one_that_is_as_slow_as_its_mode) {
     camera.is_open = true;
     camera.rate_hz = 5.0;
     camera.newest = kBegun + 9 * kSecond;
-    EXPECT_EQ(reported(camera, 9 * kSecond + Nanoseconds{600'000'000}), "");
-    EXPECT_EQ(reported(camera, 9 * kSecond + Nanoseconds{600'000'001}), "camera: no frame for three periods");
+    EXPECT_EQ(reported(camera, 9 * kSecond + Nanoseconds{600'000'000}), std::nullopt);
+    EXPECT_THAT(reported(camera, 9 * kSecond + Nanoseconds{600'000'001}),
+                is_of_camera(ProblemCode::camera_silent));
     camera.rate_hz = 40.0;
-    EXPECT_EQ(reported(camera, 9 * kSecond + Nanoseconds{75'000'000}), "");
-    EXPECT_NE(reported(camera, 9 * kSecond + Nanoseconds{75'000'001}), "");
+    EXPECT_EQ(reported(camera, 9 * kSecond + Nanoseconds{75'000'000}), std::nullopt);
+    EXPECT_NE(reported(camera, 9 * kSecond + Nanoseconds{75'000'001}), std::nullopt);
 }
 
 TEST(CameraProblem, is_a_mode_of_a_rate_far_off_the_rigs) {
@@ -117,10 +138,11 @@ TEST(CameraProblem, is_a_mode_of_a_rate_far_off_the_rigs) {
         EXPECT_TRUE(camera_rate_problem(camera, kRateHz)) << far;
     }
     camera.rate_hz = 10.0;
-    EXPECT_EQ(camera_rate_problem(camera, 30.0)
-                  ->text.find("camera: its mode of the rig's size has 10 frames a "
-                              "second, the rig 30: "),
-              0U);
+    const auto slow = camera_rate_problem(camera, 30.0);
+    ASSERT_TRUE(slow);
+    expect_parts_in_text(*slow);
+    EXPECT_THAT(*slow, AllOf(is_problem(ProblemCode::camera_rate, "camera", "10 frames a second, the rig 30"),
+                             key_is("camera.rate_hz"), remedy_has("`octoskin cameras`")));
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <iterator>
 #include <list>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -24,6 +25,7 @@
 
 #include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
+#include "host/apps/query/query_answer.hpp"
 #include "tests/support/lingering_connection.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -39,7 +41,7 @@ class ControlSocketTest : public testing::Test {
             ++asked_;
             return request == "large" ? std::string(100'000, 'x') : "you said " + request;
         });
-        EXPECT_TRUE(opened) << opened.error().message;
+        EXPECT_TRUE(opened) << opened.error().message();
         if (opened) socket_ = std::move(opened).value();
     }
     [[nodiscard]] std::filesystem::path file() const { return folder_ / "control"; }
@@ -236,16 +238,23 @@ std::string said_until_the_end(int client) {
     }
 }
 
-constexpr const char* kTooLong =
-    R"({"ok":false,"error":"a request has at most 49152 bytes, this one has more: ask about parts of it","code":64})"
-    "\n";
+/// The line of an answer with this error.
+std::string refusal_line(ExitCode exit, const Error& error) {
+    return query_refused({exit, error}).dump() + "\n";
+}
+
+std::string too_long() {
+    return refusal_line(ExitCode::usage, {.code = ErrorCode::limit_exceeded,
+                                          .what = "a request has at most 49152 bytes, and this one has more",
+                                          .remedy = "ask about parts of it"});
+}
 
 TEST_F(ControlSocketTest, refuses_a_request_without_end_and_goes_on) {
     serve([&] {
         const int client = connect();
         const std::string endless(64 << 10, 'a');
         (void)!::send(client, endless.data(), endless.size(), MSG_NOSIGNAL);
-        EXPECT_EQ(said_until_the_end(client), kTooLong);
+        EXPECT_EQ(said_until_the_end(client), too_long());
         ::close(client);
         EXPECT_TRUE(ask_daemon(file(), "still there"));
     });
@@ -261,7 +270,7 @@ TEST_F(ControlSocketTest, hears_a_long_request_out_before_it_closes) {
         request += "\nstatus\n";
         EXPECT_EQ(::send(client, request.data(), request.size(), MSG_NOSIGNAL),
                   static_cast<ssize_t>(request.size()));
-        EXPECT_EQ(said_until_the_end(client), kTooLong);
+        EXPECT_EQ(said_until_the_end(client), too_long());
         ::close(client);
     });
     EXPECT_EQ(asked_, 0) << "what follows is not asked on a connection that is given up";
@@ -271,7 +280,7 @@ TEST_F(ControlSocketTest, takes_a_request_of_just_the_length_that_there_may_be) 
     const std::string longest(ControlSocket::kRequestMax, 'a');
     serve([&] {
         EXPECT_EQ(ask_daemon(file(), longest).value(), "you said " + longest);
-        EXPECT_EQ(ask_daemon(file(), longest + "a").value() + "\n", kTooLong);
+        EXPECT_EQ(ask_daemon(file(), longest + "a").value() + "\n", too_long());
     });
     EXPECT_EQ(asked_, 1);
 }
@@ -300,9 +309,11 @@ TEST_F(ControlSocketTest, takes_so_many_clients_and_no_more) {
     EXPECT_EQ(socket_->dropped(), 4U);
 }
 
-constexpr const char* kTooMany =
-    R"({"ok":false,"error":"too many clients: 16 are served at once; ask again later","code":69})"
-    "\n";
+std::string too_many() {
+    return refusal_line(ExitCode::unavailable, {.code = ErrorCode::limit_exceeded,
+                                                .what = "too many clients: 16 are served at once",
+                                                .remedy = "ask again later"});
+}
 
 TEST_F(ControlSocketTest, refuses_who_comes_while_all_others_have_asked) {
     serve([&] {
@@ -313,16 +324,16 @@ TEST_F(ControlSocketTest, refuses_who_comes_while_all_others_have_asked) {
             EXPECT_EQ(::send(clients.back(), "a\n", 2, MSG_NOSIGNAL), 2);
             EXPECT_GT(::recv(clients.back(), bytes.data(), bytes.size(), 0), 0);
         }
-        EXPECT_EQ(ask_daemon(file(), "status").value() + "\n", kTooMany);
+        EXPECT_EQ(ask_daemon(file(), "status").value() + "\n", too_many());
         const int slow = connect();
-        EXPECT_EQ(said_until_the_end(slow), kTooMany);
+        EXPECT_EQ(said_until_the_end(slow), too_many());
         EXPECT_EQ(::send(slow, "status\n", 7, MSG_NOSIGNAL), 7) << "let finish what it says";
         ::close(slow);
         // However many knock and stay.
         std::vector<int> knocking;
         for (std::size_t i = 0; i < 3 * ControlSocket::kRefusedMax; ++i) {
             knocking.push_back(connect());
-            EXPECT_EQ(said_until_the_end(knocking.back()), kTooMany);
+            EXPECT_EQ(said_until_the_end(knocking.back()), too_many());
         }
         for (const int client : clients) {
             EXPECT_EQ(::send(client, "b\n", 2, MSG_NOSIGNAL), 2);
@@ -345,7 +356,7 @@ TEST_F(ControlSocketTest, drops_the_one_that_was_silent_longest_for_a_new_one) {
         }
         EXPECT_TRUE(ask_daemon(file(), "status")) << "sixteen that say nothing keep everybody out";
         std::array<char, 8> bytes{};
-        EXPECT_EQ(said_until_the_end(clients.front()), kTooMany);
+        EXPECT_EQ(said_until_the_end(clients.front()), too_many());
         EXPECT_LT(::recv(clients.back(), bytes.data(), bytes.size(), MSG_DONTWAIT), 0);
         for (const int client : clients) ::close(client);
     });
@@ -387,7 +398,7 @@ TEST_F(ControlSocketTest, lets_in_who_comes_while_all_others_have_sent_half_a_re
         const auto begun = std::chrono::steady_clock::now();
         EXPECT_EQ(ask_daemon(file(), "status").value(), "you said status");
         EXPECT_LT(std::chrono::steady_clock::now() - begun, 1s);
-        EXPECT_EQ(said_until_the_end(clients.front()), kTooMany) << "the one that came first";
+        EXPECT_EQ(said_until_the_end(clients.front()), too_many()) << "the one that came first";
         for (std::size_t i = 1; i < clients.size(); ++i) {
             EXPECT_EQ(::send(clients[i], "tus\n", 4, MSG_NOSIGNAL), 4);
             std::array<char, 16> bytes{};
@@ -552,9 +563,13 @@ TEST_F(ControlSocketTest, rests_without_descriptors_and_lets_in_who_waited) {
 TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {
     auto second = ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); });
     ASSERT_FALSE(second);
-    EXPECT_EQ(second.error().message, file().string() + ": another octoskin (process " +
-                                          std::to_string(::getpid()) +
-                                          ") has this socket; stop it, or name another one");
+    EXPECT_EQ(second.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(second.error().error.code, ErrorCode::in_use);
+    EXPECT_EQ(second.error().error.file, file());
+    EXPECT_NE(second.error().error.what.find("(process " + std::to_string(::getpid()) + ")"),
+              std::string::npos)
+        << second.error().message();
+    EXPECT_NE(second.error().error.remedy.find("--socket"), std::string::npos) << second.error().message();
     socket_.reset();
     EXPECT_FALSE(std::filesystem::exists(file()));
     // As a killed one leaves it: a name, and nobody behind.

@@ -13,6 +13,13 @@
 
 namespace octoskin::test {
 
+void expect_parts_in_text(const Problem& problem) {
+    const std::string text = problem.text();
+    EXPECT_FALSE(text.empty()) << name_of(problem.code);
+    for (const std::string& part : {problem.on, problem.what, problem.remedy, problem.key})
+        EXPECT_NE(text.find(part), std::string::npos) << name_of(problem.code) << ": " << part;
+}
+
 Scene daemon_scene() {
     Scene scene = good_scene();
     scene.config.release = Release::once_placed;
@@ -101,21 +108,22 @@ std::unique_ptr<Inputs> DaemonViewTest::inputs_with_joint_socket() {
 
 void DaemonViewTest::send_joints(const std::string& line) const {
     const auto socket = connect_unix_socket(folder_ / "joints", SOCK_DGRAM);
-    ASSERT_TRUE(socket) << socket.error().message;
+    ASSERT_TRUE(socket) << socket.error().message();
     EXPECT_EQ(::send(*socket, line.data(), line.size(), 0), static_cast<ssize_t>(line.size()));
     ::close(*socket);
 }
 
-std::string DaemonViewTest::reported(const std::string& about) const {
-    const std::vector<Problem> all = problems(view_);
-    const auto found = std::ranges::find(all, about, &Problem::about);
-    return found == all.end() ? "" : found->text;
+std::optional<Problem> DaemonViewTest::reported(ProblemCode code, const std::string& on) const {
+    const std::vector<Problem> all = all_reported();
+    const auto found = std::ranges::find_if(
+        all, [&](const Problem& each) { return each.code == code && (on.empty() || each.on == on); });
+    return found == all.end() ? std::nullopt : std::optional(*found);
 }
 
-std::vector<std::string> DaemonViewTest::all_reported() const {
-    std::vector<std::string> texts;
-    for (const Problem& problem : problems(view_)) texts.push_back(problem.text);
-    return texts;
+std::vector<Problem> DaemonViewTest::all_reported() const {
+    std::vector<Problem> all = problems(view_);
+    std::ranges::for_each(all, expect_parts_in_text);
+    return all;
 }
 
 }  // namespace octoskin::test

@@ -2,11 +2,13 @@
 // socketpair, and what else there is to tell, written by hand.
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <memory>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -15,7 +17,46 @@
 #include "tests/support/scratch_folder.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
+namespace octoskin {
+
+inline void PrintTo(ProblemCode code, std::ostream* out) {
+    *out << name_of(code);
+}
+inline void PrintTo(const Problem& problem, std::ostream* out) {
+    *out << name_of(problem.code) << " (" << problem.detail << "): " << problem.text();
+}
+
+}  // namespace octoskin
+
 namespace octoskin::test {
+
+[[nodiscard]] inline auto on_is(const std::string& on) {
+    return testing::Field("on", &Problem::on, on);
+}
+[[nodiscard]] inline auto what_has(const std::string& part) {
+    return testing::Field("what", &Problem::what, testing::HasSubstr(part));
+}
+[[nodiscard]] inline auto remedy_has(const std::string& part) {
+    return testing::Field("remedy", &Problem::remedy, testing::HasSubstr(part));
+}
+[[nodiscard]] inline auto key_is(const std::string& key) {
+    return testing::Field("key", &Problem::key, key);
+}
+[[nodiscard]] inline auto detail_is(const std::string& detail) {
+    return testing::Field("detail", &Problem::detail, detail);
+}
+/// `part` of what is wrong.
+[[nodiscard]] inline auto is_problem(ProblemCode code, const std::string& on, const std::string& part) {
+    return testing::AllOf(testing::Field("code", &Problem::code, code), on_is(on), what_has(part));
+}
+/// The sentence states the node, then its condition.
+[[nodiscard]] inline auto is_unusable_node(const std::string& sentence) {
+    return testing::AllOf(testing::Field("code", &Problem::code, ProblemCode::node_unusable),
+                          testing::Property("text", &Problem::text, sentence));
+}
+
+/// Expects that the sentence contains the parts that a program reads: on, what, remedy and key.
+void expect_parts_in_text(const Problem& problem);
 
 /// The good scene as the daemon maps it, with the one node of it that speaks. At kAllWell there is nothing to
 /// complain about: joints, readings and depth frames are in the map.
@@ -56,9 +97,10 @@ class DaemonViewTest : public testing::Test {
     [[nodiscard]] std::unique_ptr<Inputs> inputs_with_joint_socket();
     void send_joints(const std::string& line) const;
 
-    /// As they are named in the status, by this kind; empty: there is none.
-    [[nodiscard]] std::string reported(const std::string& about) const;
-    [[nodiscard]] std::vector<std::string> all_reported() const;
+    /// The first problem of this code, on this part if one is given; empty if there is none.
+    [[nodiscard]] std::optional<Problem> reported(ProblemCode code, const std::string& on = {}) const;
+    /// In the order of the status. The sentence of each is checked.
+    [[nodiscard]] std::vector<Problem> all_reported() const;
 
     testing_support::ScratchFolder folder_;
     std::string interface_ = "can7";

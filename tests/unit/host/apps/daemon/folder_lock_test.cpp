@@ -28,14 +28,16 @@ TEST(FolderLock, is_held_by_one_at_a_time_whose_process_is_named) {
     std::optional<FolderLock> first;
     {
         auto taken = FolderLock::take(folder);
-        ASSERT_TRUE(taken) << taken.error().message;
+        ASSERT_TRUE(taken) << taken.error().message();
         first.emplace(std::move(taken).value());
     }
     const auto second = FolderLock::take(folder);
     ASSERT_FALSE(second);
-    EXPECT_EQ(second.error().code, ExitCode::cannot_create);
-    EXPECT_NE(second.error().message.find("process " + std::to_string(::getpid())), std::string::npos)
-        << second.error().message;
+    EXPECT_EQ(second.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(second.error().error.code, ErrorCode::in_use);
+    EXPECT_EQ(second.error().error.file, folder);
+    EXPECT_NE(second.error().error.what.find("process " + std::to_string(::getpid())), std::string::npos)
+        << second.error().message();
     EXPECT_TRUE(FolderLock::take(scratch / "another"));
     first.reset();
     EXPECT_TRUE(FolderLock::take(folder));
@@ -50,21 +52,22 @@ TEST(FolderLock, does_not_name_a_process_that_has_ended) {
     ASSERT_TRUE(moving);
     const auto taken = FolderLock::take(scratch.path());
     ASSERT_FALSE(taken);
-    EXPECT_EQ(taken.error().message.find("(process"), std::string::npos) << taken.error().message;
-    EXPECT_NE(taken.error().message.find("octoskin replay"), std::string::npos) << taken.error().message;
+    EXPECT_EQ(taken.error().error.code, ErrorCode::in_use);
+    EXPECT_EQ(taken.error().message().find("(process"), std::string::npos) << taken.error().message();
+    EXPECT_NE(taken.error().error.what.find("octoskin replay"), std::string::npos) << taken.error().message();
 }
 
 /// A replay that began before the daemon does not replace the daemon's maps at its end.
 TEST(FolderLock, is_taken_where_files_are_about_to_be_put_and_keeps_them_out) {
     const testing_support::ScratchFolder scratch;
     auto files = FileSet::begin(FilePlace(scratch.path()));
-    ASSERT_TRUE(files) << files.error().message;
+    ASSERT_TRUE(files) << files.error().message();
     ASSERT_TRUE(files->draft().create_new("fused.ot"));
     const auto taken = FolderLock::take(scratch.path());
-    ASSERT_TRUE(taken) << taken.error().message;
+    ASSERT_TRUE(taken) << taken.error().message();
     const auto refused = files->commit({"fused.ot"}, {});
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+    EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
     EXPECT_FALSE(std::filesystem::exists(scratch / "fused.ot"));
 }
 
@@ -79,7 +82,7 @@ TEST(FolderLock, is_not_taken_while_files_are_moved_into_the_folder) {
             const testing_support::ScratchFolder scratch;
             if (is_lock_there) scratch.write("lock", "");
             auto files = FileSet::begin(FilePlace(scratch.path()));
-            ASSERT_TRUE(files) << files.error().message;
+            ASSERT_TRUE(files) << files.error().message();
             for (const auto& name : names) ASSERT_TRUE(files->draft().create_new(name));
             const auto ready = scratch / FileSet::kReadyFolder;
             std::atomic<bool> is_over = false;
@@ -95,7 +98,7 @@ TEST(FolderLock, is_not_taken_while_files_are_moved_into_the_folder) {
             is_over = true;
             daemon.join();
             EXPECT_FALSE(is_taken);
-            ASSERT_TRUE(put) << put.error().message;
+            ASSERT_TRUE(put) << put.error().message();
             EXPECT_FALSE(std::filesystem::exists(ready));
             EXPECT_TRUE(FolderLock::take(scratch.path()));
         }
@@ -118,7 +121,7 @@ TEST(FolderLock, completes_the_move_of_a_killed_run) {
         const testing_support::ScratchFolder scratch;
         lay_out_half_moved(scratch, has_former);
         const auto taken = FolderLock::take(scratch.path());
-        ASSERT_TRUE(taken) << taken.error().message;
+        ASSERT_TRUE(taken) << taken.error().message();
         for (const char* name : {"fused.ot", "maps.yaml"})
             EXPECT_EQ(testing_support::ScratchFolder::read(scratch / name), "new") << name;
         EXPECT_FALSE(std::filesystem::exists(scratch / ".octoskin-ready"));
@@ -134,10 +137,10 @@ TEST(FolderLock, is_not_taken_where_files_of_a_killed_run_wait_beside_a_daemons_
         if (!obstacle.ends_with('/')) scratch.write(obstacle, "the daemon's");
         const auto refused = FolderLock::take(scratch.path());
         ASSERT_FALSE(refused) << obstacle;
-        EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
+        EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
         for (const std::string& part :
              {"wait in " + (scratch / ".octoskin-ready").string(), std::string("octoskin repair")})
-            EXPECT_NE(refused.error().message.find(part), std::string::npos) << refused.error().message;
+            EXPECT_NE(refused.error().message().find(part), std::string::npos) << refused.error().message();
         EXPECT_EQ(testing_support::ScratchFolder::read(scratch / ".octoskin-ready/fused.ot"), "new");
         EXPECT_EQ(testing_support::ScratchFolder::read(scratch / ".octoskin-ready/.before/fused.ot"),
                   "former");
@@ -182,7 +185,9 @@ TEST(FolderLock, says_why_nothing_can_be_written_there) {
     scratch.write("file", "in the way");
     const auto lock = FolderLock::take(scratch / "file");
     ASSERT_FALSE(lock);
-    EXPECT_NE(lock.error().message.find("file"), std::string::npos);
+    EXPECT_EQ(lock.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(lock.error().error.file, scratch / "file");
+    EXPECT_NE(lock.error().error.remedy.find("--maps"), std::string::npos) << lock.error().message();
     EXPECT_EQ(testing_support::ScratchFolder::read(scratch / "file"), "in the way");
 }
 
@@ -193,14 +198,13 @@ TEST(FolderLock, writes_through_no_link_to_a_file_of_others) {
     std::filesystem::create_symlink("../victim", scratch / "maps/lock");
     const auto refused = FolderLock::take(scratch / "maps");
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find((scratch / "maps/lock").string() + ": is a symbolic link"),
-              std::string::npos)
-        << refused.error().message;
+    EXPECT_EQ(refused.error().error.code, ErrorCode::link);
+    EXPECT_EQ(refused.error().error.file, scratch / "maps/lock");
     std::filesystem::remove(scratch / "maps/lock");
     std::filesystem::create_hard_link(victim, scratch / "maps/lock");
     {
         const auto taken = FolderLock::take(scratch / "maps");
-        ASSERT_TRUE(taken) << taken.error().message;
+        ASSERT_TRUE(taken) << taken.error().message();
         EXPECT_EQ(testing_support::ScratchFolder::read(scratch / "maps/lock"), std::to_string(::getpid()));
         EXPECT_FALSE(FolderLock::take(scratch / "maps"));
     }

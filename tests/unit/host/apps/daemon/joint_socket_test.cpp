@@ -73,7 +73,7 @@ class JointSocketTest : public testing::Test {
   protected:
     void send(std::string_view text) const {
         const auto sender = connect_unix_socket(file_, SOCK_DGRAM);
-        ASSERT_TRUE(sender) << sender.error().message;
+        ASSERT_TRUE(sender) << sender.error().message();
         EXPECT_EQ(::send(*sender, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
         ::close(*sender);
     }
@@ -393,7 +393,9 @@ TEST_F(JointSocketTest, without_room_for_its_thread_is_short_of_a_resource_and_l
     const auto opened = JointSocket::open(folder_ / "other", 3);
     ASSERT_EQ(::pthread_setattr_default_np(&before), 0);
     ASSERT_FALSE(opened);
-    EXPECT_EQ(opened.error().code, ExitCode::no_resources);
+    EXPECT_EQ(opened.error().exit, ExitCode::no_resources);
+    EXPECT_EQ(opened.error().error.code, ErrorCode::no_resources);
+    EXPECT_EQ(opened.error().error.file, folder_ / "other");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
 }
 

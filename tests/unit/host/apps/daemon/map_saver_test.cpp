@@ -283,15 +283,18 @@ TEST(MapSaver, refuses_a_damaged_map_and_one_of_another_resolution_by_name) {
     folder.write("fused.ot", "# Octomap OcTree file\nid OcTree\nsize 9\nres 0.04\ndata\nxx");
     const auto damaged = saver.load(mapping_of(MapConfig{}));
     ASSERT_FALSE(damaged);
-    EXPECT_NE(damaged.error().message.find("fused.ot"), std::string::npos);
+    EXPECT_EQ(damaged.error().error.file, folder / "fused.ot");
+    EXPECT_EQ(damaged.error().error.code, ErrorCode::damaged);
     folder.write("fused.ot", encode_ot(some_map(10)));
     const auto other = saver.load(mapping_of(MapConfig{.resolution_m = 0.02}));
     ASSERT_FALSE(other);
-    EXPECT_EQ(
-        other.error().message,
-        (folder / "fused.ot").string() +
-            ": its voxels are 0.040000 m, the mapping's are 0.020000 m: set map.resolution_m to its former "
-            "value. To begin with an empty map, move fused.ot, fused.bt and fused.snapshot away");
+    const Error& error = other.error().error;
+    EXPECT_EQ(error.file, folder / "fused.ot");
+    EXPECT_EQ(error.code, ErrorCode::mismatch);
+    EXPECT_EQ(error.value, "0.040000 m");
+    EXPECT_NE(error.what.find("0.020000 m"), std::string::npos) << error.what;
+    for (const char* const part : {"map.resolution_m", "fused.ot, fused.bt and fused.snapshot"})
+        EXPECT_NE(error.remedy.find(part), std::string::npos) << error.remedy;
 }
 
 // Who begins from the map of another program has it as a .bt, and who moved a damaged fused.ot away has no
@@ -305,7 +308,7 @@ TEST(MapSaver, goes_on_with_a_bt_if_that_is_all_there_is) {
         const testing_support::ScratchFolder folder;
         folder.write("fused.bt", bytes);
         const auto loaded = MapSaver(folder.path()).load(mapping_of(MapConfig{}));
-        ASSERT_TRUE(loaded) << loaded.error().message;
+        ASSERT_TRUE(loaded) << loaded.error().message();
         ASSERT_TRUE(*loaded);
         EXPECT_EQ(encode_bt((*loaded)->map), octoskins);
         EXPECT_EQ(is_saved_by_octoskin(folder / "fused.bt"), bytes == octoskins);
@@ -320,26 +323,28 @@ TEST(MapSaver, refuses_what_its_next_save_would_destroy) {
     const std::string coloured = "# Octomap OcTree file\nid ColorOcTree\nsize 0\nres 0.04\ndata\n";
     struct Case {
         std::string ot, bt;
-        std::string named;  ///< in the refusal; empty: taken
+        std::string file;  ///< of the refusal; empty: taken
+        ErrorCode code = {};
     };
     const Case cases[] = {
         {ot, encode_bt(some_map(30)), ""},
         {ot, encode_bt(some_map(29)), ""},  // octoskin's own, saved less lately
-        {ot, octomaps, "fused.bt: is another map than fused.ot"},
-        {ot, "not a map at all", "fused.bt: is another map than fused.ot"},
-        {ot, octomaps.substr(0, octomaps.size() - 1), "fused.bt: is another map than fused.ot"},
-        {"", "not a map at all", "fused.bt: the first line is neither"},
-        {"", octomaps.substr(0, octomaps.size() - 1), "fused.bt: byte "},
-        {coloured, "", "fused.ot: its voxels have colours"},
+        {ot, octomaps, "fused.bt", ErrorCode::mismatch},
+        {ot, "not a map at all", "fused.bt", ErrorCode::mismatch},
+        {ot, octomaps.substr(0, octomaps.size() - 1), "fused.bt", ErrorCode::mismatch},
+        {"", "not a map at all", "fused.bt", ErrorCode::foreign_format},
+        {"", octomaps.substr(0, octomaps.size() - 1), "fused.bt", ErrorCode::damaged},
+        {coloured, "", "fused.ot", ErrorCode::unsupported},
     };
     for (const Case& each : cases) {
         const testing_support::ScratchFolder folder;
         if (!each.ot.empty()) folder.write("fused.ot", each.ot);
         if (!each.bt.empty()) folder.write("fused.bt", each.bt);
         const auto loaded = MapSaver(folder.path()).load(mapping_of(MapConfig{.memory_max_mib = 4}));
-        EXPECT_EQ(loaded.has_value(), each.named.empty()) << each.named;
-        const std::string said = loaded ? "" : loaded.error().message;
-        EXPECT_NE(said.find(each.named), std::string::npos) << said;
+        EXPECT_EQ(loaded.has_value(), each.file.empty()) << each.file;
+        if (loaded) continue;
+        EXPECT_EQ(loaded.error().error.code, each.code) << loaded.error().message();
+        EXPECT_EQ(loaded.error().error.file, folder / each.file) << loaded.error().message();
     }
     // What an older octoskin saved has no comment; the two hold the same voxels.
     const testing_support::ScratchFolder folder;
@@ -483,7 +488,7 @@ TEST(MapSaver, loads_any_map_that_it_saved_with_the_same_memory) {
         EXPECT_TRUE(saver.save(map));
         ASSERT_TRUE(saver.finish(kPatience));
         const auto loaded = saver.load(mapping_of(map.config()));
-        ASSERT_TRUE(loaded) << loaded.error().message;
+        ASSERT_TRUE(loaded) << loaded.error().message();
         EXPECT_EQ((*loaded)->map.known_voxels(), map.known_voxels());
         const auto bytes = std::filesystem::file_size(folder / "fused.ot");
         EXPECT_LT(bytes, (3U << 20U) * 3 / 2) << "what the limit for files is derived from";
@@ -498,7 +503,7 @@ TEST(MapSaver, goes_on_with_a_map_that_was_saved_with_wider_clamps) {
     ASSERT_TRUE(saver.finish(kPatience));
     const MapConfig tighter{.log_odds_min = -0.1F, .log_odds_max = 0.5F};
     const auto loaded = saver.load(mapping_of(tighter), kMapping);
-    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_TRUE(loaded) << loaded.error().message();
     EXPECT_EQ((*loaded)->map.known_voxels(), 30U);
     EXPECT_EQ((*loaded)->map.log_odds({32768, 32768, 32700}), 0.5F);
     EXPECT_EQ((*loaded)->map.log_odds({32775, 32768, 32700}), -0.1F);
@@ -513,10 +518,12 @@ TEST(MapSaver, says_what_to_do_about_a_map_that_was_saved_with_more_memory) {
     for (const std::uint32_t less_mib : {1U, 3U}) {
         const auto loaded = saver.load(mapping_of(MapConfig{.memory_max_mib = less_mib}));
         ASSERT_FALSE(loaded);
-        EXPECT_NE(loaded.error().message.find("fused.ot: it was saved with more memory than the " +
-                                              std::to_string(less_mib) + " MiB of map.memory_max_mib: raise"),
-                  std::string::npos)
-            << loaded.error().message;
+        const Error& error = loaded.error().error;
+        EXPECT_EQ(error.code, ErrorCode::too_large) << error.message();
+        EXPECT_EQ(error.file, folder / "fused.ot");
+        EXPECT_NE(error.what.find(std::to_string(less_mib) + " MiB of map.memory_max_mib"), std::string::npos)
+            << error.message();
+        EXPECT_NE(error.remedy.find("mapping file"), std::string::npos) << error.message();
     }
     EXPECT_TRUE(saver.load(mapping_of(MapConfig{.memory_max_mib = 4})));
 }
@@ -529,12 +536,15 @@ TEST(MapSaver, tells_which_mapping_would_not_load_the_map_again) {
     ASSERT_TRUE(saver.finish(kPatience));
     for (std::uint32_t mib = 1; mib < 6; ++mib) {
         const MapConfig next{.memory_max_mib = mib};
-        EXPECT_EQ(why_no_room(map, next).empty(), saver.load(mapping_of(next)).has_value()) << mib;
+        EXPECT_EQ(!why_no_room(map, next), saver.load(mapping_of(next)).has_value()) << mib;
     }
-    EXPECT_EQ(why_no_room(map, MapConfig{.memory_max_mib = 3}),
-              "the map takes 4 MiB, and map.memory_max_mib is 3: make that 4 or more, or end the daemon and "
-              "move the saved map away");
-    EXPECT_EQ(why_no_room(FusedMap(MapConfig{}), MapConfig{.memory_max_mib = 1}), "");
+    const auto error = why_no_room(map, MapConfig{.memory_max_mib = 3});
+    ASSERT_TRUE(error);
+    EXPECT_EQ(error->code, ErrorCode::too_large);
+    EXPECT_EQ(error->key, "map.memory_max_mib");
+    EXPECT_EQ(error->value, "3");
+    EXPECT_NE(error->remedy.find("4"), std::string::npos) << error->remedy;
+    EXPECT_FALSE(why_no_room(FusedMap(MapConfig{}), MapConfig{.memory_max_mib = 1}));
 }
 
 /// Half of its space is counted, which takes three times as much as log-odds, and may take 3/16 of the limit.
@@ -549,8 +559,8 @@ TEST(MapSaver, goes_on_with_no_less_memory_than_its_counts_need) {
     }
     ASSERT_LT(map.memory_bytes(), std::size_t{1} << 20U);
     ASSERT_GT(map.layers().counts.bytes_at_most(), std::size_t{2} << 20U);
-    EXPECT_FALSE(why_no_room(map, MapConfig{.memory_max_mib = 8}).empty());
-    EXPECT_EQ(why_no_room(map, MapConfig{.memory_max_mib = 16}), "");
+    EXPECT_TRUE(why_no_room(map, MapConfig{.memory_max_mib = 8}));
+    EXPECT_FALSE(why_no_room(map, MapConfig{.memory_max_mib = 16}));
 }
 
 TEST(MapSaver, saves_the_last_map_without_a_copy_of_it) {

@@ -12,6 +12,27 @@
 namespace octoskin {
 namespace {
 
+/// A problem whose sentence is "ON: WHAT", or WHAT if `on` is empty.
+Problem problem_of(ProblemCode code, const std::string& on, const std::string& what) {
+    return {.code = code, .on = on, .what = what};
+}
+Problem so() {
+    return problem_of(ProblemCode::log_stuck, "", "it is so");
+}
+Problem in_doubt() {
+    return problem_of(ProblemCode::time_in_doubt, "", "the time is in doubt");
+}
+Problem dead(const std::string& sensor) {
+    return problem_of(ProblemCode::sensor_not_ranging, sensor, "dead");
+}
+Problem closed_camera(const std::string& why) {
+    return {
+        .code = ProblemCode::camera_closed, .on = "camera", .what = why, .detail = why, .subject = "camera"};
+}
+Problem lost_node(const std::string& node) {
+    return {.code = ProblemCode::node_unusable, .on = node, .what = "lost", .subject = node};
+}
+
 class ProblemLogTest : public testing::Test {
   protected:
     ProblemLogTest() : before_(spdlog::default_logger()) {
@@ -37,46 +58,73 @@ class ProblemLogTest : public testing::Test {
 };
 
 TEST_F(ProblemLogTest, tells_each_when_it_comes_and_when_it_goes) {
-    EXPECT_EQ(reported({{"a", "it is so"}}), "warning it is so\n");
-    EXPECT_EQ(reported({{"a", "it is so"}}), "");
+    EXPECT_EQ(reported({so()}), "warning it is so\n");
+    EXPECT_EQ(reported({so()}), "");
     EXPECT_EQ(reported({}), "info over: it is so\n");
     EXPECT_EQ(reported({}), "");
 }
 
 TEST_F(ProblemLogTest, takes_a_number_that_grows_for_the_same) {
-    EXPECT_NE(reported({{"lost", "3 frames lost"}}), "");
-    EXPECT_EQ(reported({{"lost", "14 frames lost"}}), "");
+    EXPECT_NE(reported({problem_of(ProblemCode::kernel_dropped, "", "3 frames lost")}), "");
+    EXPECT_EQ(reported({problem_of(ProblemCode::kernel_dropped, "", "14 frames lost")}), "");
     EXPECT_EQ(reported({}), "info over: 14 frames lost\n");
 }
 
 TEST_F(ProblemLogTest, tells_those_apart_whose_names_differ_in_a_digit) {
-    EXPECT_NE(reported({{"node 1 sensor 3", "node 1 sensor 3: dead"}}), "");
-    EXPECT_EQ(reported({{"node 1 sensor 3", "node 1 sensor 3: dead"},
-                        {"node 1 sensor 13", "node 1 sensor 13: dead"}}),
+    EXPECT_NE(reported({dead("node 1 sensor 3")}), "");
+    EXPECT_EQ(reported({dead("node 1 sensor 3"), dead("node 1 sensor 13")}),
               "warning node 1 sensor 13: dead\n");
-    EXPECT_EQ(reported({{"node 2 sensor 3", "node 2 sensor 3: dead"}}),
+    EXPECT_EQ(reported({dead("node 2 sensor 3")}),
               "warning node 2 sensor 3: dead\ninfo over: node 1 sensor 3: dead\n"
               "info over: node 1 sensor 13: dead\n");
-    EXPECT_EQ(reported({{"can0", "can0: down"}}), "warning can0: down\ninfo over: node 2 sensor 3: dead\n");
-    EXPECT_EQ(reported({{"can1", "can1: down"}}), "warning can1: down\ninfo over: can0: down\n");
+    const Problem can0 = problem_of(ProblemCode::can_link, "can0", "down");
+    const Problem can1 = problem_of(ProblemCode::can_link, "can1", "down");
+    EXPECT_EQ(reported({can0}), "warning can0: down\ninfo over: node 2 sensor 3: dead\n");
+    EXPECT_EQ(reported({can1}), "warning can1: down\ninfo over: can0: down\n");
+}
+
+TEST_F(ProblemLogTest, distinguishes_problems_on_one_part_by_code_and_detail) {
+    const Problem stamps{
+        .code = ProblemCode::time_in_doubt, .what = "the stamps went back", .detail = "stamps"};
+    const Problem exchanges{
+        .code = ProblemCode::time_in_doubt, .what = "two exchanges differ", .detail = "exchanges"};
+    Problem back = stamps;
+    back.code = ProblemCode::time_back;
+    back.what = "the time went back";
+    EXPECT_FALSE(stamps.is_same(exchanges));
+    EXPECT_FALSE(stamps.is_same(back));
+    EXPECT_EQ(reported({stamps}), "warning the stamps went back\n");
+    EXPECT_EQ(reported({stamps, exchanges}), "warning two exchanges differ\n");
+    EXPECT_EQ(reported({exchanges, back}), "warning the time went back\ninfo over: the stamps went back\n");
+}
+
+TEST_F(ProblemLogTest, writes_the_part_its_condition_and_the_remedy) {
+    EXPECT_EQ(reported({{.code = ProblemCode::camera_silent,
+                         .on = "camera",
+                         .what = "no frame",
+                         .remedy = "plug it in"}}),
+              "warning camera: no frame: plug it in\n");
+    EXPECT_EQ(
+        reported({{.code = ProblemCode::joints_missing, .what = "no joint states", .remedy = "send them"}}),
+        "warning no joint states: send them\ninfo over: camera: no frame: plug it in\n");
 }
 
 TEST_F(ProblemLogTest, tells_one_that_comes_and_goes_once) {
+    const Problem silent = problem_of(ProblemCode::camera_silent, "", "no frame");
     std::string all;
     constexpr Nanoseconds kTurn{50'000'000};
     for (int turn = 0; turn < 280; ++turn)  // 14 s
-        all += reported(turn % 4 < 2 ? std::vector<Problem>{{"silent", "no frame"}} : std::vector<Problem>{},
-                        kTurn);
+        all += reported(turn % 4 < 2 ? std::vector<Problem>{silent} : std::vector<Problem>{}, kTurn);
     EXPECT_EQ(all, "warning no frame\n");
     EXPECT_EQ(reported({}, ProblemLog::kOver - 3 * kTurn), "");
     EXPECT_EQ(reported({}, 3 * kTurn), "info over: no frame\n");
-    EXPECT_EQ(reported({{"silent", "no frame"}}, kTurn), "warning no frame\n");
+    EXPECT_EQ(reported({silent}, kTurn), "warning no frame\n");
 }
 
 /// A clock in doubt for 2 s of each 4.5 s.
 std::vector<Problem> doubtful(Nanoseconds at) {
     const bool is_there = at % Nanoseconds{4'500'000'000} < Nanoseconds{2'000'000'000};
-    return is_there ? std::vector<Problem>{{"clock", "the time is in doubt"}} : std::vector<Problem>{};
+    return is_there ? std::vector<Problem>{in_doubt()} : std::vector<Problem>{};
 }
 
 TEST_F(ProblemLogTest, tells_one_that_flaps_for_17_minutes_in_few_lines_and_how_often_it_did) {
@@ -92,7 +140,7 @@ TEST_F(ProblemLogTest, tells_one_that_flaps_for_17_minutes_in_few_lines_and_how_
     std::string end;
     for (Nanoseconds at{0}; at < std::chrono::seconds(600); at += kTurn) end += reported({}, kTurn);
     EXPECT_EQ(end, "info over: the time is in doubt (it came and went 227 times)\n");
-    EXPECT_EQ(reported({{"clock", "the time is in doubt"}}, kTurn), "warning the time is in doubt\n");
+    EXPECT_EQ(reported({in_doubt()}, kTurn), "warning the time is in doubt\n");
     EXPECT_EQ(reported({}, ProblemLog::kOver), "info over: the time is in doubt\n") << "that was long ago";
 }
 
@@ -101,29 +149,29 @@ TEST_F(ProblemLogTest, tells_one_that_flaps_as_the_log_would_have_it_less_and_le
     int lines = 0;
     const HostTime begun = now_;
     while (now_ - begun < std::chrono::hours(24)) {
-        const std::string text = reported(
-            lines % 2 == 0 ? std::vector<Problem>{{"clock", "the time is in doubt"}} : std::vector<Problem>{},
-            Nanoseconds{500'000'000});
+        const std::string text =
+            reported(lines % 2 == 0 ? std::vector<Problem>{in_doubt()} : std::vector<Problem>{},
+                     Nanoseconds{500'000'000});
         lines += static_cast<int>(std::ranges::count(text, '\n'));
     }
     EXPECT_LE(lines, 2 * 24 * 12 + 30) << "one turn in five minutes";
     EXPECT_GE(lines, 2 * 24 * 11);
 }
 
-TEST_F(ProblemLogTest, takes_a_sentence_that_another_replaced_for_no_problem_that_is_over) {
-    EXPECT_EQ(reported({{"camera: unplugged", "camera: unplugged", "camera"}}),
-              "warning camera: unplugged\n");
-    EXPECT_EQ(reported({{"camera: no such file", "camera: no such file", "camera"}}),
-              "warning camera: no such file\n");
-    EXPECT_EQ(reported({{"camera: no such file", "camera: no such file", "camera"}}), "");
-    EXPECT_EQ(reported({{"node 1: lost", "node 1: lost", "node 1"}}),
-              "warning node 1: lost\ninfo over: camera: no such file\n");
+TEST_F(ProblemLogTest, reports_no_end_of_a_problem_that_another_of_its_subject_replaced) {
+    EXPECT_EQ(reported({closed_camera("unplugged")}), "warning camera: unplugged\n");
+    EXPECT_EQ(reported({closed_camera("no such file")}), "warning camera: no such file\n");
+    EXPECT_EQ(reported({closed_camera("no such file")}), "");
+    EXPECT_EQ(reported({lost_node("node 1")}), "warning node 1: lost\ninfo over: camera: no such file\n");
 }
 
 TEST_F(ProblemLogTest, takes_none_for_over_that_another_hides_and_tells_it_once) {
-    const Problem lies{"sensor 3 camera", "sensor 3: lies", {}, "node 1"};
-    const Problem lost{"node 1: lost", "node 1: lost", "node 1"};
-    const Problem other{"node 2: lost", "node 2: lost", "node 2"};
+    const Problem lies{.code = ProblemCode::sensor_contradicts_camera,
+                       .on = "sensor 3",
+                       .what = "lies",
+                       .hidden_by = "node 1"};
+    const Problem lost = lost_node("node 1");
+    const Problem other = lost_node("node 2");
     EXPECT_EQ(reported({lies}), "warning sensor 3: lies\n");
     EXPECT_EQ(reported({lost}), "warning node 1: lost\n");
     EXPECT_EQ(reported({lost}), "");
@@ -136,12 +184,12 @@ TEST_F(ProblemLogTest, takes_none_for_over_that_another_hides_and_tells_it_once)
 }
 
 TEST_F(ProblemLogTest, takes_none_for_over_while_they_cannot_be_judged) {
-    EXPECT_EQ(reported({{"a", "it is so"}}), "warning it is so\n");
+    EXPECT_EQ(reported({so()}), "warning it is so\n");
     is_settling_ = true;
     EXPECT_EQ(reported({}), "");
     EXPECT_EQ(reported({}), "");
     is_settling_ = false;
-    EXPECT_EQ(reported({{"a", "it is so"}}), "");
+    EXPECT_EQ(reported({so()}), "");
     EXPECT_EQ(reported({}), "info over: it is so\n");
 }
 

@@ -217,7 +217,7 @@ TEST_F(QueryServerTest, ends_a_question_that_takes_too_long) {
     ask(hasty, long_one(), 1);
     const Json path_answer = answers(hasty, 1)[1];
     EXPECT_FALSE(path_answer.at("ok").get<bool>());
-    EXPECT_EQ(path_answer.at("code"), static_cast<int>(ExitCode::unavailable));
+    EXPECT_EQ(path_answer.at("exit"), static_cast<int>(ExitCode::unavailable));
     QueryRequest pockets;
     pockets.kind = QueryKind::pockets;
     pockets.path = {{0.0}};
@@ -225,7 +225,7 @@ TEST_F(QueryServerTest, ends_a_question_that_takes_too_long) {
     ask(hasty, pockets, 2);
     const Json pockets_answer = answers(hasty, 1)[2];
     EXPECT_FALSE(pockets_answer.at("ok").get<bool>());
-    EXPECT_EQ(pockets_answer.at("code"), static_cast<int>(ExitCode::unavailable));
+    EXPECT_EQ(pockets_answer.at("exit"), static_cast<int>(ExitCode::unavailable));
 }
 
 TEST_F(QueryServerTest, states_when_the_map_was_as_it_answers) {

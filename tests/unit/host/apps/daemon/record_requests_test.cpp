@@ -14,6 +14,7 @@
 #include <system_error>
 #include <thread>
 
+#include "host/core/text/printable.hpp"
 #include "tests/support/scratch_folder.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
 
@@ -22,17 +23,23 @@ namespace {
 
 using Json = nlohmann::json;
 
+std::string quoted(const std::string& folder) {
+    return "'" + printable(folder) + "'";
+}
+
 class RecordRequestsTest : public testing::Test {
   protected:
     Json ask(const std::string& line) {
         EXPECT_TRUE(RecordRequests::is_one(line)) << line;
         return Json::parse(requests_.answer(line, settings_, pipeline_, HostTime{1'000'000'000}));
     }
-    void expect_refused(const std::string& line, const std::string& why) {
+    Json expect_refused(const std::string& line, ErrorCode code, const std::string& value = {}) {
         const Json answer = ask(line);
         EXPECT_FALSE(answer["ok"].get<bool>()) << line;
-        EXPECT_NE(answer["error"].get<std::string>().find(why), std::string::npos) << line << answer;
+        EXPECT_EQ(answer["error"]["code"], std::string(name_of(code))) << line << answer;
+        EXPECT_EQ(answer["error"].value("value", ""), value) << line << answer;
         EXPECT_TRUE(answer["recording"].is_null()) << line;
+        return answer["error"];
     }
 
     testing_support::ScratchFolder folder_;
@@ -52,34 +59,38 @@ class RecordRequestsTest : public testing::Test {
 
 TEST_F(RecordRequestsTest, refuses_what_is_no_request_and_begins_nothing) {
     for (const char* const arguments : {"", " ", "x /tmp/a", "nan /tmp/a", "-1 /tmp/a", "1e7 /tmp/a",
-                                        "inf /tmp/a", "1", "1/tmp/a", "1\t/tmp/a"})
-        expect_refused(std::string("record start ") + arguments, "expected: record start SECONDS FOLDER");
+                                        "inf /tmp/a", "1", "1/tmp/a", "1\t/tmp/a"}) {
+        const Json error = expect_refused(std::string("record start ") + arguments, ErrorCode::bad_argument);
+        EXPECT_EQ(error["message"], "expected: record start SECONDS FOLDER");
+    }
     for (const char* const folder : {"", "a", "./a", "../a", "~/a", "\xff"})
-        expect_refused(std::string("record start 0 ") + folder, "is no absolute path");
+        expect_refused(std::string("record start 0 ") + folder, ErrorCode::bad_value, quoted(folder));
     for (const char* const line :
-         {"record ", "record start", "record stopped", "record  status", "record STOP"})
-        expect_refused(line, "unknown request");
+         {"record ", "record start", "record stopped", "record  status", "record STOP"}) {
+        const Json error = expect_refused(line, ErrorCode::bad_argument);
+        EXPECT_NE(error.value("remedy", "").find("record stop [FOLDER], record status"), std::string::npos);
+    }
     for (const char* const folder :
          {"/tmp/a\tb", "/tmp/\x1b[31mred", "/tmp/a\r", "/tmp/\u009b31m", "/tmp/\u202etxt", "/tmp/\xff"}) {
         for (const char* const request : {"record start 0 ", "record stop "})
-            expect_refused(request + std::string(folder), "may have no control characters");
+            expect_refused(request + std::string(folder), ErrorCode::bad_name, quoted(folder));
     }
-    expect_refused("record start 0 /tmp/\x1b[31mred", "'/tmp/\\x1b[31mred'");
-    expect_refused("record stop", "nothing is being recorded");
-    expect_refused("record stop /tmp/a", "nothing is being recorded");
-    expect_refused("record stop here", "is no absolute path");
+    expect_refused("record start 0 /tmp/\x1b[31mred", ErrorCode::bad_name, "'/tmp/\\x1b[31mred'");
+    expect_refused("record stop", ErrorCode::no_data);
+    expect_refused("record stop /tmp/a", ErrorCode::no_data);
+    expect_refused("record stop here", ErrorCode::bad_value, "'here'");
     for (const char* const request : {"record start 0 /", "record stop /"})
-        expect_refused(request + std::string(40'000, 'a'), "at most 4095 bytes, and this one has 40001");
+        expect_refused(request + std::string(40'000, 'a'), ErrorCode::bad_name, "40001 bytes");
     EXPECT_EQ(ask("record status")["ok"], true);
 }
 
 TEST_F(RecordRequestsTest, refuses_to_begin_without_memory_or_thread_and_begins_when_there_is_some) {
     const std::string start = "record start 0 " + (folder_ / "recording").string();
     before_copy_ = [] { throw std::bad_alloc(); };
-    expect_refused(start, "no memory for a copy of the map (");
+    expect_refused(start, ErrorCode::no_resources);
     EXPECT_NE(requests_.refusal().find("no memory"), std::string::npos);
     before_copy_ = [] { throw std::system_error(EAGAIN, std::generic_category()); };
-    expect_refused(start, "no thread left for a recording (Resource temporarily unavailable)");
+    expect_refused(start, ErrorCode::no_resources);
     EXPECT_NE(requests_.refusal().find("no thread"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "recording"));
     before_copy_ = [] {};
@@ -94,8 +105,9 @@ TEST_F(RecordRequestsTest, refuses_a_folder_that_is_not_empty_and_leaves_no_trac
     const Json before = ask("record status");
     const Json refused = ask("record start 0 " + folder_.path().string());
     EXPECT_FALSE(refused["ok"].get<bool>());
-    EXPECT_EQ(refused["code"], 73);
-    EXPECT_NE(refused["error"].get<std::string>().find("is not empty"), std::string::npos) << refused;
+    EXPECT_EQ(refused["exit"], 73);
+    EXPECT_EQ(refused["error"]["code"], "already_exists") << refused;
+    EXPECT_EQ(refused["error"]["file"], folder_.path().string()) << refused;
     EXPECT_EQ(ask("record status"), before);
     EXPECT_EQ(requests_.refusal(), "");
     EXPECT_TRUE(ask("record start 0 " + (folder_ / "next").string())["ok"].get<bool>());
@@ -109,7 +121,8 @@ TEST_F(RecordRequestsTest, refuses_a_name_that_the_daemon_uses_itself) {
           "joints", "control.lock", "fused.ot/", "x/../fused.ot", "fused.ot/."}) {
         const Json refused = ask("record start 0 " + (folder_.path() / name).string());
         EXPECT_FALSE(refused["ok"].get<bool>()) << name;
-        EXPECT_EQ(refused["code"], 64) << name;
+        EXPECT_EQ(refused["exit"], 64) << name;
+        EXPECT_EQ(refused["error"]["code"], "bad_name") << name;
         EXPECT_FALSE(std::filesystem::exists(folder_.path() / name)) << name;
     }
     EXPECT_TRUE(ask("record start 0 " + (folder_ / "fused").string())["ok"].get<bool>());
@@ -155,8 +168,9 @@ TEST_F(RecordRequestsTest, ends_whole_and_says_why_when_the_buss_time_leaps) {
 }
 
 TEST_F(RecordRequestsTest, makes_no_folder_above_its_own) {
-    expect_refused("record start 0 " + (folder_ / "no disk/recording").string(),
-                   "there is no " + (folder_ / "no disk").string());
+    const Json error =
+        expect_refused("record start 0 " + (folder_ / "no disk/recording").string(), ErrorCode::not_found);
+    EXPECT_EQ(error["file"], (folder_ / "no disk").string());
     EXPECT_FALSE(std::filesystem::exists(folder_ / "no disk"));
 }
 
@@ -165,8 +179,10 @@ TEST_F(RecordRequestsTest, ends_no_recording_but_the_one_that_is_named) {
     EXPECT_TRUE(ask("record start 0 " + folder + "/")["ok"].get<bool>());
     const Json others = ask("record stop " + (folder_ / "another").string());
     EXPECT_FALSE(others["ok"].get<bool>());
-    EXPECT_EQ(others["error"],
-              (folder_ / "another").string() + " is not being recorded; the recording goes to " + folder);
+    EXPECT_EQ(others["exit"], 69);
+    EXPECT_EQ(others["error"]["code"], "no_data");
+    EXPECT_EQ(others["error"]["file"], (folder_ / "another").string());
+    EXPECT_EQ(others["recording"]["folder"], folder);
     EXPECT_EQ(others["recording"]["state"], "recording");
     const Json own = ask("record stop " + folder_.path().string() + "/./one/");
     EXPECT_TRUE(own["ok"].get<bool>()) << own;
@@ -203,7 +219,10 @@ TEST_F(RecordRequestsTest, records_to_one_folder_at_a_time) {
     EXPECT_EQ(ask("record start 0 " + first)["recording"]["folder"], first) << "a folder may have blanks";
     const Json second = ask("record start 0 " + (folder_ / "second").string());
     EXPECT_FALSE(second["ok"].get<bool>());
-    EXPECT_NE(second["error"].get<std::string>().find("already recording to " + first), std::string::npos)
+    EXPECT_EQ(second["exit"], 73);
+    EXPECT_EQ(second["error"]["code"], "in_use") << second;
+    EXPECT_EQ(second["error"]["file"], first) << second;
+    EXPECT_NE(second["error"].value("remedy", "").find("octoskin record --stop"), std::string::npos)
         << second;
     EXPECT_TRUE(ask("record stop")["ok"].get<bool>());
     requests_.finish(std::chrono::seconds(20));

@@ -137,7 +137,7 @@ bool record_and_replay(const test::Scene& scene, std::int64_t allocations, std::
     EXPECT_TRUE(order);
     Pipeline again = test::make_pipeline(scene);
     const OrderedOutcome outcome = replay_in_order(again.builder(), *order, nullptr);
-    EXPECT_FALSE(outcome.order_error) << outcome.order_error->what;
+    EXPECT_FALSE(outcome.order_error) << outcome.order_error->message();
     EXPECT_EQ(order->trailer()->is_complete(), recorder.is_complete());
     if (recorder.is_complete()) {
         EXPECT_EQ(bytes_of(again.map()), live) << times << " from allocation " << allocations;
@@ -217,7 +217,7 @@ TEST(QueryServerWithoutMemory, answers_and_goes_on) {
     is_memory_of_others_gone = true;
     const auto refused = ask(1);
     EXPECT_FALSE(refused["ok"].get<bool>());
-    EXPECT_EQ(refused["code"], static_cast<int>(ExitCode::unavailable));
+    EXPECT_EQ(refused["exit"], static_cast<int>(ExitCode::unavailable));
     is_memory_of_others_gone = false;
     EXPECT_TRUE(ask(2)["ok"].get<bool>());
 }

@@ -63,6 +63,12 @@ class RecordingWriterTest : public testing::Test {
     std::string read(const std::string& name) const {
         return testing_support::ScratchFolder::read(folder_ / ("recording/" + name));
     }
+    void expect_error(const RecordingWriter& writer, ErrorCode code, const std::string& file) const {
+        const auto error = writer.error();
+        ASSERT_TRUE(error);
+        EXPECT_EQ(error->code, code) << error->message();
+        EXPECT_EQ(error->file, folder_ / file) << error->message();
+    }
     testing_support::ScratchFolder folder_;
 };
 
@@ -70,33 +76,33 @@ TEST_F(RecordingWriterTest, ends_with_an_error_where_its_folder_or_a_file_of_it_
     for (const char* const gone : {"recording", "recording/can.log", "recording/order.log"}) {
         std::filesystem::remove_all(folder_ / "recording");
         RecordingWriter writer(begin());
-        ASSERT_EQ(writer.refusal(kPatience), "");
+        ASSERT_FALSE(writer.refusal(kPatience));
         while (!std::filesystem::exists(folder_ / "recording/order.log")) std::this_thread::yield();
         std::filesystem::remove_all(folder_ / gone);
         EXPECT_TRUE(writer.wait(Nanoseconds{5'000'000'000})) << gone << ": by itself";
-        EXPECT_NE(writer.error().find((folder_ / gone).string() + ": was removed"), std::string::npos)
-            << writer.error();
+        expect_error(writer, ErrorCode::not_found, gone);
     }
 }
 
 TEST_F(RecordingWriterTest, is_not_complete_where_its_folder_is_removed_just_before_its_end) {
     RecordingWriter writer(begin());
-    ASSERT_EQ(writer.refusal(kPatience), "");
+    ASSERT_FALSE(writer.refusal(kPatience));
     while (!std::filesystem::exists(folder_ / "recording/order.log")) std::this_thread::yield();
     std::filesystem::remove_all(folder_ / "recording");
     writer.finish(end(0));
     ASSERT_TRUE(writer.wait(kPatience));
-    EXPECT_NE(writer.error().find(": was removed"), std::string::npos) << writer.error();
+    ASSERT_TRUE(writer.error());
+    EXPECT_EQ(writer.error()->code, ErrorCode::not_found) << writer.error()->message();
 }
 
 TEST_F(RecordingWriterTest, goes_on_in_a_folder_that_is_moved) {
     RecordingWriter writer(begin());
-    ASSERT_EQ(writer.refusal(kPatience), "");
+    ASSERT_FALSE(writer.refusal(kPatience));
     std::filesystem::rename(folder_ / "recording", folder_ / "moved");
     std::this_thread::sleep_for(std::chrono::milliseconds{1'500});
     writer.finish(end(0));
     ASSERT_TRUE(writer.wait(kPatience));
-    EXPECT_EQ(writer.error(), "");
+    EXPECT_FALSE(writer.error()) << writer.error()->message();
     EXPECT_TRUE(std::filesystem::exists(folder_ / "moved/meta.yaml"));
 }
 
@@ -112,7 +118,7 @@ TEST_F(RecordingWriterTest, leaves_alone_what_is_in_a_folder_that_it_refuses) {
         RecordingWriter writer(begin());
         (void)writer.add_depth(frame);
         ASSERT_TRUE(writer.wait(kPatience));
-        EXPECT_NE(writer.error().find("is not empty"), std::string::npos) << writer.error();
+        expect_error(writer, ErrorCode::already_exists, "recording");
     }
     EXPECT_EQ(read("depth.oni"), "somebody's own");
     EXPECT_EQ(read("depth.epoch.yaml"), "somebody's own");
@@ -126,7 +132,7 @@ TEST_F(RecordingWriterTest, writes_what_came_before_the_end_and_vouches_for_it_l
     EXPECT_FALSE(std::filesystem::exists(folder_ / "recording/meta.yaml"));
     writer.finish(end(1));
     ASSERT_TRUE(writer.wait(kPatience));
-    EXPECT_EQ(writer.error(), "");
+    EXPECT_FALSE(writer.error()) << writer.error()->message();
     EXPECT_EQ(read("rig.yaml"), "rig text\n");
     EXPECT_EQ(read("robot.urdf"), "robot text\n");
     EXPECT_EQ(read("mapping.yaml"), "mapping text\n");
@@ -148,7 +154,8 @@ TEST_F(RecordingWriterTest, names_the_file_that_a_full_disk_stops_and_vouches_fo
     RecordingWriter writer(begin());
     ASSERT_TRUE(writer.add_order(std::string(100'000, '#') + "\n"));
     ASSERT_TRUE(writer.wait(kPatience)) << "goes on in spite of it";
-    EXPECT_NE(writer.error().find("order.log: File too large"), std::string::npos) << writer.error();
+    expect_error(writer, ErrorCode::system_error, "recording/order.log");
+    EXPECT_EQ(writer.error()->what, "File too large");
     writer.finish(end(0));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "recording/meta.yaml"));
 }
@@ -161,21 +168,21 @@ TEST_F(RecordingWriterTest, takes_nothing_that_has_no_room_and_never_waits) {
     for (int i = 0; i < 20; ++i) taken += writer.add_can(line) ? 1 : 0;
     EXPECT_EQ(taken, 8);
     ASSERT_TRUE(writer.wait(kPatience));
-    EXPECT_NE(writer.error().find("recording"), std::string::npos) << writer.error();
+    expect_error(writer, ErrorCode::already_exists, "recording");
 }
 
 /// A disk that takes no map until a test lets it, and then fails.
 class HungDisk {
   public:
     [[nodiscard]] RecordingWriter::MapWriter writer() {
-        return [this](const FusedMap&, const FilePlace&) -> Result<std::uint32_t, MapFileError> {
+        return [this](const FusedMap&, const FilePlace&) -> Result<std::uint32_t, Error> {
             std::unique_lock lock(mutex_);
             is_writing_ = true;
             changed_.notify_all();
             changed_.wait(lock, [this] { return is_open_; });
             is_writing_ = false;
             changed_.notify_all();
-            return unexpected(MapFileError{"the disk was gone"});
+            return unexpected(Error{ErrorCode::system_error, "the disk was gone"});
         };
     }
     void wait_for_write() {
@@ -228,14 +235,12 @@ TEST_F(RecordingWriterTest, tells_since_when_it_is_writing) {
 }
 
 TEST_F(RecordingWriterTest, names_what_was_thrown_while_it_wrote) {
-    RecordingWriter writer(begin(),
-                           [](const FusedMap&, const FilePlace&) -> Result<std::uint32_t, MapFileError> {
-                               throw std::bad_alloc();
-                           });
+    RecordingWriter writer(begin(), [](const FusedMap&, const FilePlace&) -> Result<std::uint32_t, Error> {
+        throw std::bad_alloc();
+    });
     writer.finish(end(0));
     ASSERT_TRUE(writer.wait(kPatience));
-    EXPECT_NE(writer.error().find(": out of memory: "), std::string::npos) << writer.error();
-    EXPECT_NE(writer.error().find((folder_ / "recording").string()), std::string::npos) << writer.error();
+    expect_error(writer, ErrorCode::no_resources, "recording");
 }
 
 TEST_F(RecordingWriterTest, leaves_the_files_of_others_alone) {
@@ -243,7 +248,7 @@ TEST_F(RecordingWriterTest, leaves_the_files_of_others_alone) {
     (void)folder_.write("recording/can.log", "precious");
     RecordingWriter writer(begin());
     ASSERT_TRUE(writer.wait(kPatience));
-    EXPECT_NE(writer.error().find("is not empty"), std::string::npos) << writer.error();
+    expect_error(writer, ErrorCode::already_exists, "recording");
     EXPECT_EQ(read("can.log"), "precious");
 }
 

@@ -43,9 +43,17 @@ TEST_F(StatusTest, has_who_it_is_how_long_it_runs_and_what_is_wrong) {
     EXPECT_EQ(well["problems"], Json::array());
     view_.saves.error = "no room";
     view_.reload_error = "no rig";
-    EXPECT_EQ(status()["problems"],
-              Json({"the map is not saved: no room",
-                    "the newest reload was refused, and the old settings stay in force: no rig"}));
+    const Json problems = status()["problems"];
+    ASSERT_EQ(problems.size(), 2U);
+    EXPECT_EQ(problems[0]["code"], "map_not_saved");
+    EXPECT_EQ(problems[1]["code"], "reload_refused");
+    const std::vector<Problem> all = all_reported();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_EQ(problems[i]["text"], all[i].text());
+        EXPECT_EQ(problems[i].size(), 2U) << "empty fields are left out: " << problems[i];
+    }
+    EXPECT_NE(all[0].what.find("no room"), std::string::npos);
+    EXPECT_NE(all[1].what.find("no rig"), std::string::npos);
 }
 
 TEST_F(StatusTest, names_links_without_a_body_and_is_content_with_those_that_the_rig_lists) {
@@ -53,8 +61,14 @@ TEST_F(StatusTest, names_links_without_a_body_and_is_content_with_those_that_the
     scene_.rig.links_without_body = {{"elbow", true}, {"wrist", false}};
     EXPECT_EQ(status()["links_without_body"], Json({"elbow", "wrist"}));
     EXPECT_EQ(status()["links_unknown"], Json({"wrist"}));
-    EXPECT_EQ(reported("links without body").rfind("robot: wrist: without a body", 0), 0U);
-    EXPECT_EQ(status()["problems"].size(), 1U);
+    const auto problem = reported(ProblemCode::links_without_body, "robot: wrist");
+    ASSERT_TRUE(problem);
+    EXPECT_EQ(status()["problems"], Json::array({Json{{"code", "links_without_body"},
+                                                      {"text", problem->text()},
+                                                      {"on", "robot: wrist"},
+                                                      {"key", "robot.links_without_body"},
+                                                      {"remedy", problem->remedy}}}));
+    EXPECT_NE(problem->remedy.find("robot.links_without_body"), std::string::npos);
     view_.reloaded = view_.now;
     EXPECT_EQ(status()["problems"].size(), 1U) << "nothing to be learnt anew";
     scene_.rig.links_without_body = {{"elbow", true}};
@@ -341,7 +355,7 @@ TEST_F(StatusTest, has_the_map_with_its_memory_and_saves) {
     EXPECT_EQ(status()["map"]["folder_silent_s"], nullptr);
     view_.maps_silent_since = host_at(1.55);
     EXPECT_NEAR(status()["map"]["folder_silent_s"], 3.0, kTiny);
-    EXPECT_NE(reported("maps folder silent"), "");
+    EXPECT_NE(reported(ProblemCode::maps_folder_silent), std::nullopt);
 }
 
 TEST_F(StatusTest, has_how_much_of_the_map_has_no_time) {
@@ -394,7 +408,7 @@ TEST_F(StatusTest, knows_when_the_buss_time_leapt_ahead) {
     ASSERT_TRUE(view_.used.time_ahead);
     EXPECT_EQ(status()["clock"]["times_ahead"], 1);
     EXPECT_EQ(status()["clock"]["times_back"], 0);
-    EXPECT_NE(reported("time ahead"), "");
+    EXPECT_NE(reported(ProblemCode::time_ahead), std::nullopt);
 }
 
 TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_reload) {
@@ -403,11 +417,15 @@ TEST_F(StatusTest, names_nothing_that_is_learnt_anew_for_three_seconds_after_a_r
     play(silent, kAllWell);
     view_.saves.error = "the disk is full";
     view_.reloaded = view_.now - Nanoseconds{2'999'999'999};
-    EXPECT_EQ(status()["problems"], Json::array({"the map is not saved: the disk is full"}));
+    const Json problems = status()["problems"];
+    ASSERT_EQ(problems.size(), 1U);
+    EXPECT_EQ(problems[0]["code"], "map_not_saved");
+    EXPECT_NE(problems[0]["text"].get<std::string>().find("the disk is full"), std::string::npos);
     view_.reloaded = view_.now - Nanoseconds{3'000'000'000};
-    EXPECT_NE(reported("no time"), "");
-    EXPECT_NE(reported("no joints"), "");
-    EXPECT_NE(reported("node 1 'node 1': absent"), "");
+    EXPECT_NE(reported(ProblemCode::time_unknown), std::nullopt);
+    EXPECT_NE(reported(ProblemCode::joints_missing), std::nullopt);
+    EXPECT_THAT(reported(ProblemCode::node_unusable),
+                testing::Optional(is_unusable_node("node 1 'node 1': absent")));
 }
 
 TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
@@ -417,7 +435,7 @@ TEST_F(StatusTest, has_the_recording_or_null_and_the_reloads) {
               Json::parse(R"({"count": 2, "unchanged": 3, "dropped": 7, "reading_s": null})"));
     view_.reloads.reading_since = host_at(0.55);
     EXPECT_NEAR(status()["reloads"]["reading_s"], 4.0, kTiny);
-    EXPECT_NE(reported("reload silent"), "");
+    EXPECT_NE(reported(ProblemCode::reload_silent), std::nullopt);
     view_.reloads.reading_since.reset();
     Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
@@ -512,7 +530,8 @@ TEST_F(StatusTest, has_every_key_with_a_meaning_and_no_other) {
     view_.inputs = with_socket.get();
     const Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, host_at(4.3));
     view_.recorder = &recorder;
-    // A list has its keys only where it has anything in it.
+    // A list has its keys only where it has anything in it. This problem has each part.
+    scene_.rig.links_without_body = {{"wrist", false}};
     ScriptedBus bus;
     bus.send(4.6,
              wire::InfoFault{.kind = wire::FaultKind::register_alike,
@@ -575,7 +594,7 @@ TEST_F(StatusTest, knows_when_each_kind_of_measurement_was_used_last) {
     play_on(frames, 10.0);
     ASSERT_TRUE(view_.used.time_back);
     EXPECT_EQ(status()["clock"]["times_back"], 1);
-    EXPECT_NE(reported("time back"), "");
+    EXPECT_NE(reported(ProblemCode::time_back), std::nullopt);
 }
 
 }  // namespace

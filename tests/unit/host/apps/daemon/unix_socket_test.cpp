@@ -69,10 +69,13 @@ TEST(UnixSocket, for_datagrams_is_refused_without_the_others_process) {
     const testing_support::ScratchFolder folder;
     const auto first = bind_unix_socket(folder / "joints", SOCK_DGRAM);
     ASSERT_TRUE(first);
-    const auto second = bind_unix_socket(folder / "joints", SOCK_DGRAM);
+    const auto second = bind_unix_socket(folder / "joints", SOCK_DGRAM, "--joints");
     ASSERT_FALSE(second);
-    EXPECT_EQ(second.error().message, (folder / "joints").string() +
-                                          ": another octoskin has this socket; stop it, or name another one");
+    EXPECT_EQ(second.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(second.error().error.code, ErrorCode::in_use);
+    EXPECT_EQ(second.error().error.file, folder / "joints");
+    EXPECT_EQ(second.error().error.what, "another octoskin has this socket");
+    EXPECT_NE(second.error().error.remedy.find("--joints"), std::string::npos) << second.error().message();
     ::close(*first);
 }
 
@@ -81,9 +84,16 @@ TEST(UnixSocket, is_never_made_over_something_else) {
     const auto file = folder.write("precious", "words");
     const auto bound = bind_unix_socket(file, SOCK_DGRAM);
     ASSERT_FALSE(bound);
+    EXPECT_EQ(bound.error().error.code, ErrorCode::wrong_kind_of_file);
+    EXPECT_EQ(bound.error().error.file, file);
     EXPECT_EQ(testing_support::ScratchFolder::read(file), "words");
-    EXPECT_FALSE(bind_unix_socket(folder / "no/such/folder", SOCK_DGRAM));
-    EXPECT_FALSE(bind_unix_socket(folder.path() / std::string(200, 'x'), SOCK_DGRAM));
+    const auto nowhere = bind_unix_socket(folder / "no/such/folder", SOCK_DGRAM);
+    ASSERT_FALSE(nowhere);
+    EXPECT_EQ(nowhere.error().error.code, ErrorCode::not_found);
+    const auto too_long = bind_unix_socket(folder.path() / std::string(200, 'x'), SOCK_DGRAM);
+    ASSERT_FALSE(too_long);
+    EXPECT_EQ(too_long.error().error.code, ErrorCode::bad_name);
+    EXPECT_EQ(too_long.error().error.value, std::to_string(folder.path().string().size() + 201) + " bytes");
 }
 
 TEST(UnixSocket, refuses_at_once_the_place_of_one_that_lets_nobody_in) {
@@ -94,9 +104,10 @@ TEST(UnixSocket, refuses_at_once_the_place_of_one_that_lets_nobody_in) {
     const auto second = bind_unix_socket(folder / "control", SOCK_STREAM);
     ASSERT_FALSE(second);
     EXPECT_LE(std::chrono::steady_clock::now() - begun, 2s);
-    EXPECT_NE(second.error().message.find("(it accepts no connection: is it stopped?) has this socket"),
-              std::string::npos)
-        << second.error().message;
+    EXPECT_EQ(second.error().error.code, ErrorCode::in_use);
+    EXPECT_EQ(second.error().error.file, folder / "control");
+    EXPECT_NE(second.error().error.what.find("(it accepts no connection: is it stopped?)"), std::string::npos)
+        << second.error().message();
 }
 
 }  // namespace

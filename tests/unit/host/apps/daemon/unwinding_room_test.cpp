@@ -59,7 +59,8 @@ TEST_F(UnwindingRoomTest, of_an_answer_is_for_its_first_allocation_that_fails) {
 }
 
 TEST_F(UnwindingRoomTest, of_an_answer_has_a_refusal_like_any_other) {
-    EXPECT_EQ(AnswerRoom::kRefusal, query_refused({ExitCode::unavailable, "no memory for an answer"}).dump());
+    const AppError refused{ExitCode::unavailable, {ErrorCode::no_resources, "no memory for an answer"}};
+    EXPECT_EQ(AnswerRoom::kRefusal, query_refused(refused).dump());
 }
 
 TEST_F(UnwindingRoomTest, of_an_answer_is_refused_where_there_is_none) {

@@ -36,7 +36,7 @@ class FlashingTest : public testing::Test {
 
 TEST_F(FlashingTest, a_fit_image_becomes_two_files) {
     const auto prepared = prepare(order());
-    ASSERT_TRUE(prepared) << prepared.error().message;
+    ASSERT_TRUE(prepared) << prepared.error().message();
     EXPECT_EQ(prepared->image_bytes, 548U);
     EXPECT_EQ(testing_support::ScratchFolder::read(folder_ / "out/bench/flash.hex"),
               intel_hex(prepared->contents));
@@ -50,30 +50,33 @@ TEST_F(FlashingTest, every_fault_of_an_image_is_named_and_nothing_is_written) {
     elf.set_attribute(6, 10);
     const auto prepared = prepare(order(elf));
     ASSERT_FALSE(prepared);
-    EXPECT_EQ(prepared.error().code, ExitCode::bad_data);
-    EXPECT_THAT(prepared.error().message, HasSubstr("outside RAM"));
-    EXPECT_THAT(prepared.error().message, HasSubstr("not a multiple of 8"));
-    EXPECT_THAT(prepared.error().message, HasSubstr("ARMv7E-M"));
+    EXPECT_EQ(prepared.error().exit, ExitCode::bad_data);
+    EXPECT_EQ(prepared.error().error.code, ErrorCode::mismatch);
+    EXPECT_EQ(prepared.error().error.file, folder_ / "image.elf");
+    for (const char* const fault : {"outside RAM", "not a multiple of 8", "ARMv7E-M"})
+        EXPECT_THAT(prepared.error().error.what, HasSubstr(fault));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
 TEST_F(FlashingTest, what_is_missing_or_in_the_way_has_its_own_code) {
     Order absent = order();
     absent.elf = folder_ / "nowhere.elf";
-    EXPECT_EQ(prepare(absent).error().code, ExitCode::no_input);
-    EXPECT_THAT(
-        prepare(absent).error().message,
-        HasSubstr("build it with `firmware/flash` of octoskin's sources, or give a built image with --elf"));
+    EXPECT_EQ(prepare(absent).error().exit, ExitCode::no_input);
+    EXPECT_EQ(prepare(absent).error().error.code, ErrorCode::not_found);
+    EXPECT_EQ(prepare(absent).error().error.file, absent.elf);
+    EXPECT_THAT(prepare(absent).error().error.remedy,
+                testing::AllOf(HasSubstr("`firmware/flash`"), HasSubstr("--elf")));
     Order blocked = order();
     blocked.folder = blocked.elf / "below";
-    EXPECT_EQ(prepare(blocked).error().code, ExitCode::cannot_create);
+    EXPECT_EQ(prepare(blocked).error().exit, ExitCode::cannot_create);
     Order other = order();
     other.board.name = "another_board";
-    EXPECT_EQ(prepare(other).error().code, ExitCode::bad_config);
+    EXPECT_EQ(prepare(other).error().exit, ExitCode::bad_config);
     Order impossible = order();
     impossible.node.config.node_id = 0;  // no board would accept it
-    EXPECT_EQ(prepare(impossible).error().code, ExitCode::bad_config);
-    EXPECT_THAT(prepare(impossible).error().message, HasSubstr("does not read back"));
+    EXPECT_EQ(prepare(impossible).error().exit, ExitCode::bad_config);
+    EXPECT_EQ(prepare(impossible).error().error.code, ErrorCode::bad_value);
+    EXPECT_EQ(prepare(impossible).error().error.key, "node bench");
 }
 
 TEST(ChooseNode, by_name_or_number_and_alone_if_there_is_one) {
@@ -81,10 +84,13 @@ TEST(ChooseNode, by_name_or_number_and_alone_if_there_is_one) {
     EXPECT_EQ(choose_node(bench, "")->name, "bench");
     EXPECT_EQ(choose_node(bench, "1")->name, "bench");
     EXPECT_EQ(choose_node(bench, "bench")->name, "bench");
-    EXPECT_EQ(choose_node(bench, "2").error().code, ExitCode::usage);
+    EXPECT_EQ(choose_node(bench, "2").error().exit, ExitCode::usage);
+    EXPECT_EQ(choose_node(bench, "2").error().error.code, ErrorCode::unknown_name);
+    EXPECT_EQ(choose_node(bench, "2").error().error.value, "'2'");
     const rig::Rig experiment = read("experiment.yaml");
     ASSERT_GT(experiment.nodes.size(), 1U);
-    EXPECT_THAT(choose_node(experiment, "").error().message, HasSubstr(experiment.nodes[1].name));
+    EXPECT_EQ(choose_node(experiment, "").error().error.key, "--node");
+    EXPECT_THAT(choose_node(experiment, "").error().error.remedy, HasSubstr(experiment.nodes[1].name));
     EXPECT_EQ(choose_node(experiment, experiment.nodes[1].name)->config, experiment.nodes[1].config);
 }
 

@@ -133,9 +133,10 @@ TEST(Monitor, says_that_a_nodes_time_is_not_known) {
 TEST(Monitor, says_why_nothing_is_in_the_map_and_problems_first) {
     Json now = status();
     now["map"]["known_voxels"] = 0;
-    now["problems"] = {"no joint states: none from node 3", "another"};
+    now["problems"] = Json::parse(R"([{"code": "joints_missing", "text": "no joint states: none from node 3"},
+                                      {"code": "time_unknown", "text": "another"}])");
     const std::string screen = shown(status(), now, {80, 5});
-    EXPECT_TRUE(has(screen, "! no joint states")) << screen;
+    EXPECT_TRUE(has(screen, "! no joint states: none from node 3\n")) << screen;
     EXPECT_TRUE(has(screen, "the map is empty: the first problem above is the reason")) << screen;
     now["problems"] = Json::array();
     EXPECT_TRUE(has(shown(status(), now), "the map is empty: no measurement"));
@@ -227,7 +228,7 @@ TEST(Monitor, scrolls_by_its_keys_and_never_beyond_the_lines) {
 TEST(Monitor, cuts_no_character_in_two_and_lets_no_name_steer_the_terminal) {
     Json now = status();
     now["rig"] = "\x1b[2Jevil";
-    now["problems"] = {"\u00e4\u00f6\u00fc"};
+    now["problems"] = Json::parse("[{\"text\": \"\u00e4\u00f6\u00fc\"}]");
     EXPECT_FALSE(has(shown(now, now), "\x1b"));
     EXPECT_TRUE(has(shown(now, now, {4, 50}), "! \u00e4\u00f6\n"));
 }

@@ -81,9 +81,10 @@ class DataSetPlayback : public testing::Test {
         request.mapping.depth_filter.is_enabled = false;  // quicker, and no part of this
         return request;
     }
-    std::string refused(const PlaybackRequest& request) {
+    Error refused(const PlaybackRequest& request) {
         const auto played = play_recording(request);
-        return played ? "no error" : played.error().message;
+        if (played) ADD_FAILURE() << "no error";
+        return played ? Error{} : played.error().error;
     }
 
     ScratchFolder scratch_;
@@ -107,8 +108,8 @@ TEST_F(DataSetPlayback, maps_each_image_from_where_the_camera_was) {
         expected.apply(DepthStage(rig, mapping).updates(frame, nullptr)->terms);
     }
     const auto played = play_recording(request());
-    ASSERT_TRUE(played) << played.error().message;
-    EXPECT_FALSE(failure_of(*played)) << failure_of(*played)->message;
+    ASSERT_TRUE(played) << played.error().message();
+    EXPECT_FALSE(failure_of(*played)) << failure_of(*played)->message();
     ASSERT_GT(expected.known_voxels(), 10'000U);
     EXPECT_EQ(played->outcome.progress.depth_frames, std::uint64_t{kFrames});
     EXPECT_EQ(voxels_of(played->pipeline.map(MapFeed::camera)), voxels_of(expected));
@@ -159,12 +160,12 @@ TEST_F(DataSetPlayback, scale_missing_value_intrinsics_and_lens_are_the_rigs) {
         rig + ",\n   distortion: {k1: 0.2624, k2: -0.9531, p1: -0.0054, p2: 0.0026, k3: 1.1633}}\n");
     without_lens.rig = scratch_.write("pinhole.yaml", rig + "}\n");
     const auto played = play_recording(with_lens);
-    ASSERT_TRUE(played) << played.error().message;
+    ASSERT_TRUE(played) << played.error().message();
     EXPECT_EQ(played->pipeline.depth_stage()->pixels().used, 160U * 120U);
     constexpr double kHalfDiagonalM = 0.0174;  // of a voxel of 2 cm
     EXPECT_LT(furthest_m(played->pipeline.map(MapFeed::camera), normal), kHalfDiagonalM + 0.001);
     const auto bent = play_recording(without_lens);
-    ASSERT_TRUE(bent) << bent.error().message;
+    ASSERT_TRUE(bent) << bent.error().message();
     EXPECT_GT(furthest_m(bent->pipeline.map(MapFeed::camera), normal), 0.03);
     EXPECT_NE(bent->origin.rig_hash, played->origin.rig_hash);
 }
@@ -176,7 +177,7 @@ TEST_F(DataSetPlayback, pace_decides_when_an_image_is_mapped_and_not_what_the_ma
         written_.add_image(time_of(i), wall(static_cast<unsigned>(i)));
     }
     const auto expected = play_recording(request());
-    ASSERT_TRUE(expected) << expected.error().message;
+    ASSERT_TRUE(expected) << expected.error().message();
 
     struct Mapped : CommitListener {
         void on_joints(const JointMeasurement&) override {}
@@ -193,7 +194,7 @@ TEST_F(DataSetPlayback, pace_decides_when_an_image_is_mapped_and_not_what_the_ma
         shown.push_back(what);
     });
     const auto by_step = play_recording(stepped);
-    ASSERT_TRUE(by_step) << by_step.error().message;
+    ASSERT_TRUE(by_step) << by_step.error().message();
     EXPECT_EQ(mapped.images, kFrames);
     EXPECT_EQ(shown, (std::vector<std::string>{"depth image 0 of 1305031102.100000000: 640 x 480",
                                                "depth image 1 of 1305031102.133333000: 640 x 480",
@@ -208,7 +209,7 @@ TEST_F(DataSetPlayback, pace_decides_when_an_image_is_mapped_and_not_what_the_ma
     const auto began = std::chrono::steady_clock::now();
     const auto paced = play_recording(slow);
     EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(399));
-    ASSERT_TRUE(paced) << paced.error().message;
+    ASSERT_TRUE(paced) << paced.error().message();
     EXPECT_EQ(voxels_of(paced->pipeline.map(MapFeed::camera)),
               voxels_of(expected->pipeline.map(MapFeed::camera)));
 }
@@ -219,7 +220,7 @@ TEST_F(DataSetPlayback, accounts_for_every_image) {
     written_.add_image("100", wall(1));
     written_.add_image("100.000000000", wall(1));  // the same time again
     const auto played = play_recording(request());
-    ASSERT_TRUE(played) << played.error().message;
+    ASSERT_TRUE(played) << played.error().message();
     const CounterTable& images = played->inputs.front();
     EXPECT_EQ(images.in, 3U);
     EXPECT_EQ(images.used, 2U);
@@ -239,7 +240,7 @@ TEST_F(DataSetPlayback, accounts_for_every_line_of_both_lists) {
     written_.add_line("depth.txt", "also lost");
     written_.add_image("100.02", wall(2));
     const auto played = play_recording(request());
-    ASSERT_TRUE(played) << played.error().message;
+    ASSERT_TRUE(played) << played.error().message();
     EXPECT_FALSE(failure_of(*played));
     const CounterTable& images = played->inputs.at(0);
     EXPECT_EQ(images.in, 3U);
@@ -300,7 +301,7 @@ TEST_F(DataSetPlayback, each_layout_has_its_own_camera_scale_and_lists) {
         asked.recording = RecordingPaths(layout.folder);
         asked.mapping.map.resolution_m = 0.01;
         const auto played = play_recording(asked);
-        ASSERT_TRUE(played) << played.error().message;
+        ASSERT_TRUE(played) << played.error().message();
         EXPECT_NEAR(seen_wall(*played).nearest_m, 2.0, 0.011) << layout.folder;
         EXPECT_NEAR(seen_wall(*played).widest_m, 320.0 / layout.fx * 2.0, 0.02) << layout.folder;
     }
@@ -313,11 +314,14 @@ TEST_F(DataSetPlayback, an_image_that_cannot_be_read_makes_the_map_one_that_must
     written_.add_image("100.03", wall(2));
     std::filesystem::resize_file(written_.image("100.03"), 5'000);
     const auto played = play_recording(request());
-    ASSERT_TRUE(played) << played.error().message;
+    ASSERT_TRUE(played) << played.error().message();
     ASSERT_TRUE(failure_of(*played));
-    EXPECT_EQ(failure_of(*played)->code, ExitCode::bad_data);
-    EXPECT_THAT(failure_of(*played)->message,
-                HasSubstr("depth.txt:5: depth/100.03.png: cannot be read completely"));
+    EXPECT_EQ(failure_of(*played)->exit, ExitCode::bad_data);
+    const Error error = failure_of(*played)->error;
+    EXPECT_EQ(error.file, written_.folder() / "depth.txt");
+    EXPECT_EQ(error.line, 5);
+    EXPECT_EQ(error.key, "depth/100.03.png");
+    EXPECT_THAT(error.what, HasSubstr("cannot be read completely"));
     EXPECT_TRUE(played->inputs.front().is_balanced);
 }
 
@@ -325,9 +329,11 @@ TEST_F(DataSetPlayback, an_image_of_another_size_than_the_cameras_is_counted_and
     written_.add_pose("100", "0 0 0 0 0 0 1");
     written_.add_image("100", {2, 1, {5000, 5000}});
     const auto played = play_recording(request());
-    ASSERT_TRUE(played) << played.error().message;
+    ASSERT_TRUE(played) << played.error().message();
     EXPECT_EQ(played->pipeline.inputs().depth_frames.rejected(DepthReason::wrong_size), 1U);
-    EXPECT_THAT(failure_of(*played)->message, HasSubstr("no measurement entered the map"));
+    ASSERT_TRUE(failure_of(*played));
+    EXPECT_EQ(failure_of(*played)->error.code, ErrorCode::no_content);
+    EXPECT_THAT(failure_of(*played)->error.what, HasSubstr("wrong_size"));
 }
 
 TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
@@ -335,16 +341,25 @@ TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
     written_.add_line("depth.txt", "100 depth/absent.png");
     PlaybackRequest robot = request();
     robot.robot = "panda.urdf";
-    EXPECT_THAT(refused(robot), HasSubstr("has no robot"));
+    EXPECT_EQ(refused(robot).code, ErrorCode::bad_argument);
+    EXPECT_EQ(refused(robot).key, "--robot");
     PlaybackRequest two = request();
     two.rig = "rig.yaml";
     two.camera = "freiburg1";
-    EXPECT_THAT(refused(two), HasSubstr("--rig or --camera"));
+    EXPECT_EQ(refused(two).code, ErrorCode::conflict);
+    EXPECT_THAT(refused(two).remedy, HasSubstr("--rig or --camera"));
     PlaybackRequest unknown = request();
     unknown.camera = "freiburg4";
-    EXPECT_THAT(refused(unknown),
+    EXPECT_EQ(refused(unknown).code, ErrorCode::unknown_word);
+    EXPECT_EQ(refused(unknown).key, "--camera");
+    EXPECT_EQ(refused(unknown).value, "'freiburg4'");
+    EXPECT_THAT(refused(unknown).what,
                 HasSubstr("kinect, freiburg1, freiburg2, freiburg3, icl_nuim, seven_scenes"));
-    EXPECT_THAT(refused(request()), HasSubstr("depth.txt:4: depth/absent.png: does not exist"));
+    const Error absent = refused(request());
+    EXPECT_EQ(absent.code, ErrorCode::not_found);
+    EXPECT_EQ(absent.file, written_.folder() / "depth.txt");
+    EXPECT_EQ(absent.line, 4);
+    EXPECT_EQ(absent.key, "depth/absent.png");
 }
 
 TEST_F(DataSetPlayback, a_folder_with_a_log_of_the_bus_is_a_recording) {

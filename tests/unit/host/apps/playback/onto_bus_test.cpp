@@ -68,7 +68,7 @@ class OntoBusTest : public testing::Test {
 TEST_F(OntoBusTest, sends_frames_of_every_kind_as_they_are) {
     const auto lines = every_kind();
     const auto played = play(lines);
-    ASSERT_TRUE(played) << played.error().message;
+    ASSERT_TRUE(played) << played.error().message();
     EXPECT_EQ(played->sent, lines.size());
     const auto frames = heard();
     ASSERT_EQ(frames.size(), lines.size());
@@ -113,13 +113,16 @@ TEST_F(OntoBusTest, leaves_out_and_counts_what_is_no_frame_of_the_first_interfac
 TEST_F(OntoBusTest, says_that_the_other_end_is_gone_and_that_a_log_has_no_frame) {
     const auto empty = play({"nothing"});
     ASSERT_FALSE(empty);
-    EXPECT_NE(empty.error().message.find("can.log: no line is a frame in candump's format: line 1"),
-              std::string::npos);
+    EXPECT_EQ(empty.error().exit, ExitCode::bad_data);
+    EXPECT_EQ(empty.error().error.code, ErrorCode::foreign_format);
+    EXPECT_EQ(empty.error().error.file, folder_ / "can.log");
+    EXPECT_EQ(empty.error().error.line, 1);
     bus_.reset();
     const auto gone = play({"(1750000000.000000) can0 001#"});
     ASSERT_FALSE(gone);
-    EXPECT_EQ(gone.error().code, ExitCode::io_failed);
-    EXPECT_NE(gone.error().message.find("fd:9"), std::string::npos) << gone.error().message;
+    EXPECT_EQ(gone.error().exit, ExitCode::io_failed);
+    EXPECT_EQ(gone.error().error.code, ErrorCode::no_device);
+    EXPECT_EQ(gone.error().error.file, "fd:9");
 }
 
 }  // namespace

@@ -63,8 +63,8 @@ TEST(Pace, by_step_asks_before_each) {
 /// Two frames 80 ms apart, then an error, again and again.
 class TwoFrames final : public DepthSource {
   public:
-    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override {
-        if (given_ == 2) return unexpected(DepthSourceError{"cut off"});
+    [[nodiscard]] Result<std::optional<DepthFrame>, Error> next() override {
+        if (given_ == 2) return unexpected(Error{ErrorCode::damaged, "cut off"});
         return std::optional(DepthFrame{HostTime{7'000'000'000 + 80'000'000 * given_++}, 3, 2, {}});
     }
 
@@ -95,7 +95,7 @@ TEST(PacedDepth, shows_each_frame_step_by_step) {
 /// Two joint samples 3 s apart, the newer one 60 ms before a reading.
 class ThreeCommits final : public CommitSource {
   public:
-    [[nodiscard]] Result<std::optional<Commit>, CommitSourceError> next() override {
+    [[nodiscard]] Result<std::optional<Commit>, Error> next() override {
         const std::int64_t place = given_++;
         if (place < 2) return std::optional<Commit>(JointMeasurement{HostTime{3'000'000'000 * place}, {}});
         return std::optional<Commit>(RangeMeasurement{{1, 0, 0}, HostTime{3'060'000'000}, 0.5, 0.01});

@@ -21,10 +21,16 @@ TEST(RigPipeline, refuses_a_sensor_that_sees_more_voxels_than_one_reading_may_ha
     mapping.map.resolution_m = 0.001;
     const auto refused = build_pipeline("a/rig.yaml", rig, one_joint_robot(), mapping, {});
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::bad_config);
-    for (const char* const part : {"a/rig.yaml", "45 degrees", "4 m", "range_limits.max_m", "0.001 m",
-                                   "map.resolution_m", "16777216", "half_angle_deg"})
-        EXPECT_THAT(refused.error().message, HasSubstr(part));
+    EXPECT_EQ(refused.error().exit, ExitCode::bad_config);
+    const Error& error = refused.error().error;
+    EXPECT_EQ(error.code, ErrorCode::limit_exceeded);
+    EXPECT_EQ(error.file, "a/rig.yaml");
+    EXPECT_THAT(error.key, HasSubstr("sensor 0"));
+    EXPECT_GT(std::stod(error.value), 16777216.0);
+    for (const char* const part : {"45 degrees", "4 m", "range_limits.max_m", "0.001 m", "16777216"})
+        EXPECT_THAT(error.what, HasSubstr(part));
+    for (const char* const part : {"range_limits.max_m", "map.resolution_m", "half_angle_deg"})
+        EXPECT_THAT(error.remedy, HasSubstr(part));
     mapping.range_update = RangeUpdate::ray;
     EXPECT_TRUE(build_pipeline("a/rig.yaml", rig, one_joint_robot(), mapping, {}));
 }
@@ -34,8 +40,10 @@ TEST(RigPipeline, refuses_a_link_that_the_robot_does_not_have) {
     rig.nodes[0].sensors[0].link = "tail";
     const auto refused = build_pipeline("a/rig.yaml", rig, one_joint_robot(), plain_mapping(), {});
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::bad_config);
-    EXPECT_THAT(refused.error().message, HasSubstr("tail"));
+    EXPECT_EQ(refused.error().exit, ExitCode::bad_config);
+    EXPECT_EQ(refused.error().error.code, ErrorCode::unknown_name);
+    EXPECT_EQ(refused.error().error.file, "a/rig.yaml");
+    EXPECT_EQ(refused.error().error.value, "'tail'");
 }
 
 }  // namespace

@@ -55,24 +55,36 @@ Result<JointPath, AppError> path_of(const std::string& text) {
 
 TEST(ReadJointPath, has_a_configuration_a_line_and_knows_of_each_where_it_is) {
     const auto path = path_of("# home\n0,1\n\n  \r\n2 3\r\n4,5");
-    ASSERT_TRUE(path) << path.error().message;
+    ASSERT_TRUE(path) << path.error().message();
     EXPECT_THAT(path->configurations, ElementsAre(ElementsAre(0, 1), ElementsAre(2, 3), ElementsAre(4, 5)));
     EXPECT_THAT(path->lines, ElementsAre(2, 5, 6));
 }
 
 TEST(ReadJointPath, names_the_line_and_what_is_wrong_there) {
-    EXPECT_THAT(path_of("0,1\n# x\n0,nan\n").error().message,
-                HasSubstr("way.txt:3: 'nan' is not a plain, finite number; expected a joint configuration"));
-    EXPECT_THAT(path_of("0,1,\n").error().message,
-                HasSubstr("way.txt:1: a number is missing beside a comma"));
-    EXPECT_THAT(path_of(std::string("\x1b[0m\0", 5)).error().message, HasSubstr("'?[0m?' is not a plain"));
-    EXPECT_THAT(path_of("# nothing\n").error().message, HasSubstr("way.txt: no joint configuration in it"));
-    EXPECT_EQ(path_of("x").error().code, ExitCode::bad_data);
+    const auto error = [](const std::string& text) { return path_of(text).error().error; };
+    const Error not_finite = error("0,1\n# x\n0,nan\n");
+    EXPECT_EQ(not_finite.code, ErrorCode::bad_syntax);
+    EXPECT_EQ(not_finite.file, "way.txt");
+    EXPECT_EQ(not_finite.line, 3);
+    EXPECT_EQ(not_finite.value, "'nan'");
+    EXPECT_THAT(not_finite.what, HasSubstr("expected a joint configuration"));
+    const Error missing = error("0,1,\n");
+    EXPECT_EQ(missing.line, 1);
+    EXPECT_EQ(missing.value, "no number beside a comma");
+    EXPECT_EQ(error(std::string("\x1b[0m\0", 5)).value, "'?[0m?'");
+    const Error empty = error("# nothing\n");
+    EXPECT_EQ(empty.code, ErrorCode::no_content);
+    EXPECT_EQ(empty.file, "way.txt");
+    EXPECT_EQ(empty.line, 0);
+    EXPECT_EQ(path_of("x").error().exit, ExitCode::bad_data);
     std::string many;
     for (std::size_t i = 0; i < kConfigurationsMax; ++i) many += "0\n";
     EXPECT_TRUE(path_of(many));
-    EXPECT_THAT(path_of(many + "\n0").error().message,
-                HasSubstr("way.txt:1002: more than 1000 configurations"));
+    const Error over = error(many + "\n0");
+    EXPECT_EQ(over.code, ErrorCode::limit_exceeded);
+    EXPECT_EQ(over.file, "way.txt");
+    EXPECT_EQ(over.line, 1002);
+    EXPECT_THAT(over.what, HasSubstr("at most 1000 configurations"));
 }
 
 /// As /dev/zero is, and a pipe that somebody goes on writing to.
@@ -96,7 +108,9 @@ TEST(ReadJointPath, ends_where_the_text_does_not) {
     std::istream stream(&endless);
     const auto path = read_joint_path(stream, "zeros");
     ASSERT_FALSE(path);
-    EXPECT_THAT(path.error().message, HasSubstr("zeros: has more than 1048576 bytes"));
+    EXPECT_EQ(path.error().error.code, ErrorCode::too_large);
+    EXPECT_EQ(path.error().error.file, "zeros");
+    EXPECT_THAT(path.error().error.what, HasSubstr("at most 1048576 bytes"));
     EXPECT_LE(endless.read, kPathBytesMax + 2 * 4096);
     EXPECT_TRUE(path_of("0\n" + std::string(kPathBytesMax - 2, '#')));
     EXPECT_FALSE(path_of("0\n" + std::string(kPathBytesMax - 1, '#')));

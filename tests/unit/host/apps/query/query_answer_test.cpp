@@ -14,6 +14,7 @@
 namespace octoskin {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
@@ -69,9 +70,10 @@ TEST_F(QueryAnswer, without_a_path_is_that_of_the_arm_as_it_stands) {
     EXPECT_EQ(ask({}, map_, {0.0, 0.0}).at("state"), "free");
     const Json nobody = ask({}, map_);
     EXPECT_FALSE(nobody.at("ok").get<bool>());
-    EXPECT_EQ(nobody.at("code"), static_cast<int>(ExitCode::unavailable));
-    EXPECT_THAT(nobody.at("error").get<std::string>(),
-                HasSubstr("the arm's posture is unknown: give the posture to ask about as --joints"));
+    EXPECT_EQ(nobody.at("exit"), static_cast<int>(ExitCode::unavailable));
+    EXPECT_EQ(nobody.at("error").at("code"), "no_data");
+    EXPECT_THAT(nobody.at("error").at("remedy").get<std::string>(),
+                AllOf(HasSubstr("--joints"), HasSubstr("--stands")));
 }
 
 TEST_F(QueryAnswer, of_a_small_region_tells_how_much_is_unknown_in_litres_and_of_none_why) {
@@ -81,14 +83,26 @@ TEST_F(QueryAnswer, of_a_small_region_tells_how_much_is_unknown_in_litres_and_of
     request.z_min_m = -1.0;
     EXPECT_THAT(query_text(ask(request, FusedMap{MapConfig{}})), HasSubstr(" l unknown, 0 pockets"));
     request.z_min_m = 999.0;
-    EXPECT_THAT(ask(request, map_).value("error", ""), HasSubstr("(z_min_m, --above)"));
+    const Json error = ask(request, map_).at("error");
+    EXPECT_EQ(error.at("code"), "out_of_range");
+    EXPECT_EQ(error.at("key"), "z_min_m");
+    EXPECT_EQ(error.at("value"), "999 m");
+    EXPECT_THAT(error.at("remedy").get<std::string>(), HasSubstr("--above"));
 }
 
 TEST(QueryRefused, is_read_back_and_no_other_answer_is_one) {
-    const auto back = refusal_of(query_refused({ExitCode::usage, "why"}));
+    const Error why{.code = ErrorCode::out_of_range, .what = "why", .value = "3", .key = "step"};
+    const Json answer = query_refused({ExitCode::usage, why});
+    EXPECT_EQ(answer.at("ok"), false);
+    EXPECT_EQ(answer.at("exit"), 64);
+    EXPECT_EQ(answer.at("error").at("code"), "out_of_range");
+    EXPECT_EQ(answer.at("error").at("key"), "step");
+    const auto back = refusal_of(answer);
     ASSERT_TRUE(back);
-    EXPECT_EQ(back->code, ExitCode::usage);
-    EXPECT_EQ(back->message, "why");
+    EXPECT_EQ(back->exit, ExitCode::usage);
+    EXPECT_EQ(back->error.code, why.code);
+    EXPECT_EQ(back->error.value, why.value);
+    EXPECT_EQ(back->message(), why.message());
     EXPECT_FALSE(refusal_of(Json{{"ok", true}, {"error", "none"}}));
     EXPECT_FALSE(refusal_of(Json::array()));
 }
@@ -213,36 +227,54 @@ TEST_F(QueryAnswer, refuses_an_own_space_of_too_many_voxels) {
     request.own_space_m = 1.0;
     const Json answer = ask(request, FusedMap{fine});
     EXPECT_FALSE(answer.at("ok").get<bool>());
-    EXPECT_EQ(answer.at("code"), 64);
+    EXPECT_EQ(answer.at("exit"), 64);
+    EXPECT_EQ(answer.at("error").at("key"), "own_space_m");
 }
 
 TEST_F(QueryAnswer, refuses_a_posture_in_which_the_arm_cannot_stand) {
     const auto error = [&](std::vector<double> stands) {
         const Json answer = ask(path({{0.0, 0.0}}), map_, std::move(stands));
         EXPECT_FALSE(answer.contains("configuration")) << "it is none of the path's";
-        return answer.value("error", "none");
+        return answer.value("error", Json());
     };
-    EXPECT_EQ(error({0.0, 0.1}), "none");
-    EXPECT_EQ(error({0.0}), "the present posture: 1 joint positions; the rig has 2 joints: turn, slide");
-    EXPECT_EQ(error({0.0, 0.3}), "the present posture: slide is 0.3; its limits are 0 to 0.2");
+    EXPECT_TRUE(error({0.0, 0.1}).is_null());
+    const Json count = error({0.0});
+    EXPECT_EQ(count.at("key"), "the present posture");
+    EXPECT_EQ(count.at("value"), "1 positions");
+    EXPECT_THAT(count.at("message").get<std::string>(), HasSubstr("2 joints: turn, slide"));
+    const Json limits = error({0.0, 0.3});
+    EXPECT_EQ(limits.at("code"), "out_of_range");
+    EXPECT_EQ(limits.at("key"), "the present posture: slide");
+    EXPECT_EQ(limits.at("value"), "0.3");
+    EXPECT_THAT(limits.at("message").get<std::string>(), HasSubstr("0 to 0.2"));
 }
 
 TEST_F(QueryAnswer, refuses_what_cannot_be_asked_and_says_why) {
     EXPECT_EQ(ask(path({{0.0, 0.0}, {0.0, 0.3}}), map_).at("configuration"), 2);
     const auto error = [&](const QueryRequest& request) {
         const Json answer = ask(request, map_);
-        return answer.at("ok").get<bool>() ? std::string("ok") : answer.at("error").get<std::string>();
+        return answer.value("error", Json::object());
     };
-    EXPECT_EQ(error(path({{0.0, 0.0}, {0.0, 0.3}})),
-              "configuration 2: slide is 0.3; its limits are 0 to 0.2");
-    EXPECT_EQ(error(path({{0.0}})), "configuration 1: 1 joint positions; the rig has 2 joints: turn, slide");
+    const Json limits = error(path({{0.0, 0.0}, {0.0, 0.3}}));
+    EXPECT_EQ(limits.at("key"), "configuration 2: slide");
+    EXPECT_EQ(limits.at("value"), "0.3");
+    EXPECT_THAT(limits.at("message").get<std::string>(), HasSubstr("0 to 0.2"));
+    const Json count = error(path({{0.0}}));
+    EXPECT_EQ(count.at("key"), "configuration 1");
+    EXPECT_THAT(count.at("message").get<std::string>(), HasSubstr("2 joints: turn, slide"));
     QueryRequest no_link = path({{0.0, 0.0}});
     no_link.links_ignored = {"wrist"};
-    EXPECT_EQ(error(no_link), "the robot has no link 'wrist'");
+    const Json no_such_link = error(no_link);
+    EXPECT_EQ(no_such_link.at("code"), "unknown_name");
+    EXPECT_EQ(no_such_link.at("key"), "links_ignored");
+    EXPECT_EQ(no_such_link.at("value"), "'wrist'");
     QueryRequest endless = path({});
     endless.step = 0.005;
     for (int i = 0; i < 60; ++i) endless.path.push_back({i % 2 == 0 ? 3.0 : -3.0, 0.0});
-    EXPECT_THAT(error(endless), HasSubstr("at most 50000 are possible in one query"));
+    const Json too_long = error(endless);
+    EXPECT_EQ(too_long.at("code"), "limit_exceeded");
+    EXPECT_EQ(too_long.at("key"), "path");
+    EXPECT_THAT(too_long.at("message").get<std::string>(), HasSubstr("at most 50000 postures"));
 }
 
 TEST_F(QueryAnswer, tells_how_old_the_weakest_evidence_is_and_by_what) {
@@ -363,7 +395,8 @@ TEST_F(QueryAnswer, of_a_daemon_that_does_not_know_how_the_arm_stands_takes_noth
     const Json answer =
         answer_query(request, {&arm_.rig, &arm_.robot, map_.copy(), {}, nullptr, true}, [] { return false; });
     EXPECT_FALSE(answer.at("ok").get<bool>());
-    EXPECT_THAT(answer.at("error").get<std::string>(), HasSubstr("the arm's posture is unknown"));
+    EXPECT_EQ(answer.at("exit"), static_cast<int>(ExitCode::unavailable));
+    EXPECT_EQ(answer.at("error").at("code"), "no_data");
 }
 
 TEST_F(QueryAnswer, of_a_leg_that_never_ends_counts_no_more_postures_than_fit_a_number) {

@@ -23,7 +23,7 @@ TEST(QueryRequest, of_a_path_comes_back_as_it_was_sent) {
     EXPECT_TRUE(is_query(line));
     EXPECT_EQ(line.find('\n'), std::string::npos);
     const auto read = read_query(line);
-    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_TRUE(read) << read.error().message();
     EXPECT_EQ(read->kind, QueryKind::postures);
     EXPECT_EQ(read->path, sent.path);
     EXPECT_EQ(read->padding_m, 0.02);
@@ -44,7 +44,7 @@ TEST(QueryRequest, for_pockets_comes_back_as_it_was_sent) {
     sent.views_tried = 100;
     sent.step = 0.02;  // of the way to a view
     const auto read = read_query(to_line(sent));
-    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_TRUE(read) << read.error().message();
     EXPECT_EQ(read->kind, QueryKind::pockets);
     EXPECT_EQ(read->radius_m, 0.7);
     EXPECT_EQ(read->z_min_m, -0.1);
@@ -54,62 +54,76 @@ TEST(QueryRequest, for_pockets_comes_back_as_it_was_sent) {
     EXPECT_EQ(read->step, 0.02);
 }
 
+/// The error of a line that must be refused, as a usage error.
+Error refusal(const std::string& line) {
+    const auto read = read_query(line);
+    EXPECT_FALSE(read) << line;
+    if (read) return {};
+    EXPECT_EQ(read.error().exit, ExitCode::usage) << line;
+    return read.error().error;
+}
+
+void expect(const std::string& line, ErrorCode code, const std::string& key, const std::string& value) {
+    const Error error = refusal(line);
+    EXPECT_EQ(name_of(error.code), name_of(code)) << line;
+    EXPECT_EQ(error.key, key) << line;
+    EXPECT_EQ(error.value, value) << line;
+}
+
 TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
-    const auto fault = [](const std::string& line) {
-        const auto read = read_query(line);
-        return read ? std::string("taken") : read.error().message;
-    };
-    EXPECT_EQ(fault("query {}"), "taken");
-    for (const char* bare : {"query", "query ", "query   "})
-        EXPECT_THAT(fault(bare), HasSubstr("query expects an object: query {} is about the arm")) << bare;
-    EXPECT_THAT(fault("query {"), HasSubstr("invalid JSON from byte 1 (its end); expected: query {"));
-    EXPECT_THAT(fault("query [1]"), HasSubstr("expected: query {"));
-    EXPECT_THAT(fault("query {\"paht\": []}"),
-                HasSubstr("unknown key \"paht\"; the keys are path, padding_m,"));
-    EXPECT_EQ(fault("query {\"path\": [0, 1]}"),
-              "query: configuration 1 of path is 0; expected a list of joint configurations, each a list "
-              "of finite numbers, "
-              "such as [[0, -0.785, 1.5]]");
-    EXPECT_EQ(fault("query {\"step\": \"0.1\"}"), "query: step is \"0.1\"; expected a number");
-    EXPECT_EQ(fault("query {\"pockets\": 1}"), "query: pockets is 1; expected true or false");
-    EXPECT_EQ(fault("query {\"links_ignored\": \"hand\"}"),
-              "query: links_ignored is \"hand\"; expected a list of names, such as [\"gripper\"]");
-    EXPECT_THAT(fault("query {\"padding_m\": -1}"), HasSubstr("padding_m is -1; expected 0 to 1"));
-    EXPECT_THAT(fault("query {\"reach_m\": 1e9}"), HasSubstr("reach_m is"));
-    EXPECT_THAT(fault("query {\"step\": 0}"), HasSubstr("step is 0"));
-    for (const char* number : {"1e300", "-0.5", "2.7", "-1"}) {
-        EXPECT_THAT(fault(std::string("query {\"pockets\": true, \"pockets_max\": ") + number + "}"),
-                    HasSubstr("; expected a whole number, 0 or more"));
+    EXPECT_TRUE(read_query("query {}"));
+    for (const char* bare : {"query", "query ", "query   "}) {
+        expect(bare, ErrorCode::bad_syntax, "", "");
+        EXPECT_THAT(refusal(bare).remedy, HasSubstr("query {}")) << bare;
     }
-    EXPECT_THAT(fault("query {\"own_space_m\": 2}"), HasSubstr("own_space_m is 2"));
-    EXPECT_THAT(fault("query {\"pockets\": true, \"radius_m\": 50}"), HasSubstr("radius_m is 50"));
-    EXPECT_THAT(fault("query {\"pockets\": true, \"views_tried\": 1000000}"), HasSubstr("views_tried is"));
+    expect("query {", ErrorCode::bad_syntax, "", "the end at byte 1");
+    EXPECT_THAT(refusal("query {").what, HasSubstr("expected: query {"));
+    expect("query [1]", ErrorCode::wrong_type, "", "a list");
+    EXPECT_THAT(refusal("query [1]").what, HasSubstr("expected: query {"));
+    expect("query {\"paht\": []}", ErrorCode::unknown_key, "paht", "");
+    expect("query {\"path\": [0, 1]}", ErrorCode::wrong_type, "path[0]", "0");
+    EXPECT_THAT(refusal("query {\"path\": [0, 1]}").what, HasSubstr("such as [[0, -0.785, 1.5]]"));
+    expect("query {\"step\": \"0.1\"}", ErrorCode::wrong_type, "step", "\"0.1\"");
+    expect("query {\"pockets\": 1}", ErrorCode::wrong_type, "pockets", "1");
+    EXPECT_THAT(refusal("query {\"pockets\": 1}").what, HasSubstr("true or false"));
+    expect("query {\"links_ignored\": \"hand\"}", ErrorCode::wrong_type, "links_ignored", "\"hand\"");
+    EXPECT_THAT(refusal("query {\"links_ignored\": \"hand\"}").what, HasSubstr("[\"gripper\"]"));
+    expect("query {\"padding_m\": -1}", ErrorCode::out_of_range, "padding_m", "-1");
+    EXPECT_EQ(refusal("query {\"padding_m\": -1}").what, "expected 0 to 1");
+    expect("query {\"reach_m\": 1e9}", ErrorCode::out_of_range, "reach_m", "1000000000");
+    expect("query {\"step\": 0}", ErrorCode::out_of_range, "step", "0");
+    for (const char* number : {"1e300", "-0.5", "2.7", "-1"}) {
+        const Error error =
+            refusal(std::string("query {\"pockets\": true, \"pockets_max\": ") + number + "}");
+        EXPECT_EQ(error.code, ErrorCode::wrong_type);
+        EXPECT_EQ(error.key, "pockets_max");
+        EXPECT_THAT(error.what, HasSubstr("whole number, 0 or more"));
+    }
+    expect("query {\"own_space_m\": 2}", ErrorCode::out_of_range, "own_space_m", "2");
+    expect("query {\"pockets\": true, \"radius_m\": 50}", ErrorCode::out_of_range, "radius_m", "50");
+    expect("query {\"pockets\": true, \"views_tried\": 1000000}", ErrorCode::out_of_range, "views_tried",
+           "1000000");
 }
 
 TEST(QueryRequest, with_what_would_not_be_looked_at_is_refused_by_name) {
-    const auto fault = [](const std::string& request) {
-        const auto read = read_query("query " + request);
-        return read ? std::string("taken") : read.error().message;
-    };
     for (const std::string key : {"radius_m", "z_min_m", "pocket_min_m3", "pockets_max", "views_tried"}) {
-        EXPECT_EQ(fault("{\"" + key + "\": 1}"),
-                  "query: " + key +
-                      " has no effect without \"pockets\": true: give that, too, "
-                      "or leave it out");
-        EXPECT_EQ(fault("{\"pockets\": true, \"" + key + "\": 1}"), "taken");
+        const std::string line = "query {\"" + key + "\": 1}";
+        expect(line, ErrorCode::conflict, key, "");
+        EXPECT_THAT(refusal(line).remedy, HasSubstr("\"pockets\": true"));
+        EXPECT_TRUE(read_query("query {\"pockets\": true, \"" + key + "\": 1}")) << key;
     }
-    EXPECT_THAT(fault(R"({"pockets": false, "radius_m": 1})"), HasSubstr("radius_m has no effect without"));
-    EXPECT_THAT(fault(R"({"pockets": true, "reach_m": 1})"),
-                HasSubstr("reach_m has no effect in a query about pockets"));
-    EXPECT_THAT(fault(R"({"pockets": true, "path": [[0], [1]]})"), HasSubstr("path has 2 configurations"));
-    EXPECT_EQ(fault(R"({"pockets": true, "path": [[0]]})"), "taken");
-    EXPECT_THAT(fault(R"({"path": []})"), HasSubstr("path is empty; leave it out"));
-    EXPECT_EQ(fault(R"({"path": [[0]], "step": 1, "path": [[1]]})"), "query: the key \"path\" comes twice");
-    EXPECT_THAT(fault(R"({"step": {"a": 1}})"), HasSubstr("step is an object; expected a number"));
+    expect(R"(query {"pockets": false, "radius_m": 1})", ErrorCode::conflict, "radius_m", "");
+    expect(R"(query {"pockets": true, "reach_m": 1})", ErrorCode::conflict, "reach_m", "");
+    expect(R"(query {"pockets": true, "path": [[0], [1]]})", ErrorCode::conflict, "path", "2 configurations");
+    EXPECT_TRUE(read_query(R"(query {"pockets": true, "path": [[0]]})"));
+    expect(R"(query {"path": []})", ErrorCode::no_content, "path", "");
+    EXPECT_THAT(refusal(R"(query {"path": []})").remedy, HasSubstr("leave it out"));
+    expect(R"(query {"path": [[0]], "step": 1, "path": [[1]]})", ErrorCode::duplicate, "path", "");
+    expect(R"(query {"step": {"a": 1}})", ErrorCode::wrong_type, "step", "an object");
 }
 
 TEST(QueryRequest, with_an_unknown_key_is_told_every_key_there_is) {
-    const std::string keys = read_query("query {\"x\": 1}").error().message;
+    const std::string keys = refusal("query {\"x\": 1}").remedy;
     QueryRequest request;
     request.own_space_m = 0.1;
     request.path = {{0.0}};
@@ -131,33 +145,35 @@ TEST(QueryRequest, is_what_begins_with_the_word_and_no_other) {
 // Written out it would take as many calls as it has bytes.
 TEST(QueryRequest, with_lists_within_lists_is_refused_in_a_few_words) {
     constexpr std::size_t kDeep = 20'000;
-    const auto read =
-        read_query("query {\"step\": " + std::string(kDeep, '[') + std::string(kDeep, ']') + "}");
-    ASSERT_FALSE(read);
-    EXPECT_EQ(read.error().message, "query: step is a list; expected a number");
+    const std::string line = "query {\"step\": " + std::string(kDeep, '[') + std::string(kDeep, ']') + "}";
+    expect(line, ErrorCode::wrong_type, "step", "a list");
+    EXPECT_LT(refusal(line).message().size(), 100U);
 }
 
 // As Python's and JavaScript's serializers write them.
 TEST(QueryRequest, with_a_number_that_is_none_is_refused_in_our_words) {
-    const auto fault = [](const std::string& number) {
-        const auto read = read_query("query {\"path\": [[" + number + "]]}");
-        return read ? std::string("taken") : read.error().message;
-    };
-    EXPECT_THAT(fault("null"), HasSubstr("number 1 of configuration 1 of path is null; expected a list of"));
-    EXPECT_THAT(fault("0, 1], [2, 3], [4, null"), HasSubstr("number 2 of configuration 3 of path is null"));
-    EXPECT_THAT(fault("NaN"), HasSubstr("invalid JSON from byte 11 (\"NaN]]}\")"));
-    EXPECT_THAT(fault("-Infinity"), HasSubstr("JSON has no NaN and no Infinity"));
-    EXPECT_THAT(fault("1e999"), HasSubstr("a number is too large"));
+    const auto with = [](const std::string& number) { return "query {\"path\": [[" + number + "]]}"; };
+    expect(with("null"), ErrorCode::wrong_type, "path[0][0]", "null");
+    EXPECT_THAT(refusal(with("null")).what, HasSubstr("expected a list of"));
+    expect(with("0, 1], [2, 3], [4, null"), ErrorCode::wrong_type, "path[2][1]", "null");
+    expect(with("NaN"), ErrorCode::bad_syntax, "", "\"NaN]]}\" at byte 11");
+    EXPECT_THAT(refusal(with("-Infinity")).remedy, HasSubstr("JSON has no NaN and no Infinity"));
+    expect(with("1e999"), ErrorCode::out_of_range, "", "");
     for (const char* number : {"null", "NaN", "-Infinity", "1e999", "\"\xff\""})
-        EXPECT_THAT(fault(number), testing::Not(HasSubstr("json.exception"))) << number;
+        EXPECT_THAT(refusal(with(number)).message(), testing::Not(HasSubstr("json.exception"))) << number;
 }
 
 TEST(QueryRequest, has_so_many_configurations_and_no_more) {
     QueryRequest request;
     request.path.assign(kConfigurationsMax, {0.0});
-    EXPECT_EQ(fault_of(request), "");
+    EXPECT_FALSE(fault_of(request));
     request.path.push_back({0.0});
-    EXPECT_THAT(fault_of(request), HasSubstr("1001 configurations; at most 1000"));
+    const auto fault = fault_of(request);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->code, ErrorCode::limit_exceeded);
+    EXPECT_EQ(fault->key, "path");
+    EXPECT_EQ(fault->value, "1001 configurations");
+    EXPECT_THAT(fault->what, HasSubstr("at most 1000"));
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ class OrderOf final : public CommitListener, public CommitSource {
         commits_.emplace_back(DepthCommit{frames_.size(), frame.captured});
         frames_.push_back(frame);
     }
-    Result<std::optional<Commit>, CommitSourceError> next() override {
+    Result<std::optional<Commit>, Error> next() override {
         return next_ < commits_.size() ? std::optional(commits_[next_++]) : std::nullopt;
     }
     [[nodiscard]] const std::vector<DepthFrame>& frames() const { return frames_; }

@@ -48,7 +48,7 @@ inline constexpr std::uint8_t kSpare = 5;     ///< as kGood, silent
 class ScriptedDepth final : public DepthSource {
   public:
     explicit ScriptedDepth(std::vector<DepthFrame> frames) : frames_(std::move(frames)) {}
-    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override {
+    [[nodiscard]] Result<std::optional<DepthFrame>, Error> next() override {
         return next_ < frames_.size() ? std::optional(frames_[next_++]) : std::nullopt;
     }
 

@@ -15,10 +15,10 @@ using namespace test;
 class FailingCan final : public CanSource {
   public:
     explicit FailingCan(std::vector<StampedFrame> frames) : good_(std::move(frames)) {}
-    [[nodiscard]] Result<std::optional<StampedFrame>, CanSourceError> next() override {
+    [[nodiscard]] Result<std::optional<StampedFrame>, Error> next() override {
         auto frame = good_.next();
         if (!*frame) {
-            return unexpected(CanSourceError{"can.log: reading failed after line 3433"});
+            return unexpected(Error{ErrorCode::system_error, "reading failed after line 3433"});
         }
         return frame;
     }
@@ -29,10 +29,10 @@ class FailingCan final : public CanSource {
 class FailingDepth final : public DepthSource {
   public:
     explicit FailingDepth(std::vector<DepthFrame> frames) : good_(std::move(frames)) {}
-    [[nodiscard]] Result<std::optional<DepthFrame>, DepthSourceError> next() override {
+    [[nodiscard]] Result<std::optional<DepthFrame>, Error> next() override {
         auto frame = good_.next();
         if (!*frame) {
-            return unexpected(DepthSourceError{"depth.oni: ends within frame 6"});
+            return unexpected(Error{ErrorCode::damaged, "ends within frame 6"});
         }
         return frame;
     }
@@ -80,8 +80,10 @@ TEST(Replay, uses_what_a_source_gave_before_it_failed_and_says_why_it_did) {
     FailingDepth depth(scene.depth);
     const ReplayOutcome outcome = replay(pipeline, can, &depth);
     EXPECT_FALSE(outcome.is_complete());
-    EXPECT_EQ(outcome.can_error.value().what, "can.log: reading failed after line 3433");
-    EXPECT_EQ(outcome.depth_error.value().what, "depth.oni: ends within frame 6");
+    EXPECT_EQ(outcome.can_error.value().code, ErrorCode::system_error);
+    EXPECT_EQ(outcome.can_error.value().what, "reading failed after line 3433");
+    EXPECT_EQ(outcome.depth_error.value().code, ErrorCode::damaged);
+    EXPECT_EQ(outcome.depth_error.value().what, "ends within frame 6");
     EXPECT_EQ(pipeline.inputs().readings.used(), 10U);
     EXPECT_EQ(pipeline.inputs().depth_frames.used(), 6U);
     EXPECT_TRUE(pipeline.is_balanced());

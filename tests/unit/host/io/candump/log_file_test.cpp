@@ -1,4 +1,5 @@
 // Whole files: the nasty ones in tests/data/candump, and the round trip through the writer.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -11,10 +12,25 @@
 #include "host/io/candump/log_reader.hpp"
 #include "host/io/candump/log_source.hpp"
 #include "host/io/candump/log_writer.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::candump {
 namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::is_no_error;
+using testing_support::line_is;
+using testing_support::no_error;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 const std::filesystem::path kData = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/data/candump";
 
@@ -126,8 +142,10 @@ TEST(LogReader, takes_the_longest_line_that_is_allowed) {
 TEST(LogReader, says_why_a_file_cannot_be_opened) {
     const auto absent = LogReader::open("/nowhere/can.log");
     ASSERT_FALSE(absent.has_value());
-    EXPECT_EQ(absent.error().message(), "/nowhere/can.log: cannot open: No such file or directory");
-    EXPECT_FALSE(LogReader::open(kData).has_value()) << "a directory";
+    EXPECT_THAT(absent.error(), AllOf(code_is(ErrorCode::not_found), what_is(HasSubstr("No such file"))));
+    EXPECT_EQ(absent.error().file, "/nowhere/can.log");
+    EXPECT_TRUE(has_its_fields(absent.error()));
+    EXPECT_THAT(LogReader::open(kData).error(), code_is(ErrorCode::wrong_kind_of_file)) << "a directory";
 }
 
 TEST(LogSource, gives_the_frames_of_a_log_with_their_stamps_and_then_ends) {
@@ -171,7 +189,8 @@ TEST(LogWriter, reports_a_full_disk) {
 TEST(LogWriter, makes_no_log_whose_lines_could_be_read_in_two_ways) {
     for (const char* name : {"can#0", "123#00", "a b", "", "sixteen_letters_", "can\t0", "can\x80"}) {
         TemporaryFile file("refused");
-        EXPECT_FALSE(LogWriter::create(file.path(), name).has_value()) << name;
+        EXPECT_THAT(error_in(LogWriter::create(file.path(), name)),
+                    AllOf(code_is(ErrorCode::bad_name), value_is("'" + std::string(name) + "'")));
         EXPECT_FALSE(std::filesystem::exists(file.path())) << name;
     }
 }
@@ -179,18 +198,18 @@ TEST(LogWriter, makes_no_log_whose_lines_could_be_read_in_two_ways) {
 TEST(LogWriter, says_why_a_file_cannot_be_created) {
     const auto writer = LogWriter::create("/nowhere/can.log");
     ASSERT_FALSE(writer.has_value());
-    EXPECT_EQ(writer.error().message(), "/nowhere/can.log: cannot create: No such file or directory");
+    EXPECT_THAT(writer.error(), AllOf(code_is(ErrorCode::not_found), what_is(HasSubstr("No such file"))));
+    EXPECT_EQ(writer.error().file, "/nowhere/can.log");
 }
 
-/// What the reader says of a file with this text, once it was read to its end; empty if nothing.
-std::string foreign(const std::string& text) {
+/// The reader's error for a file with this text after it was read to its end; `no_error` if there is none.
+Error foreign(const std::string& text) {
     const testing_support::ScratchFolder folder;
     auto reader = LogReader::open(folder.write("can.log", text));
     EXPECT_TRUE(reader.has_value());
     while (reader->next()->has_value()) {
     }
-    const auto error = reader->foreign_file();
-    return error ? error->what : "";
+    return reader->foreign_file().value_or(no_error());
 }
 
 std::vector<std::int64_t> stamps_us(const std::string& text) {
@@ -262,9 +281,11 @@ const Foreign kForeign[] = {
 
 TEST(LogFile, of_another_program_is_named_with_the_command_that_converts_it) {
     for (const Foreign& file : kForeign) {
-        const std::string what = foreign(file.text);
-        EXPECT_TRUE(what.starts_with("is a log in the format " + std::string(file.name) + ";")) << what;
-        EXPECT_NE(what.find(": " + std::string(file.command)), std::string::npos) << what;
+        const Error error = foreign(file.text);
+        EXPECT_THAT(error, AllOf(code_is(ErrorCode::foreign_format), file_is("can.log"),
+                                 what_is(EndsWith(std::string(" ") + file.name)),
+                                 remedy_is(HasSubstr(std::string(": ") + file.command))));
+        EXPECT_TRUE(has_its_fields(error));
     }
 }
 
@@ -288,12 +309,15 @@ TEST(LogFile, of_another_program_is_what_it_was_behind_the_command_if_that_is_aw
 
 TEST(LogFile, of_which_no_line_is_a_frame_says_how_to_record_one) {
     const std::string seen = "  can0  141   [8]  01 02 03 04 05 06 07 08\n";  // what candump shows without -L
-    EXPECT_EQ(foreign("\n" + seen + seen),
-              "no line is a frame in candump's format: line 2 does not begin with a time in parentheses: '  "
-              "can0  141   [8]  01 02 03 04 05 06 07 08'; record with `candump -L can0 > can.log`");
-    EXPECT_EQ(foreign(seen + "(1436509053.850870) vcan0 044#2A\n"), "");
-    EXPECT_EQ(foreign(""), "") << "an empty log is a log";
-    EXPECT_EQ(foreign("\n\n"), "");
+    const Error error = foreign("\n" + seen + seen);
+    EXPECT_THAT(error, AllOf(code_is(ErrorCode::foreign_format), file_is("can.log"), line_is(2),
+                             what_is(HasSubstr("a time in parentheses")),
+                             value_is("'  can0  141   [8]  01 02 03 04 05 06 07 08'"),
+                             remedy_is(HasSubstr("`candump -L can0 > can.log`"))));
+    EXPECT_TRUE(has_its_fields(error));
+    EXPECT_THAT(foreign(seen + "(1436509053.850870) vcan0 044#2A\n"), is_no_error());
+    EXPECT_THAT(foreign(""), is_no_error()) << "an empty log is a log";
+    EXPECT_THAT(foreign("\n\n"), is_no_error());
 }
 
 }  // namespace

@@ -11,15 +11,21 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::has_its_fields;
 using testing_support::ScratchFolder;
+using testing_support::what_is;
 
 int absent_call(int, const char*, const open_how&) {
     errno = ENOSYS;
@@ -99,7 +105,10 @@ TEST_P(OpenFolderTest, follows_no_link_below_it_and_names_it) {
         const auto opened = folder.open_file(name);
         ASSERT_EQ(fault_of(opened), FolderFault::link) << name;
         EXPECT_EQ(opened.error().path, scratch_ / "rec" / link) << name;
-        EXPECT_THAT(opened.error().message(), HasSubstr("is a symbolic link")) << name;
+        const Error error = to_error(opened.error(), "cannot be read: ");
+        EXPECT_THAT(error, AllOf(code_is(ErrorCode::link), what_is(StartsWith("cannot be read: ")))) << name;
+        EXPECT_EQ(error.file, opened.error().path) << name;
+        EXPECT_TRUE(has_its_fields(error));
         EXPECT_EQ(folder.kind_of(name), EntryKind::link) << name;
     }
     EXPECT_EQ(folder.open_folder("out").error().fault, FolderFault::link);
@@ -122,7 +131,8 @@ TEST_P(OpenFolderTest, a_name_leads_nowhere_but_into_it) {
 TEST_P(OpenFolderTest, opens_only_ordinary_files_and_waits_for_none) {
     const OpenFolder folder = open();
     EXPECT_EQ(fault_of(folder.open_file("pipe")), FolderFault::not_a_file);
-    EXPECT_THAT(folder.open_file("pipe").error().message(), HasSubstr("a named pipe"));
+    EXPECT_THAT(to_error(folder.open_file("pipe").error()),
+                AllOf(code_is(ErrorCode::wrong_kind_of_file), what_is(HasSubstr("a named pipe"))));
     EXPECT_EQ(fault_of(folder.open_file("maps")), FolderFault::not_a_file);
     EXPECT_EQ(fault_of(folder.open_file("absent")), FolderFault::absent);
     EXPECT_EQ(fault_of(folder.open_file("can.log/x")), FolderFault::not_a_folder);
@@ -221,7 +231,7 @@ TEST(FolderOwnerTest, writes_only_into_folders_of_the_caller_or_of_root) {
         const auto foreign = OpenFolder::open(scratch / "other", FolderAccess::write);
         return may_write("one") && may_write("root") && !foreign &&
                foreign.error().fault == FolderFault::foreign_owner &&
-               foreign.error().message().find("12346") != std::string::npos;
+               foreign.error().what.find("12346") != std::string::npos;
     }));
     EXPECT_TRUE(holds_as(kOne, [&] {
         const auto one = OpenFolder::open(scratch / "one", FolderAccess::write);

@@ -276,16 +276,20 @@ TEST(AtomicFile, says_which_step_failed_and_why) {
     ASSERT_FALSE(missing.has_value());
     EXPECT_EQ(missing.error().step, SaveStep::create);
     EXPECT_EQ(missing.error().error_number, ENOENT);
-    EXPECT_EQ(missing.error().message(),
-              (folder / "no/such/map.ot").string() +
-                  ": creating a file beside it failed (No such file or directory); "
-                  "the old file, if any, is unchanged");
+    const Error error = to_error(missing.error());
+    EXPECT_EQ(error.code, ErrorCode::system_error);
+    EXPECT_EQ(error.file, folder / "no/such/map.ot");
+    EXPECT_NE(error.what.find("(No such file or directory); the old file, if any, is unchanged"),
+              std::string::npos)
+        << error.what;
+    EXPECT_EQ(missing.error().message(), error.message());
     std::filesystem::create_directory(folder / "taken.ot");
     const auto taken = save_atomically(folder / "taken.ot", "x");
     ASSERT_FALSE(taken.has_value());
     EXPECT_EQ(taken.error().step, SaveStep::rename);
     EXPECT_EQ(folder.entries(), 1);
     EXPECT_EQ(save_atomically("", "x").error().step, SaveStep::name);
+    EXPECT_EQ(to_error(save_atomically("", "x").error()).code, ErrorCode::bad_name);
     EXPECT_EQ(save_atomically(folder.path() / "", "x").error().step, SaveStep::name);
     EXPECT_EQ(save_atomically(folder.path() / "..", "x").error().step, SaveStep::name);
 }

@@ -11,22 +11,35 @@
 #include <string>
 
 #include "host/io/mapping/mapping_keys.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::is_no_error;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
 using testing_support::ScratchFolder;
+using testing_support::value_is;
+using testing_support::what_is;
 
-Result<MappingConfig, MappingFileError> read_text(const std::string& text) {
+Result<MappingConfig, Error> read_text(const std::string& text) {
     const ScratchFolder folder;
     return read_mapping(folder.write("my.yaml", text).string());
 }
 
-std::string error_of(const std::string& text) {
-    const auto config = read_text(text);
-    return config ? "no error" : config.error().message();
+Error error_of(const std::string& text) {
+    const Error error = error_in(read_text(text));
+    EXPECT_TRUE(has_its_fields(error)) << text;
+    return error;
 }
 
 TEST(MappingFile, knows_those_that_ship_by_name) {
@@ -165,44 +178,56 @@ TEST(MappingFile, reads_every_key) {
 }
 
 TEST(MappingFile, names_file_line_key_value_and_remedy) {
-    EXPECT_THAT(error_of("map:\n  resolution: 0.04\n"), HasSubstr("my.yaml:2: map.resolution: "));
-    EXPECT_THAT(error_of("map:\n  resolution: 0.04\n"), HasSubstr("resolution_m"));
-    EXPECT_THAT(error_of("\nno_return_clear_mm: 100\n"), HasSubstr("my.yaml:2: no_return_clear_mm: "));
-    EXPECT_THAT(error_of("depth_update: best\n"),
-                HasSubstr("my.yaml:1: depth_update: expected paper or robust or fast, found 'best'"));
-    EXPECT_THAT(error_of("base: worst\n"),
-                HasSubstr("my.yaml:1: base: expected paper or robust or fast, found 'worst'"));
-    EXPECT_THAT(error_of("miss_log_odds: 0.4\n"),
-                HasSubstr("my.yaml:1: miss_log_odds: expected a number from "));
+    EXPECT_THAT(error_of("map:\n  resolution: 0.04\n"),
+                AllOf(code_is(ErrorCode::unknown_key), file_is("my.yaml"), line_is(2),
+                      key_is("map.resolution"), remedy_is(HasSubstr("resolution_m"))));
+    EXPECT_THAT(error_of("\nno_return_clear_mm: 100\n"),
+                AllOf(code_is(ErrorCode::unknown_key), line_is(2), key_is("no_return_clear_mm")));
+    for (const auto& [key, value] : {std::pair("depth_update", "best"), std::pair("base", "worst")})
+        EXPECT_THAT(
+            error_of(std::string(key) + ": " + value + "\n"),
+            AllOf(code_is(ErrorCode::unknown_word), line_is(1), key_is(key),
+                  what_is(HasSubstr("paper or robust or fast")), value_is("'" + std::string(value) + "'")));
+    EXPECT_THAT(error_of("miss_log_odds: 0.4\n"), AllOf(code_is(ErrorCode::out_of_range), line_is(1),
+                                                        key_is("miss_log_odds"), value_is("'0.4'")));
     EXPECT_THAT(error_of("depth_filter: {window_px: 4}\n"),
-                HasSubstr("my.yaml:1: depth_filter.window_px: expected an odd number, found 4"));
-    EXPECT_THAT(error_of("depth_filter: {is_enabled: 1}\n"), HasSubstr("expected true or false, found '1'"));
-    EXPECT_THAT(error_of("map: {log_odds_occupied: 4}\n"), HasSubstr("my.yaml:1: map.log_odds_occupied: "));
-    EXPECT_THAT(error_of("map: {log_odds_occupied: -2}\n"), HasSubstr("my.yaml:1: map.log_odds_occupied: "));
-    EXPECT_THAT(error_of("map: 0.04\n"), HasSubstr("my.yaml:1: map: expected a table of keys"));
-    EXPECT_THAT(error_of("map: {resolution_m: .nan}\n"), HasSubstr("my.yaml:1: map.resolution_m: "));
-    EXPECT_THAT(error_of("map: {resolution_m: 0}\n"), HasSubstr("my.yaml:1: map.resolution_m: "));
-    EXPECT_THAT(error_of("depth_hit: {range_min_m: -1}\n"), HasSubstr("my.yaml:1: depth_hit.range_min_m: "));
-    EXPECT_THAT(error_of("map: [\n"), HasSubstr("my.yaml:"));
-    EXPECT_FALSE(read_mapping("no/such/file.yaml").has_value());
+                AllOf(code_is(ErrorCode::bad_value), line_is(1), key_is("depth_filter.window_px"),
+                      what_is(HasSubstr("an odd number")), value_is("4")));
+    EXPECT_THAT(error_of("depth_filter: {is_enabled: 1}\n"),
+                AllOf(code_is(ErrorCode::wrong_type), what_is(HasSubstr("true or false")), value_is("'1'")));
+    for (const char* odds : {"4", "-2"})
+        EXPECT_THAT(error_of(std::string("map: {log_odds_occupied: ") + odds + "}\n"),
+                    AllOf(line_is(1), key_is("map.log_odds_occupied")));
+    EXPECT_THAT(error_of("map: 0.04\n"),
+                AllOf(code_is(ErrorCode::wrong_type), line_is(1), key_is("map"), value_is("'0.04'")));
+    for (const char* metres : {".nan", "0"})
+        EXPECT_THAT(error_of(std::string("map: {resolution_m: ") + metres + "}\n"),
+                    AllOf(line_is(1), key_is("map.resolution_m")));
+    EXPECT_THAT(error_of("depth_hit: {range_min_m: -1}\n"),
+                AllOf(code_is(ErrorCode::out_of_range), line_is(1), key_is("depth_hit.range_min_m")));
+    EXPECT_THAT(error_of("map: [\n"), AllOf(code_is(ErrorCode::bad_syntax), file_is("my.yaml")));
+    EXPECT_THAT(error_in(read_mapping("no/such/file.yaml")),
+                AllOf(code_is(ErrorCode::not_found), file_is("file.yaml")));
 }
 
 TEST(MappingFile, refuses_ages_at_which_nothing_could_be_stale) {
-    EXPECT_THAT(
-        error_of("age:\n  unknown_after_s: 60\n"),
-        HasSubstr("my.yaml:2: age.unknown_after_s: expected more than stale_after_s, 60, or 0 (never), "
-                  "found 60"));
-    EXPECT_THAT(error_of("age: {stale_after_s: 7201}\n"), HasSubstr("my.yaml:1: age.stale_after_s: "));
-    EXPECT_THAT(error_of("age: {stale_after_s: 1.5}\n"), HasSubstr("my.yaml:1: age.stale_after_s: "));
-    EXPECT_EQ(error_of("age: {stale_after_s: 0, unknown_after_s: 1}\n"), "no error");
-    EXPECT_EQ(error_of("age: {stale_after_s: 7200, unknown_after_s: 0}\n"), "no error");
+    EXPECT_THAT(error_of("age:\n  unknown_after_s: 60\n"),
+                AllOf(code_is(ErrorCode::conflict), line_is(2), key_is("age.unknown_after_s"),
+                      what_is(HasSubstr("more than stale_after_s, 60, or 0 (never)")), value_is("60")));
+    EXPECT_THAT(error_of("age: {stale_after_s: 7201}\n"),
+                AllOf(code_is(ErrorCode::out_of_range), line_is(1), key_is("age.stale_after_s")));
+    EXPECT_THAT(error_of("age: {stale_after_s: 1.5}\n"),
+                AllOf(code_is(ErrorCode::wrong_type), line_is(1), key_is("age.stale_after_s")));
+    EXPECT_THAT(error_of("age: {stale_after_s: 0, unknown_after_s: 1}\n"), is_no_error());
+    EXPECT_THAT(error_of("age: {stale_after_s: 7200, unknown_after_s: 0}\n"), is_no_error());
 }
 
 TEST(MappingFile, refuses_sensors_only_where_they_are_reported) {
     EXPECT_THAT(error_of("reports_contradicting_sensors: false\nrefuses_contradicting_sensors: true\n"),
-                HasSubstr("my.yaml:2: refuses_contradicting_sensors: expected false because "));
-    EXPECT_EQ(error_of("refuses_contradicting_sensors: true\n"), "no error");
-    EXPECT_EQ(error_of("reports_contradicting_sensors: false\n"), "no error");
+                AllOf(code_is(ErrorCode::conflict), line_is(2), key_is("refuses_contradicting_sensors"),
+                      what_is(HasSubstr("reports_contradicting_sensors"))));
+    EXPECT_THAT(error_of("refuses_contradicting_sensors: true\n"), is_no_error());
+    EXPECT_THAT(error_of("reports_contradicting_sensors: false\n"), is_no_error());
     for (const MappingConfig& config : {paper_mapping(), robust_mapping(), fast_mapping()}) {
         EXPECT_TRUE(config.reports_contradicting_sensors);
         EXPECT_FALSE(config.refuses_contradicting_sensors);
@@ -211,43 +236,47 @@ TEST(MappingFile, refuses_sensors_only_where_they_are_reported) {
 
 TEST(MappingFile, refuses_to_believe_one_reading_alone) {
     EXPECT_THAT(error_of("standing: {readings: 1}\n"),
-                HasSubstr("my.yaml:1: standing.readings: expected 2 or more, or 0 (never), found 1"));
-    EXPECT_EQ(error_of("standing: {readings: 2}\n"), "no error");
-    EXPECT_EQ(error_of("standing: {readings: 0}\n"), "no error");
+                AllOf(code_is(ErrorCode::out_of_range), line_is(1), key_is("standing.readings"),
+                      what_is(HasSubstr("2 or more, or 0 (never)")), value_is("1")));
+    EXPECT_THAT(error_of("standing: {readings: 2}\n"), is_no_error());
+    EXPECT_THAT(error_of("standing: {readings: 0}\n"), is_no_error());
 }
 
 TEST(MappingFile, refuses_a_filter_whose_window_has_too_few_pixels_for_any_value) {
-    EXPECT_THAT(
-        error_of("depth_filter: {window_px: 1}\n"),
-        HasSubstr("my.yaml:1: depth_filter.min_support: expected at most 0 with window_px 1, found 5"));
-    EXPECT_THAT(
-        error_of("depth_filter:\n  window_px: 3\n  min_support: 9\n"),
-        HasSubstr("my.yaml:3: depth_filter.min_support: expected at most 8 with window_px 3, found 9"));
-    EXPECT_THAT(error_of("depth_filter: {min_support: 25}\n"), HasSubstr("its window has 25"));
-    EXPECT_EQ(error_of("depth_filter: {window_px: 1, min_support: 0}\n"), "no error");
-    EXPECT_EQ(error_of("depth_filter: {window_px: 3, min_support: 8}\n"), "no error");
-    EXPECT_EQ(error_of("depth_filter: {is_enabled: false, window_px: 1}\n"), "no error");
+    EXPECT_THAT(error_of("depth_filter: {window_px: 1}\n"),
+                AllOf(code_is(ErrorCode::conflict), line_is(1), key_is("depth_filter.min_support"),
+                      what_is(HasSubstr("at most 0 with window_px 1")), value_is("5")));
+    EXPECT_THAT(error_of("depth_filter:\n  window_px: 3\n  min_support: 9\n"),
+                AllOf(code_is(ErrorCode::conflict), line_is(3), key_is("depth_filter.min_support"),
+                      what_is(HasSubstr("at most 8 with window_px 3")), value_is("9"),
+                      remedy_is(AllOf(HasSubstr("window_px"), HasSubstr("is_enabled: false")))));
+    EXPECT_THAT(error_of("depth_filter: {min_support: 25}\n"),
+                AllOf(what_is(HasSubstr("its window has 25")), value_is("25")));
+    EXPECT_THAT(error_of("depth_filter: {window_px: 1, min_support: 0}\n"), is_no_error());
+    EXPECT_THAT(error_of("depth_filter: {window_px: 3, min_support: 8}\n"), is_no_error());
+    EXPECT_THAT(error_of("depth_filter: {is_enabled: false, window_px: 1}\n"), is_no_error());
 }
 
 TEST(MappingFile, knows_a_number_in_quotes_one_with_a_comma_and_a_key_of_another_table) {
-    EXPECT_THAT(error_of("map: {resolution_m: \"0.02\"}\n"),
-                HasSubstr("found '0.02' in quotes, which make it a text: leave them out"));
-    EXPECT_THAT(error_of("map: {memory_max_mib: '20'}\n"), HasSubstr("in quotes, which make it a text"));
-    EXPECT_THAT(error_of("depth_filter: {is_enabled: 'true'}\n"),
-                HasSubstr("in quotes, which make it a text"));
+    for (const auto& [text, value] : {std::pair("map: {resolution_m: \"0.02\"}\n", "'0.02'"),
+                                      std::pair("map: {memory_max_mib: '20'}\n", "'20'"),
+                                      std::pair("depth_filter: {is_enabled: 'true'}\n", "'true'")})
+        EXPECT_THAT(error_of(text), AllOf(code_is(ErrorCode::wrong_type), value_is(value),
+                                          remedy_is(HasSubstr("leave out the quotes"))));
     EXPECT_THAT(error_of("map: {resolution_m: \"fine\"}\n"),
-                HasSubstr("expected a number from 0.001 to 10, found 'fine'"));
-    EXPECT_THAT(error_of("map:\n  resolution_m: 0,02\n"), HasSubstr("found '0,02': a decimal point, 0.02?"));
-    EXPECT_THAT(
-        error_of("map: {resolution_m: 0,02}\n"),
-        HasSubstr("my.yaml:1: map.02: expected a known key, found this one: if it is part of a number "
-                  "such as 0,02, write a decimal point: 0.02"));
+                AllOf(code_is(ErrorCode::wrong_type), what_is(HasSubstr("from 0.001 to 10")),
+                      value_is("'fine'"), remedy_is("")));
+    EXPECT_THAT(error_of("map:\n  resolution_m: 0,02\n"),
+                AllOf(code_is(ErrorCode::wrong_type), value_is("'0,02'"), remedy_is(HasSubstr("0.02"))));
+    EXPECT_THAT(error_of("map: {resolution_m: 0,02}\n"),
+                AllOf(code_is(ErrorCode::unknown_key), line_is(1), key_is("map.02"),
+                      remedy_is(AllOf(HasSubstr("a decimal point: 0.02"), HasSubstr("0,02")))));
     EXPECT_THAT(error_of("resolution_m: 0.02\n"),
-                HasSubstr("my.yaml:1: resolution_m: expected a known key, found this one: did you mean "
-                          "map.resolution_m?"));
-    EXPECT_THAT(error_of("window_px: 3\n"), HasSubstr("did you mean depth_filter.window_px?"));
+                AllOf(code_is(ErrorCode::unknown_key), line_is(1), key_is("resolution_m"),
+                      remedy_is(HasSubstr("did you mean map.resolution_m?"))));
+    EXPECT_THAT(error_of("window_px: 3\n"), remedy_is(HasSubstr("did you mean depth_filter.window_px?")));
     EXPECT_THAT(error_of("range_min_m: 3\n"),
-                HasSubstr("did you mean proximity_hit.range_min_m or depth_hit.range_min_m?"));
+                remedy_is(HasSubstr("did you mean proximity_hit.range_min_m or depth_hit.range_min_m?")));
 }
 
 /// "map.resolution_m" and its value, of text as `mapping_text` writes it.
@@ -273,11 +302,10 @@ std::string expected_of(const std::string& path) {
     const std::string text = dot == std::string::npos
                                  ? path + ": 1e30\n"
                                  : path.substr(0, dot) + ": {" + path.substr(dot + 1) + ": 1e30}\n";
-    std::string error = error_of(text);
-    const std::string begin = path + ": expected ";
-    const auto from = error.find(begin);
-    if (from == std::string::npos) return error;
-    return error.substr(from + begin.size(), error.find(", found") - from - begin.size());
+    const Error error = error_of(text);
+    constexpr std::string_view kBegin = "expected ";
+    if (error.key != path || !error.what.starts_with(kBegin)) return error.message();
+    return error.what.substr(kBegin.size());
 }
 
 TEST(MappingFile, expects_of_each_key_what_the_table_of_keys_declares) {

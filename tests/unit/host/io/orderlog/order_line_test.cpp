@@ -1,5 +1,6 @@
 #include "host/io/orderlog/order_line.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -8,6 +9,7 @@
 #include <random>
 
 #include "host/io/orderlog/order_reader.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -23,6 +25,16 @@ static bool operator==(const RangeMeasurement& a, const RangeMeasurement& b) {
 
 namespace orderlog {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::line_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 std::string without_feed(std::string line) {
     EXPECT_TRUE(line.ends_with('\n'));
@@ -132,17 +144,27 @@ class OrderFile : public testing::Test {
   protected:
     static constexpr const char* kBegin = "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 1 first -\n";
     static constexpr const char* kEnd = "end commits 2 lost_can 0 lost_commits 0 lost_depth 0 last -\n";
-    /// The number of commits, or what was wrong.
+    /// The number of commits; an error is in error_.
     std::string read(const std::string& text) {
         const auto file = folder_.write("order.log", text);
         auto reader = OrderReader::open(file);
-        if (!reader) return reader.error().what;
+        error_ = error_in(reader);
+        if (!reader) return "refused";
         for (int count = 0;; ++count) {
             const auto commit = reader->next();
-            if (!commit) return commit.error().what;
+            error_ = error_in(commit);
+            if (!commit) return "refused";
             if (!*commit) return std::to_string(count) + (reader->trailer() ? " whole" : " cut off");
         }
     }
+    Error error_of(const std::string& text) {
+        EXPECT_EQ(read(text), "refused");
+        EXPECT_EQ(error_.file, folder_ / "order.log");
+        EXPECT_TRUE(has_its_fields(error_));
+        return error_;
+    }
+
+    Error error_;
     testing_support::ScratchFolder folder_;
 };
 
@@ -158,25 +180,27 @@ TEST_F(OrderFile, of_a_daemon_that_was_killed_has_its_whole_lines) {
 
 TEST_F(OrderFile, with_a_mistake_is_named_with_its_line) {
     const std::string file = (folder_ / "order.log").string();
-    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nhello\n" + kEnd),
-              file + ":3: not a line of an order log: 'hello'");
-    for (const char* reading : {"R 1 0 0 71 8.1 0.02\n", "R 1 0 0 71 1 1.1\n", "R 1 0 0 71 -1 0.02\n"}) {
-        EXPECT_TRUE(
-            read(std::string(kBegin) + reading + kEnd).starts_with(file + ":2: no sensor has that range"))
-            << reading;
+    EXPECT_THAT(error_of(std::string(kBegin) + "J 1 0\nhello\n" + kEnd),
+                AllOf(code_is(ErrorCode::bad_syntax), line_is(3), value_is("'hello'")));
+    for (const char* reading : {"R 1 0 0 71 8.1 0.02", "R 1 0 0 71 1 1.1", "R 1 0 0 71 -1 0.02"}) {
+        EXPECT_THAT(
+            error_of(std::string(kBegin) + reading + "\n" + kEnd),
+            AllOf(code_is(ErrorCode::out_of_range), line_is(2), value_is("'" + std::string(reading) + "'")));
     }
     EXPECT_EQ(read(std::string(kBegin) + "R 1 0 0 71 8 1\nR 1 0 0 72 - 60\n" + kEnd), "2 whole");
-    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\n" + kEnd),
-              file + ":3: there were 2 commits, 0 of them not recorded, and 1 are in the file");
-    EXPECT_EQ(read(std::string(kBegin) + "J 1 0\nD 0 2\n" + kEnd + "J 3 0\n"),
-              file + ":5: a line after the end");
-    EXPECT_TRUE(read("octoskin-order/9\n").starts_with(file + ":1: does not begin like an order"));
-    EXPECT_TRUE(read("").starts_with(file + ":1: does not begin like an order"));
-    EXPECT_TRUE(read(std::string(100'000, 'x')).starts_with(file + ":1: does not begin like an order"));
+    EXPECT_THAT(error_of(std::string(kBegin) + "J 1 0\n" + kEnd),
+                AllOf(code_is(ErrorCode::damaged), line_is(3),
+                      what_is(AllOf(HasSubstr("2 commits"), HasSubstr("the 0 that"))), value_is("1")));
+    EXPECT_THAT(error_of(std::string(kBegin) + "J 1 0\nD 0 2\n" + kEnd + "J 3 0\n"),
+                AllOf(code_is(ErrorCode::damaged), line_is(5), what_is(HasSubstr("after the end"))));
+    for (const std::string& text :
+         {std::string("octoskin-order/9\n"), std::string(), std::string(100'000, 'x')})
+        EXPECT_THAT(error_of(text), AllOf(code_is(ErrorCode::foreign_format), line_is(1)));
     std::filesystem::remove(file);
-    EXPECT_EQ(OrderReader::open(file).error().what, file + ": No such file or directory");
+    EXPECT_THAT(OrderReader::open(file).error(), AllOf(code_is(ErrorCode::not_found), file_is("order.log")));
     ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
-    EXPECT_EQ(OrderReader::open(file).error().what, file + ": is a named pipe, not a regular file");
+    EXPECT_THAT(OrderReader::open(file).error(),
+                AllOf(code_is(ErrorCode::wrong_kind_of_file), what_is(HasSubstr("a named pipe"))));
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ class Saver final : public CommitListener {
 class TextSource final : public CommitSource {
   public:
     explicit TextSource(const std::string& text) : text_(text) {}
-    Result<std::optional<Commit>, CommitSourceError> next() override {
+    Result<std::optional<Commit>, Error> next() override {
         std::string line;
         if (!std::getline(text_, line)) return std::optional<Commit>{};
         auto commit = orderlog::parse_commit(line, kJoints);

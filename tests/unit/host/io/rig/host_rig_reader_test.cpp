@@ -151,6 +151,7 @@ TEST(HostRigReader, refuses_a_body_outside_the_kinematic_tree) {
     rig.joints.joints = {"panda_joint5", "panda_joint6", "panda_joint7"};
     const auto setup = make_host_setup(rig);
     ASSERT_FALSE(setup);
+    EXPECT_EQ(setup.error().code, ErrorCode::conflict);
     EXPECT_EQ(setup.error().key, "link panda_link0");
 }
 

@@ -31,14 +31,14 @@ SnapshotOrigin origin() {
     return origin;
 }
 
-Result<Snapshot, SnapshotError> decode(std::string_view bytes) {
+Result<Snapshot, Error> decode(std::string_view bytes) {
     return decode_snapshot(bytes, quickly_aging(), kMapping);
 }
 
-SnapshotFault fault_of_bytes(std::string_view bytes) {
+ErrorCode fault_of_bytes(std::string_view bytes) {
     const auto snapshot = decode(bytes);
     EXPECT_FALSE(snapshot);
-    return snapshot ? SnapshotFault::no_snapshot : snapshot.error().fault;
+    return snapshot ? ErrorCode::foreign_format : snapshot.error().code;
 }
 
 /// Of a brick: where it is, whether each voxel has a value, and the values' bits.
@@ -139,7 +139,7 @@ TEST(Snapshot, gives_every_layer_again_bit_by_bit) {
         EXPECT_TRUE(has_passages);
         const std::string bytes = encode_snapshot(state, origin());
         const auto again = decode(bytes);
-        ASSERT_TRUE(again) << again.error().what;
+        ASSERT_TRUE(again) << again.error().message();
         EXPECT_EQ(again->origin, origin());
         expect_equal(again->state, state);
         EXPECT_EQ(encode_snapshot(again->state, again->origin), bytes);
@@ -166,14 +166,14 @@ TEST(Snapshot, is_all_that_later_maps_follow_from) {
 TEST(Snapshot, of_an_empty_map_or_one_without_a_time_is_one_too) {
     const MapState empty{FusedMap(quickly_aging().map), {}};
     auto again = decode(encode_snapshot(empty, {.mapping_crc32 = kMapping}));
-    ASSERT_TRUE(again) << again.error().what;
+    ASSERT_TRUE(again) << again.error().message();
     expect_equal(again->state, empty);
     EXPECT_FALSE(again->origin.map_crc32 || again->origin.map_time);
     MapState timeless{FusedMap(quickly_aging().map), {}};
     ASSERT_TRUE(timeless.map.set_cube({.lowest = {32, 64, 96}, .height = 5}, 1.5F));
     ASSERT_TRUE(timeless.map.set_cube({.lowest = {8192, 0, 65534}, .height = 1}, -0.0F));
     again = decode(encode_snapshot(timeless, origin()));
-    ASSERT_TRUE(again) << again.error().what;
+    ASSERT_TRUE(again) << again.error().message();
     expect_equal(again->state, timeless);
 }
 
@@ -190,8 +190,8 @@ TEST(Snapshot, is_refused_with_any_byte_changed_and_at_any_length) {
     }
     for (std::size_t size = 0; size < bytes.size(); ++size)
         ASSERT_FALSE(decode(std::string_view(bytes).substr(0, size))) << size;
-    EXPECT_EQ(fault_of_bytes(bytes + '\0'), SnapshotFault::damaged);
-    EXPECT_EQ(fault_of_bytes(bytes + bytes), SnapshotFault::damaged);
+    EXPECT_EQ(fault_of_bytes(bytes + '\0'), ErrorCode::damaged);
+    EXPECT_EQ(fault_of_bytes(bytes + bytes), ErrorCode::damaged);
 }
 
 /// A change of the format takes another version.
@@ -199,7 +199,7 @@ TEST(Snapshot, is_what_it_was_byte_for_byte) {
     const std::string kept =
         ScratchFolder::read(std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/fuzz/corpus/snapshot/small");
     const auto snapshot = decode(kept);
-    ASSERT_TRUE(snapshot) << snapshot.error().what;
+    ASSERT_TRUE(snapshot) << snapshot.error().message();
     EXPECT_TRUE(encode_snapshot(snapshot->state, snapshot->origin) == kept);
 }
 
@@ -217,7 +217,7 @@ TEST(Snapshot, with_bytes_changed_and_right_checksums_is_a_possible_state_or_ref
         ++accepted;
         const std::string written = encode_snapshot(snapshot->state, snapshot->origin);
         const auto again = decode(written);
-        ASSERT_TRUE(again) << at << ": " << again.error().what;
+        ASSERT_TRUE(again) << at << ": " << again.error().message();
         ASSERT_EQ(encode_snapshot(again->state, again->origin), written) << at;
         if (accepted % 20 != 0) continue;
         MeasuredMap resumed(quickly_aging(), std::move(snapshot->state));
@@ -228,39 +228,39 @@ TEST(Snapshot, with_bytes_changed_and_right_checksums_is_a_possible_state_or_ref
 }
 
 TEST(Snapshot, with_a_reading_that_no_sensor_has_is_refused) {
-    const auto fault_with = [](const auto& change) -> std::optional<SnapshotFault> {
+    const auto fault_with = [](const auto& change) -> std::optional<ErrorCode> {
         MeasuredMap small(quickly_aging());
         small.measure(3, 10, 100.0);
         auto state = small.state();
         change(state.histories.begin()->second.zones.begin()->second.newest.front().beam);
         const auto read = decode(encode_snapshot(state, origin()));
-        return read ? std::nullopt : std::optional(read.error().fault);
+        return read ? std::nullopt : std::optional(read.error().code);
     };
     EXPECT_FALSE(fault_with([](Beam&) {}));
-    EXPECT_EQ(fault_with([](Beam& beam) { beam.sigma_m = 1e6; }), SnapshotFault::damaged);
-    EXPECT_EQ(fault_with([](Beam& beam) { beam.range_m = 600.0; }), SnapshotFault::damaged);
-    EXPECT_EQ(fault_with([](Beam& beam) { beam.clear_limit_m = 101.0; }), SnapshotFault::damaged);
-    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.half_angle_rad = 0.0; }), SnapshotFault::damaged);
-    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.half_angle_rad = 1.0; }), SnapshotFault::damaged);
-    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.sigma_rad = 0.0; }), SnapshotFault::damaged);
-    EXPECT_EQ(fault_with([](Beam& beam) { beam.R_map_sensor *= 2.0; }), SnapshotFault::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.sigma_m = 1e6; }), ErrorCode::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.range_m = 600.0; }), ErrorCode::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.clear_limit_m = 101.0; }), ErrorCode::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.half_angle_rad = 0.0; }), ErrorCode::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.half_angle_rad = 1.0; }), ErrorCode::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.optics.sigma_rad = 0.0; }), ErrorCode::damaged);
+    EXPECT_EQ(fault_with([](Beam& beam) { beam.R_map_sensor *= 2.0; }), ErrorCode::damaged);
 }
 
 TEST(Snapshot, of_something_else_is_refused_by_what_it_is) {
     const std::string bytes = small_snapshot();
-    EXPECT_EQ(fault_of_bytes(""), SnapshotFault::no_snapshot);
-    EXPECT_EQ(fault_of_bytes("# Octomap OcTree file\n"), SnapshotFault::no_snapshot);
+    EXPECT_EQ(fault_of_bytes(""), ErrorCode::foreign_format);
+    EXPECT_EQ(fault_of_bytes("# Octomap OcTree file\n"), ErrorCode::foreign_format);
     std::string later = bytes;
     later[snapshot::kMagic.size() - 1] = '9';
-    EXPECT_EQ(fault_of_bytes(later), SnapshotFault::other_version);
+    EXPECT_EQ(fault_of_bytes(later), ErrorCode::unsupported);
     const auto of_other = decode_snapshot(bytes, quickly_aging(), kMapping + 1);
     ASSERT_FALSE(of_other);
-    EXPECT_EQ(of_other.error().fault, SnapshotFault::other_mapping);
+    EXPECT_EQ(of_other.error().code, ErrorCode::mismatch);
     MappingConfig coarse = quickly_aging();
     coarse.map.resolution_m = 0.05;
     const auto of_coarse = decode_snapshot(bytes, coarse, kMapping);
     ASSERT_FALSE(of_coarse);
-    EXPECT_EQ(of_coarse.error().fault, SnapshotFault::other_mapping);
+    EXPECT_EQ(of_coarse.error().code, ErrorCode::mismatch);
     const MapState large{
         [] {
             FusedMap map(quickly_aging().map);
@@ -274,21 +274,21 @@ TEST(Snapshot, of_something_else_is_refused_by_what_it_is) {
     small.map.memory_max_mib = 1;
     const auto of_large = decode_snapshot(encode_snapshot(large, origin()), small, kMapping);
     ASSERT_FALSE(of_large);
-    EXPECT_EQ(of_large.error().fault, SnapshotFault::no_room);
+    EXPECT_EQ(of_large.error().code, ErrorCode::too_large);
 }
 
 TEST(Snapshot, is_a_file_like_any_other) {
     const ScratchFolder folder;
     const auto file = folder / "fused.snapshot";
-    EXPECT_EQ(load_snapshot(file, quickly_aging(), kMapping).error().fault, SnapshotFault::no_snapshot);
+    EXPECT_EQ(load_snapshot(file, quickly_aging(), kMapping).error().code, ErrorCode::not_found);
     MeasuredMap measured(quickly_aging());
     measured.measure(2, 60, 100.0);
     ASSERT_TRUE(save_snapshot(measured.state(), origin(), file));
     const auto again = load_snapshot(file, quickly_aging(), kMapping);
-    ASSERT_TRUE(again) << again.error().what;
+    ASSERT_TRUE(again) << again.error().message();
     expect_equal(again->state, measured.state());
     std::filesystem::resize_file(file, std::uintmax_t{73} << 20U);
-    EXPECT_EQ(load_snapshot(file, quickly_aging(), kMapping).error().fault, SnapshotFault::no_room);
+    EXPECT_EQ(load_snapshot(file, quickly_aging(), kMapping).error().code, ErrorCode::too_large);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "host/io/tum/data_set_camera.hpp"
 #include "host/io/tum/depth_png.hpp"
 #include "tests/support/data_set/written_data_set.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::tum {
@@ -18,23 +19,32 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
 using testing_support::Grey;
+using testing_support::has_its_fields;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::no_error;
+using testing_support::remedy_is;
 using testing_support::ScratchFolder;
+using testing_support::what_is;
 using testing_support::WrittenDataSet;
 
 class DataSetReaderTest : public testing::Test {
   protected:
     DataSetReader open() {
         auto reader = DataSetReader::open(written_.folder());
-        EXPECT_TRUE(reader) << reader.error().what;
+        EXPECT_TRUE(reader) << reader.error().message();
         return std::move(*reader);
     }
-    std::string error_of_next() {
-        auto reader = open();
-        const auto frame = reader.next();
-        return frame ? "no error" : frame.error().what;
+    Error error_of_next() {
+        const Error error = error_in(open().next());
+        EXPECT_TRUE(has_its_fields(error));
+        return error;
     }
+    [[nodiscard]] Error error_of_open() const { return error_in(DataSetReader::open(written_.folder())); }
 
     ScratchFolder scratch_;
     WrittenDataSet written_{scratch_ / "rgbd_dataset_freiburg1_xyz"};
@@ -90,7 +100,7 @@ TEST_F(DataSetReaderTest, takes_scale_and_missing_value_as_they_are_given) {
     written_.add_pose("100.00", "0 0 1 0 0 0 1");
     written_.add_image("100.00", {3, 1, {0, 1500, 65'535}});
     auto reader = DataSetReader::open(written_.folder(), {.units_per_m = 1000.0, .no_value = 65'535});
-    ASSERT_TRUE(reader) << reader.error().what;
+    ASSERT_TRUE(reader) << reader.error().message();
     EXPECT_THAT((*reader->next())->depth_mm, ElementsAre(0, 1500, 0));
 }
 
@@ -117,7 +127,8 @@ TEST_F(DataSetReaderTest, says_which_image_is_the_first_without_a_pose_and_how_f
     const ImageCounts& images = reader.images();
     EXPECT_EQ(images.without_pose, 2U);
     ASSERT_TRUE(images.first_without_pose);
-    EXPECT_THAT(images.first_without_pose->image.what, HasSubstr("depth.txt:5: depth/100.01.png"));
+    EXPECT_THAT(images.first_without_pose->image, AllOf(code_is(ErrorCode::no_data), file_is("depth.txt"),
+                                                        line_is(5), key_is("depth/100.01.png")));
     EXPECT_EQ(images.first_without_pose->captured.ns, 100'010'000'000);
     EXPECT_EQ(images.first_without_pose->gap, Nanoseconds{66'000'000});
     EXPECT_EQ(reader.pose_gap_max(), Nanoseconds{50'000'000});
@@ -128,7 +139,7 @@ TEST_F(DataSetReaderTest, says_which_image_is_the_first_without_a_pose_and_how_f
 }
 
 TEST_F(DataSetReaderTest, lines_that_name_no_image_are_counted_and_those_out_of_order_put_in_order) {
-    const std::string file = (written_.folder() / "depth.txt").string();
+    const auto file = written_.folder() / "depth.txt";
     written_.add_pose("99", "0 0 0 0 0 0 1");
     written_.add_pose("100", "0 0 0 0 0 0 1");
     written_.add_image("100", {1, 1, {7000}});
@@ -137,9 +148,13 @@ TEST_F(DataSetReaderTest, lines_that_name_no_image_are_counted_and_those_out_of_
     written_.add_image("99", {1, 1, {5000}});
     DataSetReader reader = open();
     EXPECT_EQ(reader.images().bad.count, 2U);
-    EXPECT_THAT(reader.images().bad.first->what, StartsWith(file + ":5: expected a time"));
+    EXPECT_THAT(*reader.images().bad.first,
+                AllOf(code_is(ErrorCode::bad_syntax), line_is(5), what_is(HasSubstr("expected a time"))));
+    EXPECT_EQ(reader.images().bad.first->file, file);
+    EXPECT_TRUE(has_its_fields(*reader.images().bad.first));
     EXPECT_EQ(reader.images().unordered, 1U);
-    EXPECT_EQ(reader.images().disorder->what, file + ":7: its time is before that of the image above it");
+    EXPECT_THAT(*reader.images().disorder, AllOf(code_is(ErrorCode::bad_value), line_is(7)));
+    EXPECT_EQ(reader.images().disorder->file, file);
     EXPECT_EQ((*reader.next())->captured.ns, 99'000'000'000);
     EXPECT_EQ((*reader.next())->captured.ns, 100'000'000'000);
 }
@@ -153,7 +168,7 @@ TEST_F(DataSetReaderTest, reads_the_layout_of_icl_nuim) {
     std::ofstream(folder / "associations.txt") << "0 depth/0.png 0 rgb/0.png\n1 depth/1.png 1 rgb/1.png\n";
     std::ofstream(folder / "livingRoom0.gt.freiburg") << "1 0.5 0.25 -2 0 0 0 1\n2 0 0 0 0 0 0 1\n";
     auto reader = DataSetReader::open(folder);
-    ASSERT_TRUE(reader) << reader.error().what;
+    ASSERT_TRUE(reader) << reader.error().message();
     EXPECT_EQ(reader->layout().name, "ICL-NUIM");
     EXPECT_EQ(reader->layout().camera, "icl_nuim");
     const auto frame = *reader->next();
@@ -164,8 +179,9 @@ TEST_F(DataSetReaderTest, reads_the_layout_of_icl_nuim) {
     EXPECT_FALSE(*reader->next());
     EXPECT_EQ(reader->images().without_pose, 1U);  // its first image has none
     std::ofstream(folder / "traj0.gt.freiburg") << "";
-    EXPECT_THAT(DataSetReader::open(folder).error().what,
-                HasSubstr("has livingRoom0.gt.freiburg and traj0.gt.freiburg"));
+    EXPECT_THAT(DataSetReader::open(folder).error(),
+                AllOf(code_is(ErrorCode::conflict), file_is(folder.filename()),
+                      what_is(HasSubstr("livingRoom0.gt.freiburg and traj0.gt.freiburg"))));
 }
 
 TEST_F(DataSetReaderTest, reads_the_layout_of_seven_scenes) {
@@ -181,7 +197,7 @@ TEST_F(DataSetReaderTest, reads_the_layout_of_seven_scenes) {
     pose("frame-000010.pose.txt", "1 2 3");
     pose("frame-1000000.pose.txt", "1 0 0 7 0 1 0 0 0 0 1 0 0 0 0 1");
     auto reader = DataSetReader::open(folder);
-    ASSERT_TRUE(reader) << reader.error().what;
+    ASSERT_TRUE(reader) << reader.error().message();
     EXPECT_EQ(reader->layout().name, "7-Scenes");
     const auto first = *reader->next();
     EXPECT_EQ(first->captured.ns, 0);
@@ -195,7 +211,9 @@ TEST_F(DataSetReaderTest, reads_the_layout_of_seven_scenes) {
     EXPECT_EQ(reader->poses().in, 5U);
     EXPECT_EQ(reader->poses().used, 2U);
     EXPECT_EQ(reader->poses().no_pose, 2U);
-    EXPECT_THAT(reader->poses().bad.first->what, HasSubstr("frame-000010.pose.txt: expected the 16 numbers"));
+    EXPECT_THAT(*reader->poses().bad.first,
+                AllOf(code_is(ErrorCode::bad_syntax), file_is("frame-000010.pose.txt"),
+                      what_is(HasSubstr("expected the 16 numbers"))));
     EXPECT_EQ(reader->files().size(), 9U);
     auto in_fifths = DataSetReader::open(folder, {.units_per_m = 5000.0});
     EXPECT_THAT((*in_fifths->next())->depth_mm, ElementsAre(0, 300, 0));
@@ -213,7 +231,7 @@ TEST_F(DataSetReaderTest, a_calibration_beside_the_images_is_their_camera) {
     // As ETH3D writes it, and as a matrix; whole numbers are pixel centres.
     for (const char* text : {"726.5 725.25 3.5 2.25\n", "726.5 0 3.5\n0 725.25 2.25\n0 0 1\n"}) {
         const auto found = camera(text);
-        ASSERT_TRUE(found) << found.error().what;
+        ASSERT_TRUE(found) << found.error().message();
         EXPECT_EQ(found->width, 8U);
         EXPECT_EQ(found->height, 6U);
         EXPECT_EQ(found->fx, 726.5);
@@ -221,15 +239,23 @@ TEST_F(DataSetReaderTest, a_calibration_beside_the_images_is_their_camera) {
         EXPECT_EQ(found->cx, 4.0);
         EXPECT_EQ(found->cy, 2.75);
     }
-    for (const auto& [text, reason] :
-         std::initializer_list<std::pair<const char*, const char*>>{{"1 2 3", "found 3 numbers"},
-                                                                    {"cam 1 2 3", "found 'cam'"},
-                                                                    {"0 500 3 3", "focal lengths"},
-                                                                    {"500 nan 3 3", "focal lengths"},
-                                                                    {"500 500 9 3", "principal point"}}) {
+    struct Refused {
+        const char* text;
+        ErrorCode code;
+        const char* reason;
+    };
+    for (const auto& [text, code, reason] :
+         std::initializer_list<Refused>{{"1 2 3", ErrorCode::bad_syntax, "found 3 numbers"},
+                                        {"cam 1 2 3", ErrorCode::bad_syntax, "found 'cam'"},
+                                        {"0 500 3 3", ErrorCode::out_of_range, "focal lengths"},
+                                        {"500 nan 3 3", ErrorCode::out_of_range, "focal lengths"},
+                                        {"500 500 9 3", ErrorCode::out_of_range, "principal point"}}) {
         const auto refused = camera(text);
         ASSERT_FALSE(refused) << text;
-        EXPECT_THAT(refused.error().what, AllOf(StartsWith(calibration.string()), HasSubstr(reason)));
+        EXPECT_THAT(refused.error(), code_is(code));
+        EXPECT_EQ(refused.error().file, calibration);
+        EXPECT_THAT(refused.error().reason(), HasSubstr(reason));
+        EXPECT_TRUE(has_its_fields(refused.error()));
     }
 }
 
@@ -238,11 +264,11 @@ TEST_F(DataSetReaderTest, an_image_whose_name_leads_elsewhere_is_named_before_an
     std::filesystem::create_symlink(outside, written_.folder() / "link.png");
     std::filesystem::create_directory_symlink(scratch_.path(), written_.folder() / "up");
     written_.add_pose("100", "0 0 0 0 0 0 1");
-    const std::pair<std::string, const char*> images[] = {{outside.string(), "leads out"},
-                                                          {"../outside.png", "leads out"},
-                                                          {"link.png", "is a symbolic link"},
-                                                          {"up/outside.png", "is a symbolic link"}};
-    for (const auto& [image, what] : images) {
+    const std::pair<std::string, ErrorCode> images[] = {{outside.string(), ErrorCode::outside_folder},
+                                                        {"../outside.png", ErrorCode::outside_folder},
+                                                        {"link.png", ErrorCode::link},
+                                                        {"up/outside.png", ErrorCode::link}};
+    for (const auto& [image, code] : images) {
         ScratchFolder again;
         std::filesystem::copy(
             written_.folder(), again / "set",
@@ -250,21 +276,19 @@ TEST_F(DataSetReaderTest, an_image_whose_name_leads_elsewhere_is_named_before_an
         std::ofstream(again / "set/depth.txt") << "100 " << image << '\n';
         const auto read = DataSetReader::open(again / "set");
         ASSERT_FALSE(read) << image;
-        EXPECT_THAT(read.error().what, AllOf(HasSubstr("depth.txt:1: " + image + ": "), HasSubstr(what)));
+        EXPECT_THAT(read.error(), AllOf(code_is(code), file_is("depth.txt"), line_is(1), key_is(image)));
     }
 }
 
 TEST_F(DataSetReaderTest, a_list_behind_a_link_is_not_read) {
     std::filesystem::rename(written_.folder() / "groundtruth.txt", scratch_ / "poses.txt");
     std::filesystem::create_symlink(scratch_ / "poses.txt", written_.folder() / "groundtruth.txt");
-    EXPECT_THAT(DataSetReader::open(written_.folder()).error().what,
-                AllOf(HasSubstr("groundtruth.txt: "), HasSubstr("is a symbolic link")));
+    EXPECT_THAT(error_of_open(), AllOf(code_is(ErrorCode::link), file_is("groundtruth.txt")));
 }
 
 TEST_F(DataSetReaderTest, a_list_that_is_not_there_is_named) {
     std::filesystem::remove(written_.folder() / "groundtruth.txt");
-    EXPECT_THAT(DataSetReader::open(written_.folder()).error().what,
-                HasSubstr("groundtruth.txt: no such file"));
+    EXPECT_THAT(error_of_open(), AllOf(code_is(ErrorCode::not_found), file_is("groundtruth.txt")));
 }
 
 TEST_F(DataSetReaderTest, an_image_that_cannot_be_read_is_named_with_its_line_again_and_again) {
@@ -274,8 +298,9 @@ TEST_F(DataSetReaderTest, an_image_that_cannot_be_read_is_named_with_its_line_ag
     for (int i = 0; i < 3; ++i) {
         const auto frame = reader.next();
         ASSERT_FALSE(frame);
-        EXPECT_EQ(frame.error().what,
-                  (written_.folder() / "depth.txt").string() + ":4: depth/absent.png: cannot be opened");
+        EXPECT_EQ(frame.error().file, written_.folder() / "depth.txt");
+        EXPECT_THAT(frame.error(),
+                    AllOf(line_is(4), key_is("depth/absent.png"), what_is("cannot be opened")));
     }
     EXPECT_EQ(reader.images_left(), 1U);
 }
@@ -284,11 +309,12 @@ TEST_F(DataSetReaderTest, a_named_pipe_is_refused_without_waiting_for_its_writer
     written_.add_pose("100", "0 0 0 0 0 0 1");
     written_.add_line("depth.txt", "100 pipe.png");
     ASSERT_EQ(::mkfifo((written_.folder() / "pipe.png").c_str(), 0600), 0);
-    EXPECT_THAT(error_of_next(), HasSubstr("depth.txt:4: pipe.png: is a pipe or a device"));
+    EXPECT_THAT(error_of_next(), AllOf(file_is("depth.txt"), line_is(4), key_is("pipe.png"),
+                                       what_is(HasSubstr("a pipe or a device"))));
     std::filesystem::remove(written_.folder() / "groundtruth.txt");
     ASSERT_EQ(::mkfifo((written_.folder() / "groundtruth.txt").c_str(), 0600), 0);
-    EXPECT_THAT(DataSetReader::open(written_.folder()).error().what,
-                HasSubstr("groundtruth.txt: is a pipe or a device"));
+    EXPECT_THAT(error_of_open(), AllOf(code_is(ErrorCode::wrong_kind_of_file), file_is("groundtruth.txt"),
+                                       what_is(HasSubstr("a pipe or a device"))));
 }
 
 TEST_F(DataSetReaderTest, the_first_image_that_is_missing_is_named_whether_or_not_it_has_a_pose) {
@@ -297,27 +323,31 @@ TEST_F(DataSetReaderTest, the_first_image_that_is_missing_is_named_whether_or_no
     std::filesystem::create_directory(written_.image("101"));
     written_.add_line("depth.txt", "101 depth/101.png");
     written_.add_line("depth.txt", "102 depth/102.png");
-    const auto what_is_missing = [this] {
-        const auto missing = open().missing_image();
-        return missing ? missing->what.substr((written_.folder() / "depth.txt").string().size()) : "";
+    const auto missing_error = [this] {
+        const Error missing = open().missing_image().value_or(no_error());
+        EXPECT_THAT(missing, AllOf(file_is("depth.txt"), line_is(5), key_is("depth/101.png")));
+        return missing;
     };
-    EXPECT_EQ(what_is_missing(), ":5: depth/101.png: is a directory, not a regular file");
+    EXPECT_THAT(missing_error(),
+                AllOf(code_is(ErrorCode::wrong_kind_of_file), what_is(HasSubstr("a directory"))));
     std::filesystem::remove(written_.image("101"));
     ASSERT_EQ(::mkfifo(written_.image("101").c_str(), 0600), 0);
-    EXPECT_EQ(what_is_missing(), ":5: depth/101.png: is a named pipe, not a regular file");
+    EXPECT_THAT(missing_error(),
+                AllOf(code_is(ErrorCode::wrong_kind_of_file), what_is(HasSubstr("a named pipe"))));
     std::filesystem::remove(written_.image("101"));
-    EXPECT_EQ(what_is_missing(),
-              ":5: depth/101.png: does not exist: unpack the data set again, or remove the line");
+    EXPECT_THAT(missing_error(),
+                AllOf(code_is(ErrorCode::not_found),
+                      remedy_is(AllOf(HasSubstr("unpack the data set"), HasSubstr("remove the line")))));
 }
 
 TEST_F(DataSetReaderTest, images_of_another_kind_are_refused) {
     written_.add_pose("100", "0 0 0 0 0 0 1");
     written_.add_line("depth.txt", "100 depth/100.png");
     testing_support::write_grey_png(written_.image("100"), {2, 2, {1, 2, 3, 4}}, 8);
-    EXPECT_THAT(error_of_next(), HasSubstr("expected one grey channel of 16 bits"));
+    EXPECT_THAT(error_of_next(), what_is(HasSubstr("expected one grey channel of 16 bits")));
     std::ofstream(written_.image("100")) << "P5 2 2 65535";
-    EXPECT_THAT(error_of_next(),
-                AllOf(HasSubstr("depth.txt:4: depth/100.png"), HasSubstr("cannot be read as PNG")));
+    EXPECT_THAT(error_of_next(), AllOf(code_is(ErrorCode::bad_syntax), file_is("depth.txt"), line_is(4),
+                                       key_is("depth/100.png"), what_is(HasSubstr("cannot be read as PNG"))));
 }
 
 TEST(DataSetCamera, puts_the_benchmarks_pixel_centres_half_a_pixel_further) {

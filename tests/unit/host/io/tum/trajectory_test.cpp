@@ -5,13 +5,22 @@
 
 #include <numbers>
 
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::tum {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::is_no_error;
+using testing_support::line_is;
+using testing_support::what_is;
 
 constexpr Nanoseconds kGapMax{50'000'000};
 
@@ -19,12 +28,13 @@ class TrajectoryTest : public testing::Test {
   protected:
     Trajectory read(const std::string& text) {
         auto trajectory = Trajectory::read(folder_.write("groundtruth.txt", text), kGapMax);
-        EXPECT_TRUE(trajectory) << trajectory.error().what;
+        EXPECT_TRUE(trajectory) << trajectory.error().message();
         return *trajectory;
     }
-    std::string error_of(const std::string& text) {
-        const auto trajectory = Trajectory::read(folder_.write("groundtruth.txt", text), kGapMax);
-        return trajectory ? "no error" : trajectory.error().what;
+    Error error_of(const std::string& text) {
+        const Error error = error_in(Trajectory::read(folder_.write("groundtruth.txt", text), kGapMax));
+        EXPECT_TRUE(has_its_fields(error));
+        return error;
     }
 
     testing_support::ScratchFolder folder_;
@@ -130,8 +140,8 @@ TEST_F(TrajectoryTest, lines_that_are_no_poses_are_counted_and_the_first_is_name
     EXPECT_EQ(counts.in, 5U);
     EXPECT_EQ(counts.used, 2U);
     EXPECT_EQ(counts.bad.count, 3U);
-    EXPECT_THAT(counts.bad.first->what,
-                StartsWith((folder_ / "groundtruth.txt").string() + ":2: expected tx ty tz"));
+    EXPECT_THAT(*counts.bad.first, AllOf(code_is(ErrorCode::bad_syntax), file_is("groundtruth.txt"),
+                                         line_is(2), what_is(StartsWith("expected tx ty tz"))));
     EXPECT_NEAR(trajectory.at(at_ms(1'010))->translation().x(), 1.0, 1e-12);
 }
 
@@ -140,8 +150,9 @@ TEST_F(TrajectoryTest, poses_out_of_order_are_put_in_order_and_the_first_is_name
         read("# a\n1.02 2 0 0 0 0 0 1\n1.00 0 0 0 0 0 0 1\n1.01 1 0 0 0 0 0 1\n0.99 9 0 0 0 0 0 1\n");
     EXPECT_EQ(trajectory.counts().used, 4U);
     EXPECT_EQ(trajectory.counts().unordered, 2U);
-    EXPECT_EQ(trajectory.counts().disorder->what,
-              (folder_ / "groundtruth.txt").string() + ":3: its time is before that of the pose above it");
+    EXPECT_THAT(*trajectory.counts().disorder,
+                AllOf(code_is(ErrorCode::bad_value), file_is("groundtruth.txt"), line_is(3),
+                      what_is(HasSubstr("its time is before"))));
     EXPECT_NEAR(trajectory.at(at_ms(1'015))->translation().x(), 1.5, 1e-12);
 }
 
@@ -167,13 +178,15 @@ TEST_F(TrajectoryTest, with_y_upwards_is_turned_into_right_handed_frames) {
 }
 
 TEST_F(TrajectoryTest, without_any_pose_an_error_names_file_and_line) {
-    const std::string file = (folder_ / "groundtruth.txt").string();
-    EXPECT_THAT(error_of("# a\n\n1 0 0 zero 0 0 0 1\n"), StartsWith(file + ":3: expected tx ty tz"));
-    EXPECT_THAT(error_of(std::string(4097, '#') + "\n"), StartsWith(file + ":1: longer than 4096 bytes"));
-    EXPECT_EQ(error_of(std::string(4096, '#') + "\n"), "no error");
+    EXPECT_THAT(error_of("# a\n\n1 0 0 zero 0 0 0 1\n"),
+                AllOf(code_is(ErrorCode::bad_syntax), file_is("groundtruth.txt"), line_is(3),
+                      what_is(StartsWith("expected tx ty tz"))));
+    EXPECT_THAT(error_of(std::string(4097, '#') + "\n"),
+                AllOf(code_is(ErrorCode::too_large), line_is(1), what_is(HasSubstr("4096 bytes"))));
+    EXPECT_THAT(error_of(std::string(4096, '#') + "\n"), is_no_error());
     const auto absent = Trajectory::read(folder_ / "absent.txt", kGapMax);
     ASSERT_FALSE(absent);
-    EXPECT_THAT(absent.error().what, HasSubstr("absent.txt: no such file"));
+    EXPECT_THAT(absent.error(), AllOf(code_is(ErrorCode::not_found), file_is("absent.txt")));
 }
 
 }  // namespace

@@ -14,10 +14,23 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/errors/error_fields.hpp"
+
 namespace octoskin {
 namespace {
 
+using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::others_are;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 const std::filesystem::path kPanda = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/robots/panda.urdf";
 const std::filesystem::path kBroken = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/data/rigs";
@@ -113,8 +126,10 @@ TEST(UrdfRobot, every_kind_of_joint_arrives_as_what_it_is) {
 struct BrokenUrdf {
     const char* file;
     const char* element;
-    const char* words;
     int line;
+    ErrorCode code;
+    const char* value = "";
+    const char* also = "";  ///< part of the rule or of the remedy
     friend std::ostream& operator<<(std::ostream& out, const BrokenUrdf& broken) {
         return out << broken.file;
     }
@@ -122,7 +137,7 @@ struct BrokenUrdf {
 class UrdfRobotRefuses : public testing::TestWithParam<BrokenUrdf> {};
 
 TEST_P(UrdfRobotRefuses, naming_file_and_element) {
-    const auto& [file, element, words, line] = GetParam();
+    const auto& [file, element, line, code, value, also] = GetParam();
     const std::vector<std::string> moved = {"elbow"};
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
@@ -130,49 +145,55 @@ TEST_P(UrdfRobotRefuses, naming_file_and_element) {
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     ASSERT_FALSE(model);
-    const std::string message = model.error().message();
-    EXPECT_THAT(message, HasSubstr(file));
-    EXPECT_THAT(message, HasSubstr(element));
-    EXPECT_THAT(message, HasSubstr(words));
-    EXPECT_EQ(model.error().line, line) << message;
+    const Error& error = model.error();
+    EXPECT_THAT(error, AllOf(file_is(file), key_is(element), line_is(line), code_is(code), value_is(value)));
+    EXPECT_THAT(error, AnyOf(what_is(HasSubstr(also)), remedy_is(HasSubstr(also))));
+    EXPECT_TRUE(has_its_fields(error));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Files, UrdfRobotRefuses,
     testing::Values(
-        BrokenUrdf{"missing-child-link.urdf", "hand", "not a usable URDF", 0},
-        BrokenUrdf{"loop-through-root.urdf", "link base", "found a loop", 2},
-        BrokenUrdf{"loop-below-root.urdf", "link arm", "elbow and wrist_back", 3},
-        BrokenUrdf{"loop-apart-from-root.urdf", "link arm", "found a loop", 3},
-        BrokenUrdf{"two-parents.urdf", "link arm", "elbow and second", 3},
-        BrokenUrdf{"non-unit-axis.urdf", "joint elbow",
-                   "axis of length 1, found <axis xyz=\"0 0 2\"> of length 2: scale it to \"0 0 1\"", 4},
-        BrokenUrdf{"zero-axis.urdf", "joint elbow", "axis of length 1, found <axis xyz=\"0 0 0\">", 4},
-        BrokenUrdf{"limit-without-upper.urdf", "joint elbow",
-                   "found no upper, which URDF treats as 0: write it", 4},
-        BrokenUrdf{"unmoved-joint.urdf", "joint wrist", "gets no position", 11},
-        BrokenUrdf{"no-such-joint.urdf", "joint elbow", "expected a moving joint", 0},
-        BrokenUrdf{"base-missing.urdf", "link base", "expected this base link", 0},
-        BrokenUrdf{"floating-joint.urdf", "joint elbow", "found another kind: make it type=\"fixed\"", 4},
-        BrokenUrdf{"mimic-joint.urdf", "joint elbow", "found a mimic joint: make it type=\"fixed\"", 4},
-        BrokenUrdf{"limits-reversed.urdf", "joint elbow", "limits the wrong way round", 4},
-        BrokenUrdf{"nan-origin.urdf", "", "not a usable URDF", 0},
-        BrokenUrdf{"nested-too-deep.urdf", "", "DEPTH", 1}, BrokenUrdf{"cut-off.urdf", "", "not XML", 5},
-        BrokenUrdf{"not-xml.urdf", "", "expected a URDF with a <robot>, found none", 0},
-        BrokenUrdf{"not-a-robot.urdf", "", "expected a URDF with a <robot>", 0},
-        BrokenUrdf{"empty.urdf", "", "expected a URDF with a <robot>, found none", 0},
-        BrokenUrdf{"absent.urdf", "", "cannot be opened", 0}));
+        BrokenUrdf{"missing-child-link.urdf", "", 0, ErrorCode::bad_value, "", "hand"},
+        BrokenUrdf{"loop-through-root.urdf", "link base", 2, ErrorCode::bad_value, "a loop"},
+        BrokenUrdf{"loop-below-root.urdf", "link arm", 3, ErrorCode::duplicate, "elbow and wrist_back"},
+        BrokenUrdf{"loop-apart-from-root.urdf", "link arm", 3, ErrorCode::bad_value, "a loop"},
+        BrokenUrdf{"two-parents.urdf", "link arm", 3, ErrorCode::duplicate, "elbow and second"},
+        BrokenUrdf{"non-unit-axis.urdf", "joint elbow", 4, ErrorCode::bad_value,
+                   "<axis xyz=\"0 0 2\"> of length 2", "\"0 0 1\""},
+        BrokenUrdf{"zero-axis.urdf", "joint elbow", 4, ErrorCode::bad_value, "<axis xyz=\"0 0 0\">",
+                   "axis of length 1"},
+        BrokenUrdf{"limit-without-upper.urdf", "joint elbow", 4, ErrorCode::missing_key,
+                   "no upper, which URDF treats as 0", "write it"},
+        BrokenUrdf{"unmoved-joint.urdf", "joint wrist", 11, ErrorCode::bad_value, "", "gets no position"},
+        BrokenUrdf{"no-such-joint.urdf", "joint elbow", 0, ErrorCode::bad_value, "",
+                   "expected a moving joint"},
+        BrokenUrdf{"base-missing.urdf", "link base", 0, ErrorCode::unknown_name, "",
+                   "expected this base link"},
+        BrokenUrdf{"floating-joint.urdf", "joint elbow", 4, ErrorCode::unsupported, "another kind",
+                   "type=\"fixed\""},
+        BrokenUrdf{"mimic-joint.urdf", "joint elbow", 4, ErrorCode::unsupported, "a mimic joint",
+                   "type=\"fixed\""},
+        BrokenUrdf{"limits-reversed.urdf", "joint elbow", 4, ErrorCode::bad_value, "",
+                   "limits the wrong way round"},
+        BrokenUrdf{"nan-origin.urdf", "", 0, ErrorCode::bad_value, "", "not a usable URDF"},
+        BrokenUrdf{"nested-too-deep.urdf", "", 1, ErrorCode::bad_syntax, "", "DEPTH"},
+        BrokenUrdf{"cut-off.urdf", "", 5, ErrorCode::bad_syntax, "", "not XML"},
+        BrokenUrdf{"not-xml.urdf", "", 0, ErrorCode::foreign_format, "", "a URDF with a <robot>"},
+        BrokenUrdf{"not-a-robot.urdf", "", 0, ErrorCode::foreign_format, "", "a URDF with a <robot>"},
+        BrokenUrdf{"empty.urdf", "", 0, ErrorCode::foreign_format, "", "a URDF with a <robot>"},
+        BrokenUrdf{"absent.urdf", "", 0, ErrorCode::not_found}));
 
 // In the order of the file, whatever the order of the tree is.
 TEST(UrdfRobot, every_joint_that_cannot_be_taken_is_in_one_message) {
     const std::vector<std::string> moved = {"elbow"};
     const auto model = read_robot_model(kBroken / "joints-of-every-refused-kind.urdf", "base", moved);
     ASSERT_FALSE(model);
-    EXPECT_EQ(model.error().key, "joint finger");
-    EXPECT_EQ(model.error().line, 8);
-    EXPECT_THAT(model.error().what,
-                HasSubstr("4 more refused: joint elbow (line 13, its axis), joint cart (line 17, planar), "
-                          "joint drone (line 20, floating), joint lift (line 23, no upper limit)"));
+    EXPECT_THAT(model.error(),
+                AllOf(key_is("joint finger"), line_is(8),
+                      others_are("4 more refused: joint elbow (line 13, its axis), joint cart (line 17, "
+                                 "planar), joint drone (line 20, floating), joint lift (line 23, no upper "
+                                 "limit)")));
 }
 
 }  // namespace

@@ -50,23 +50,24 @@ TEST(FloorLayer, follows_the_base_up) {
 }
 
 TEST(RegionFault, finds_nothing_wrong_with_the_experiment) {
-    EXPECT_EQ(region_fault(RegionConfig{}, 0.04, shifted(0.002990, 0.020829, 0.001814)), std::nullopt);
-    EXPECT_EQ(region_fault(RegionConfig{}, 0.01, shifted(0, 0, 0)), std::nullopt);
+    EXPECT_FALSE(region_fault(RegionConfig{}, 0.04, shifted(0.002990, 0.020829, 0.001814)));
+    EXPECT_FALSE(region_fault(RegionConfig{}, 0.01, shifted(0, 0, 0)));
 }
 
 TEST(RegionFault, says_what_leaves_nothing_to_judge) {
     const auto fault = [](const RegionConfig& config, double resolution_m) {
-        return region_fault(config, resolution_m, shifted(0, 0, 0)).value_or("");
+        return region_fault(config, resolution_m, shifted(0, 0, 0)).value_or(Error{}).code;
     };
     RegionConfig high_floor;
     high_floor.floor_top_m = 1.39;  // its layer is the highest of the box
-    EXPECT_NE(fault(high_floor, 0.04).find("no voxel above its floor"), std::string::npos);
-    EXPECT_NE(fault(RegionConfig{}, 5.0).find("no voxel"), std::string::npos);
-    EXPECT_NE(fault(RegionConfig{}, 1e-7).find("floor outside the map"), std::string::npos);
-    EXPECT_NE(fault(RegionConfig{}, 1e-6).find("not within the map"), std::string::npos);
-    EXPECT_NE(fault({{0, 0, 0}, {2, 2, 2}, std::nullopt}, 1e-5).find("not within the map"),
-              std::string::npos);
-    EXPECT_NE(fault({{-1, -1, -1}, {1, 1, 1}, std::nullopt}, 0.002).find("50 million"), std::string::npos);
+    EXPECT_EQ(fault(high_floor, 0.04), ErrorCode::no_content);
+    EXPECT_EQ(fault(RegionConfig{}, 5.0), ErrorCode::no_content);
+    EXPECT_EQ(fault(RegionConfig{}, 1e-7), ErrorCode::out_of_range) << "the floor is outside the map";
+    EXPECT_EQ(fault(RegionConfig{}, 1e-6), ErrorCode::out_of_range);
+    EXPECT_EQ(fault({{0, 0, 0}, {2, 2, 2}, std::nullopt}, 1e-5), ErrorCode::out_of_range);
+    EXPECT_EQ(fault({{-1, -1, -1}, {1, 1, 1}, std::nullopt}, 0.002), ErrorCode::limit_exceeded);
+    const auto floor = region_fault(RegionConfig{}, 1e-7, shifted(0, 0, 0));
+    EXPECT_NE(floor->what.find("floor"), std::string::npos);
 }
 
 }  // namespace

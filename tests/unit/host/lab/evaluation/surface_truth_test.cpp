@@ -124,7 +124,7 @@ TEST(BuildTruth, puts_both_truths_over_the_same_region) {
     with_region.region = {{-0.2, -0.2, -0.5}, {1.0, 1.0, 1.0}, -0.25};
     const Survey survey{{{{2.05, 0.35, 0.35}, {{0.55F, 0.35F, 0.35F}}}}};
     const auto built = build_truth(cube(), survey, with_region, kAtOrigin);
-    ASSERT_TRUE(built) << built.error();
+    ASSERT_TRUE(built) << built.error().message();
     const Truth& truth = *built;
     EXPECT_EQ(truth.region(), (KeyBox{key(-2, -2, -2), key(9, 9, 9)}));
     EXPECT_EQ(truth.surface.box(), truth.region());
@@ -140,7 +140,8 @@ TEST(BuildTruth, refuses_more_points_of_surfaces_than_it_can_look_at) {
     with_region.surface_pitch_m = 1e-6;  // of 1.5 m^2
     const auto built = build_truth(cube(), {}, with_region, kAtOrigin);
     ASSERT_FALSE(built);
-    EXPECT_NE(built.error().find("expected at most 1e+09"), std::string::npos) << built.error();
+    EXPECT_EQ(built.error().code, ErrorCode::limit_exceeded);
+    EXPECT_NE(built.error().what.find("at most 1e+09"), std::string::npos) << built.error().message();
 }
 
 }  // namespace

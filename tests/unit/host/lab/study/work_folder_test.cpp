@@ -36,8 +36,8 @@ TEST(WorkFolderTest, a_parent_that_is_gone_is_named) {
     std::filesystem::remove(parent / "gone");
     const auto refused = WorkFolder::create(*opened);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ExitCode::cannot_create);
-    EXPECT_NE(refused.error().message.find("gone"), std::string::npos);
+    EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(refused.error().error.file, parent / "gone");
 }
 
 }  // namespace

@@ -6,10 +6,19 @@
 
 #include <cmath>
 
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/unit/hw/sim/arm/panda.hpp"
 
 namespace octoskin::sim {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::key_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 constexpr SimTime kStart{3'000'000};
 
@@ -98,16 +107,18 @@ TEST_F(PandaCircle, out_of_reach_is_refused_with_the_tick) {
     motion.radius_m = 0.9;
     auto refused = Trajectory::circle(arm_, motion, kStart);
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().what, testing::HasSubstr("tick 0"));
+    EXPECT_THAT(refused.error(), AllOf(code_is(ErrorCode::out_of_range), key_is("motion.circle"),
+                                       what_is(HasSubstr("tick 0"))));
     motion = paper_circle();
     motion.link = "gripper";
-    EXPECT_THAT(
-        Trajectory::circle(arm_, motion, kStart).error().what,
-        testing::AllOf(testing::HasSubstr("link 'gripper', but"),
-                       testing::HasSubstr("panda_link0, panda_link1"), testing::HasSubstr("--scenario")));
+    EXPECT_THAT(Trajectory::circle(arm_, motion, kStart).error(),
+                AllOf(code_is(ErrorCode::unknown_name), key_is("motion.circle.link"), value_is("'gripper'"),
+                      what_is(HasSubstr("panda_link0, panda_link1")), remedy_is(HasSubstr("--scenario"))));
     motion = paper_circle();
     motion.start_position.resize(3);
-    EXPECT_THAT(Trajectory::circle(arm_, motion, kStart).error().what, testing::HasSubstr("3 joints"));
+    EXPECT_THAT(Trajectory::circle(arm_, motion, kStart).error(),
+                AllOf(code_is(ErrorCode::mismatch), key_is("motion.circle.start_position_rad"),
+                      what_is(HasSubstr("7 joints")), value_is("3")));
 }
 
 }  // namespace

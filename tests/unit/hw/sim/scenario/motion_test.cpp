@@ -6,10 +6,21 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/errors/error_fields.hpp"
+
 namespace octoskin::sim {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 class Motion : public testing::Test {
   protected:
@@ -18,13 +29,12 @@ class Motion : public testing::Test {
             solids_.push_back({std::string(model) + "/l/v", model, {}, {}, true});
     }
     ~Motion() override { std::filesystem::remove(file_); }
-    Result<std::vector<ModelMotion>, rig::RigError> read(const std::string& text) {
+    Result<std::vector<ModelMotion>, Error> read(const std::string& text) {
         std::ofstream(file_) << text;
         return read_motion(file_, solids_);
     }
-    std::string error(const std::string& places) {
-        const auto motion = read("models:\n  - model: ball\n    places: " + places + "\n");
-        return motion ? "none" : motion.error().message();
+    Error error(const std::string& places) {
+        return error_in(read("models:\n  - model: ball\n    places: " + places + "\n"));
     }
 
     std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) / "motion_test.motion.yaml";
@@ -43,19 +53,25 @@ TEST_F(Motion, is_read_with_every_place) {
 }
 
 TEST_F(Motion, is_refused_with_file_line_and_reason) {
-    EXPECT_THAT(error("[{at_s: 2}, {at_s: 2}]"),
-                HasSubstr("motion_test.motion.yaml:3: models[0].places[1].at_s: expected later"));
+    const Error later = error("[{at_s: 2}, {at_s: 2}]");
+    EXPECT_THAT(later, AllOf(code_is(ErrorCode::out_of_range), file_is("motion_test.motion.yaml"), line_is(3),
+                             key_is("models[0].places[1].at_s"), value_is("2")));
+    EXPECT_TRUE(has_its_fields(later));
     for (const char* at_s : {"-601", "601"})
         EXPECT_THAT(error(std::string("[{at_s: ") + at_s + "}]"),
-                    HasSubstr("at_s: expected a number from -600 to 600"));
-    EXPECT_THAT(error("[{at_s: 2, offset: [0, 0, 0]}]"), HasSubstr("offset"));
-    EXPECT_THAT(error("[{at_s: 2, moves_on: true}]"), HasSubstr("needs a next place"));
+                    AllOf(code_is(ErrorCode::out_of_range), key_is("models[0].places[0].at_s"),
+                          what_is(HasSubstr("from -600 to 600"))));
+    EXPECT_THAT(error("[{at_s: 2, offset: [0, 0, 0]}]"),
+                AllOf(code_is(ErrorCode::unknown_key), key_is("models[0].places[0].offset")));
+    EXPECT_THAT(error("[{at_s: 2, moves_on: true}]"),
+                AllOf(code_is(ErrorCode::conflict), what_is(HasSubstr("needs a next place"))));
     EXPECT_THAT(error("[{at_s: 2, moves_on: true}, {at_s: 3, is_there: false}]"),
-                HasSubstr("the model is not there"));
-    EXPECT_THAT(error("[]"), HasSubstr("at least one place"));
+                AllOf(code_is(ErrorCode::conflict), what_is(HasSubstr("the model is not there"))));
+    EXPECT_THAT(error("[]"), AllOf(code_is(ErrorCode::missing_key), key_is("models[0].places")));
     EXPECT_THAT(error("[{at_s: 2}]\n  - model: cat\n    places: [{at_s: 1}]"),
-                HasSubstr("the world has no model 'cat'"));
-    EXPECT_THAT(error("[{at_s: 2}]\n  - model: ball\n    places: [{at_s: 1}]"), HasSubstr("comes twice"));
+                AllOf(code_is(ErrorCode::unknown_name), key_is("models[1].model"), value_is("'cat'")));
+    EXPECT_THAT(error("[{at_s: 2}]\n  - model: ball\n    places: [{at_s: 1}]"),
+                AllOf(code_is(ErrorCode::duplicate), value_is("'ball' again")));
 }
 
 }  // namespace

@@ -15,17 +15,23 @@
 #include "hw/sim/scenario/motion.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 #include "tests/support/declared_keys.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::sim {
 namespace {
 
-using testing::HasSubstr;
+using testing::AllOf;
 using testing::Not;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::is_no_error;
+using testing_support::no_error;
 using testing_support::refusal_of;
 using testing_support::scalar;
 using testing_support::ScratchFolder;
 using testing_support::value_at;
+using testing_support::what_is;
 
 /// Laid over the experiment, so that no limit is narrower than its declaration.
 const std::string kWideScenario = "extends: " OCTOSKIN_SOURCE_DIR R"(/hw/worlds/experiment.scenario.yaml
@@ -43,25 +49,25 @@ class ScenarioKeys : public testing::Test {
         folder_.write("a.motion.yaml", kWorldMotion);
     }
 
-    std::string message_with(std::string_view path, const std::string& text) {
-        return message_of_change(path, [&](rig::Value& value) { value = scalar(value.key, text); });
+    Error error_with(std::string_view path, const std::string& text) {
+        return error_of_change(path, [&](rig::Value& value) { value = scalar(value.key, text); });
     }
-    std::string message_with_numbers(const rig::NumbersKey& key, double number) {
-        return message_of_change(key.path, [&](rig::Value& value) {
+    Error error_with_numbers(const rig::NumbersKey& key, double number) {
+        return error_of_change(key.path, [&](rig::Value& value) {
             value.kind = rig::Value::Kind::list;
             value.items.assign(key.count, scalar("", fmt::format("{}", number)));
         });
     }
-    std::string message_without(std::string_view path) {
+    Error error_without(std::string_view path) {
         if (path.ends_with("[]")) path.remove_suffix(2);
-        return message_of_change(path, [](rig::Value& value) {
+        return error_of_change(path, [](rig::Value& value) {
             value.kind = rig::Value::Kind::null;
             value.items.clear();
         });
     }
 
   private:
-    std::string message_of_change(std::string_view path, const auto& change) {
+    Error error_of_change(std::string_view path, const auto& change) {
         const bool is_motion = path.starts_with("models");
         rig::Value top = is_motion
                              ? rig::load_document(folder_ / "a.motion.yaml")
@@ -69,11 +75,9 @@ class ScenarioKeys : public testing::Test {
         change(value_at(top, path));
         const auto file = folder_.write("changed.yaml", rig::document_text(top));
         if (is_motion) {
-            const auto motion = read_motion(file, {{"ball/l/v", "ball", {}, {}, true}});
-            return motion ? "no error" : motion.error().message();
+            return error_in(read_motion(file, {{"ball/l/v", "ball", {}, {}, true}}));
         }
-        const auto scenario = read_scenario(file);
-        return scenario ? "no error" : scenario.error().message();
+        return error_in(read_scenario(file));
     }
 
     ScratchFolder folder_;
@@ -93,12 +97,13 @@ TEST_F(ScenarioKeys, numbers_are_refused_just_outside_of_the_declared_range_and_
         const auto* const* key = std::get_if<const rig::NumberKey*>(&any);
         if (key == nullptr) continue;
         const auto [min, max] = (*key)->range;
-        const std::string refusal = refusal_of(any) + ", found";
+        const std::string refusal = refusal_of(any);
         for (const double outside : {std::nextafter(min, -kInfinity), std::nextafter(max, kInfinity)})
-            EXPECT_THAT(message_with((*key)->path, fmt::format("{}", outside)), HasSubstr(refusal))
+            EXPECT_THAT(error_with((*key)->path, fmt::format("{}", outside)),
+                        AllOf(code_is(ErrorCode::out_of_range), what_is(refusal)))
                 << (*key)->path;
         for (const double end : {min, max})
-            EXPECT_THAT(message_with((*key)->path, fmt::format("{}", end)), Not(HasSubstr(refusal)))
+            EXPECT_THAT(error_with((*key)->path, fmt::format("{}", end)), Not(what_is(refusal)))
                 << (*key)->path;
         ++checked;
     }
@@ -111,12 +116,13 @@ TEST_F(ScenarioKeys, whole_numbers_are_refused_just_outside_of_the_declared_rang
         const auto* const* key = std::get_if<const rig::IntegerKey*>(&any);
         if (key == nullptr) continue;
         const auto [min, max] = (*key)->range;
-        const std::string refusal = refusal_of(any) + ", found";
+        const std::string refusal = refusal_of(any);
         for (const std::int64_t outside : {min - 1, max + 1})
-            EXPECT_THAT(message_with((*key)->path, fmt::format("{}", outside)), HasSubstr(refusal))
+            EXPECT_THAT(error_with((*key)->path, fmt::format("{}", outside)),
+                        AllOf(code_is(ErrorCode::out_of_range), what_is(refusal)))
                 << (*key)->path;
         for (const std::int64_t end : {min, max})
-            EXPECT_EQ(message_with((*key)->path, fmt::format("{}", end)), "no error") << (*key)->path;
+            EXPECT_THAT(error_with((*key)->path, fmt::format("{}", end)), is_no_error()) << (*key)->path;
         ++checked;
     }
     EXPECT_EQ(checked, 10);
@@ -128,10 +134,12 @@ TEST_F(ScenarioKeys, lists_of_numbers_are_refused_outside_of_the_declared_range)
         const auto* const* key = std::get_if<const rig::NumbersKey*>(&any);
         if (key == nullptr) continue;
         const std::string refusal =
-            fmt::format("expected metres from {} to {}, found", (*key)->range.min, (*key)->range.max);
+            fmt::format("expected metres from {} to {}", (*key)->range.min, (*key)->range.max);
         for (const double end : {(*key)->range.min, (*key)->range.max}) {
-            EXPECT_THAT(message_with_numbers(**key, 1.001 * end), HasSubstr(refusal)) << (*key)->path;
-            EXPECT_THAT(message_with_numbers(**key, end), Not(HasSubstr(refusal))) << (*key)->path;
+            EXPECT_THAT(error_with_numbers(**key, 1.001 * end),
+                        AllOf(code_is(ErrorCode::out_of_range), what_is(refusal)))
+                << (*key)->path;
+            EXPECT_THAT(error_with_numbers(**key, end), Not(what_is(refusal))) << (*key)->path;
         }
         ++checked;
     }
@@ -143,9 +151,7 @@ TEST_F(ScenarioKeys, a_required_key_is_required_and_any_other_may_be_missing) {
         const std::string path(rig::path_of(key));
         if (path == "sensor_traits[].register") continue;  // the others of the item need it
         const bool is_required = rig::default_text(key) == "required" || path == "sensor_traits[].reads";
-        EXPECT_THAT(message_without(path),
-                    is_required ? HasSubstr("expected this key, found none") : HasSubstr("no error"))
-            << path;
+        EXPECT_EQ(error_without(path).code, is_required ? ErrorCode::missing_key : no_error().code) << path;
     }
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::sim {
@@ -15,6 +16,16 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::key_is;
+using testing_support::line_is;
+using testing_support::remedy_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 const std::filesystem::path kExperiment =
     std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/worlds/experiment.scenario.yaml";
@@ -22,14 +33,17 @@ const std::filesystem::path kExperiment =
 /// The experiment with some keys laid over it.
 class ScenarioFile : public testing::Test {
   protected:
-    Result<Scenario, rig::RigError> read_with(const std::string& overlay) {
+    Result<Scenario, Error> read_with(const std::string& overlay) {
         std::ofstream(file_) << "extends: " << kExperiment.string() << "\n" << overlay << "\n";
         return read_scenario(file_);
     }
-    std::string error_of(const std::string& overlay) {
+    Error error_of(const std::string& overlay) {
         const auto scenario = read_with(overlay);
         EXPECT_FALSE(scenario) << overlay << " was accepted";
-        return scenario ? "" : scenario.error().message();
+        const Error error = error_in(scenario);
+        EXPECT_TRUE(has_its_fields(error)) << overlay;
+        EXPECT_TRUE(error.file == file_ || error.file == kExperiment) << error.file;
+        return error;
     }
 
     const testing_support::ScratchFolder scratch_;
@@ -106,63 +120,84 @@ TEST_F(ScenarioFile, says_how_sensors_are_that_nothing_is_wrong_with) {
                     .boot_load = Microseconds{3'000}}}};
     EXPECT_EQ(scenario->sensor_traits, expected);
     EXPECT_TRUE(read_with("name: plain")->sensor_traits.empty());
-    EXPECT_THAT(error_of("sensor_traits: [{reads: 3}]"), HasSubstr("sensor_traits[0].reads"));
-    EXPECT_THAT(error_of("sensor_traits: [{register: 0x47}]"), HasSubstr("sensor_traits[0].reads"));
+    EXPECT_THAT(error_of("sensor_traits: [{reads: 3}]"),
+                AllOf(code_is(ErrorCode::missing_key), key_is("sensor_traits[0].reads")));
+    EXPECT_THAT(error_of("sensor_traits: [{register: 0x47}]"),
+                AllOf(code_is(ErrorCode::missing_key), key_is("sensor_traits[0].reads")));
     EXPECT_THAT(error_of("sensor_traits: [{register: 0x200, reads: 1}]"),
-                HasSubstr("sensor_traits[0].register"));
-    EXPECT_THAT(error_of("sensor_traits: [{sensor: 34}]"), HasSubstr("sensor_traits[0].sensor"));
+                AllOf(code_is(ErrorCode::out_of_range), key_is("sensor_traits[0].register")));
+    EXPECT_THAT(error_of("sensor_traits: [{sensor: 34}]"),
+                AllOf(code_is(ErrorCode::out_of_range), key_is("sensor_traits[0].sensor"), value_is("'34'")));
     EXPECT_THAT(error_of("sensor_traits: [{}, {range_spread_us: 20001}]"),
-                HasSubstr("sensor_traits[1].range_spread_us"));
+                AllOf(code_is(ErrorCode::out_of_range), key_is("sensor_traits[1].range_spread_us")));
 }
 
 TEST_F(ScenarioFile, with_an_unknown_key_is_refused_with_file_line_and_key) {
     EXPECT_THAT(error_of("depth:\n  sigma_mm: 30"),
-                AllOf(HasSubstr("changed.yaml:3"), HasSubstr("sigma_mm"), HasSubstr("sigma_m")));
-    EXPECT_THAT(error_of("camera: {sigma_m: 0.03}"), HasSubstr("camera"));
+                AllOf(code_is(ErrorCode::unknown_key), file_is("changed.yaml"), line_is(3),
+                      key_is("depth.sigma_mm"), remedy_is(HasSubstr("sigma_m?"))));
+    EXPECT_THAT(error_of("camera: {sigma_m: 0.03}"),
+                AllOf(code_is(ErrorCode::unknown_key), key_is("camera")));
 }
 
 TEST_F(ScenarioFile, with_a_wrong_value_is_refused_with_what_was_expected) {
-    EXPECT_THAT(error_of("depth: {sigma_m: 30}"), AllOf(HasSubstr("depth.sigma_m"), HasSubstr("'30'")));
-    EXPECT_THAT(error_of("depth: {sigma_m: nan}"), HasSubstr("depth.sigma_m"));
-    EXPECT_THAT(error_of("motion: {rest_s: 1}"), HasSubstr("motion.rest_s"));
+    EXPECT_THAT(error_of("depth: {sigma_m: 30}"),
+                AllOf(code_is(ErrorCode::out_of_range), key_is("depth.sigma_m"), value_is("'30'")));
+    EXPECT_THAT(error_of("depth: {sigma_m: nan}"), key_is("depth.sigma_m"));
+    EXPECT_THAT(error_of("motion: {rest_s: 1}"), key_is("motion.rest_s"));
     EXPECT_THAT(error_of("motion: {circle: {towards_start: [0, 2, 0]}}"),
-                HasSubstr("motion.circle.towards_start"));
-    EXPECT_THAT(error_of("motion: {circle: {towards_quarter: [0, 1, 0]}}"), HasSubstr("right angles"));
-    EXPECT_THAT(error_of("motion: {circle: {towards_quarter: [0, 0, 0.5]}}"), HasSubstr("length 1"));
-    EXPECT_THAT(error_of("motion: {circle: {ticks_per_revolution: 0}}"), HasSubstr("ticks_per_revolution"));
+                AllOf(code_is(ErrorCode::out_of_range), key_is("motion.circle.towards_start")));
+    EXPECT_THAT(error_of("motion: {circle: {towards_quarter: [0, 1, 0]}}"),
+                AllOf(key_is("motion.circle.towards_quarter"), what_is(HasSubstr("right angles"))));
+    EXPECT_THAT(error_of("motion: {circle: {towards_quarter: [0, 0, 0.5]}}"),
+                AllOf(key_is("motion.circle.towards_quarter"), what_is(HasSubstr("length 1"))));
+    EXPECT_THAT(error_of("motion: {circle: {ticks_per_revolution: 0}}"),
+                key_is("motion.circle.ticks_per_revolution"));
     EXPECT_THAT(error_of("motion: {circle: {start_position_rad: [0, left]}}"),
-                HasSubstr("start_position_rad[1]"));
-    EXPECT_THAT(error_of("ranges: {min_m: 5}"), HasSubstr("ranges.max_m"));
-    EXPECT_THAT(error_of("slow_clocks: {factor_min: 2}"), HasSubstr("slow_clocks.factor_min"));
-    EXPECT_THAT(error_of("slow_clocks: {factor_min: 1.095}"), HasSubstr("slow_clocks.factor_max"));
-    EXPECT_THAT(error_of("region: {max_m: [-1, 1.2, 1.4]}"), HasSubstr("region.max_m"));
-    EXPECT_THAT(error_of("seeds: {map_shift_m: [[0, 0]]}"), HasSubstr("seeds.map_shift_m[0]"));
-    EXPECT_THAT(error_of("world: no-such.sdf"), AllOf(HasSubstr(":2"), HasSubstr("no-such.sdf")));
-    EXPECT_THAT(error_of("world: [a, b]"), HasSubstr("world"));
+                AllOf(code_is(ErrorCode::wrong_type), key_is("motion.circle.start_position_rad[1]"),
+                      value_is("'left'")));
+    EXPECT_THAT(error_of("ranges: {min_m: 5}"), key_is("ranges.max_m"));
+    EXPECT_THAT(error_of("slow_clocks: {factor_min: 2}"), key_is("slow_clocks.factor_min"));
+    EXPECT_THAT(error_of("slow_clocks: {factor_min: 1.095}"), key_is("slow_clocks.factor_max"));
+    EXPECT_THAT(error_of("region: {max_m: [-1, 1.2, 1.4]}"), key_is("region.max_m"));
+    EXPECT_THAT(error_of("seeds: {map_shift_m: [[0, 0]]}"), key_is("seeds.map_shift_m[0]"));
+    EXPECT_THAT(error_of("world: no-such.sdf"), AllOf(code_is(ErrorCode::not_found), line_is(2),
+                                                      key_is("world"), value_is(HasSubstr("no-such.sdf"))));
+    EXPECT_THAT(error_of("world: [a, b]"), key_is("world"));
     EXPECT_THAT(error_of("world: " + std::string(300, 'w')),
-                AllOf(HasSubstr(":2"), HasSubstr("there is none")));
-    EXPECT_THAT(error_of("hidden_models: cone"), HasSubstr("hidden_models"));
+                AllOf(code_is(ErrorCode::not_found), file_is("changed.yaml"), line_is(2),
+                      value_is(StartsWith("none at "))));
+    EXPECT_THAT(error_of("hidden_models: cone"),
+                AllOf(code_is(ErrorCode::wrong_type), key_is("hidden_models")));
 }
 
 TEST_F(ScenarioFile, knows_where_it_says_what_may_turn_out_wrong_later) {
     const auto scenario = read_with("hidden_models: []\nmotion:\n  circle:\n    link: hand");
     ASSERT_TRUE(scenario) << scenario.error().message();
-    EXPECT_THAT(scenario->error("motion.circle.link", "x").message(),
-                testing::EndsWith("changed.yaml:5: motion.circle.link: x"));
-    EXPECT_THAT(scenario->error("hidden_models", "x").message(), HasSubstr("changed.yaml:2: hidden_models"));
+    const Error fault{ErrorCode::conflict, "x", "1", "y"};
+    const auto place_is = [](const char* file, int line, const char* key) {
+        return AllOf(code_is(ErrorCode::conflict), file_is(file), line_is(line), key_is(key), what_is("x"),
+                     value_is("1"), remedy_is("y"));
+    };
+    EXPECT_THAT(scenario->error("motion.circle.link", fault),
+                place_is("changed.yaml", 5, "motion.circle.link"));
+    EXPECT_THAT(scenario->error("hidden_models", fault), place_is("changed.yaml", 2, "hidden_models"));
     for (const char* key : {"region", "motion.circle.start_position_rad"}) {
-        EXPECT_THAT(scenario->error(key, "x").message(),
-                    testing::ContainsRegex("experiment.scenario.yaml:[0-9]+: "));
+        const Error error = scenario->error(key, fault);
+        EXPECT_GT(error.line, 0);
+        EXPECT_THAT(error, place_is("experiment.scenario.yaml", error.line, key));
     }
-    EXPECT_THAT(scenario->error("name", "x").message(), testing::EndsWith("changed.yaml: name: x"));
+    EXPECT_THAT(scenario->error("name", fault), place_is("changed.yaml", 0, "name"));
 }
 
 TEST_F(ScenarioFile, without_a_required_key_or_that_is_not_there_is_refused) {
-    EXPECT_THAT(error_of("ranges: {sigma_m: null}"), HasSubstr("ranges.sigma_m"));
-    EXPECT_THAT(error_of("motion: null"), HasSubstr("motion"));
+    EXPECT_THAT(error_in(read_with("ranges: {sigma_m: null}")),
+                AllOf(code_is(ErrorCode::missing_key), key_is("ranges.sigma_m")));
+    EXPECT_THAT(error_in(read_with("motion: null")),
+                AllOf(code_is(ErrorCode::missing_key), key_is("motion")));
     const auto absent = read_scenario("no-such.scenario.yaml");
     ASSERT_FALSE(absent);
-    EXPECT_THAT(absent.error().message(), HasSubstr("no-such.scenario.yaml"));
+    EXPECT_THAT(absent.error(), AllOf(code_is(ErrorCode::not_found), file_is("no-such.scenario.yaml")));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hw/sim/world/world.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::sim {
@@ -13,6 +14,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::what_is;
 
 /// Each a triangle, but for its format.
 const std::map<std::string, std::string> kTriangles{
@@ -57,7 +59,7 @@ TEST(MeshKinds, are_three_and_no_other_reader_is_tried) {
         const std::string kind = std::string(name) == "m.off" ? "off" : "ply";
         const auto mesh = read(name, kTriangles.at(kind));
         ASSERT_FALSE(mesh) << name;
-        EXPECT_THAT(mesh.error().message(), AllOf(HasSubstr(std::string("/") + name), HasSubstr(".stl")));
+        EXPECT_THAT(mesh.error(), what_is(AllOf(HasSubstr(std::string("/") + name), HasSubstr(".stl"))));
     }
     // What is inside does not bring another reader in.
     for (const char* name : {"m.obj", "m.stl", "m.dae"}) {

@@ -13,6 +13,7 @@
 #include "hw/sim/world/solids_bytes.hpp"
 #include "hw/sim/world/world.hpp"
 #include "hw/sim/world/world_copy.hpp"
+#include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin::sim {
@@ -20,14 +21,26 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using testing_support::code_is;
+using testing_support::error_in;
+using testing_support::file_is;
+using testing_support::has_its_fields;
+using testing_support::key_is;
+using testing_support::value_is;
+using testing_support::what_is;
 
 const std::filesystem::path kData = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/data/worlds";
 const std::filesystem::path kWorlds = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw/worlds";
 
-std::string error_of(const std::string& name) {
+Error error_of(const std::string& name) {
     const auto world = World::read(kData / name);
     EXPECT_FALSE(world.has_value()) << name << " was accepted";
-    return world ? "" : world.error().message();
+    const Error error = error_in(world);
+    EXPECT_EQ(error.file, kData / name);
+    EXPECT_TRUE(has_its_fields(error));
+    return error;
 }
 
 TEST(Sdf, composes_the_poses_of_model_link_and_visual) {
@@ -77,23 +90,25 @@ TEST(Sdf, reads_every_supported_shape_from_a_file_with_a_single_model) {
 
 TEST(Sdf, names_the_element_with_an_unsupported_shape_and_the_supported_ones) {
     EXPECT_THAT(error_of("heightmap.sdf"),
-                AllOf(HasSubstr("heightmap.sdf: model 'hill', link 'body', visual 'slope'"),
-                      HasSubstr("unsupported shape 'heightmap'"), HasSubstr("box, cylinder, sphere")));
+                AllOf(key_is("model 'hill', link 'body', visual 'slope'"),
+                      what_is(AllOf(HasSubstr("'heightmap'"), HasSubstr("box, cylinder, sphere")))));
     EXPECT_THAT(error_of("cone-element.sdf"),
-                AllOf(HasSubstr("cone-element.sdf: model '"), HasSubstr("line 7"),
-                      HasSubstr("unsupported shape 'cone'"), HasSubstr("box, cylinder, sphere")));
-    EXPECT_THAT(error_of("empty-geometry.sdf"), AllOf(HasSubstr("visual 'nothing'"), HasSubstr("empty")));
+                AllOf(key_is(StartsWith("model '")), what_is(AllOf(HasSubstr("line 7"), HasSubstr("'cone'"),
+                                                                   HasSubstr("box, cylinder, sphere")))));
+    EXPECT_THAT(error_of("empty-geometry.sdf"),
+                AllOf(key_is(HasSubstr("visual 'nothing'")), what_is(HasSubstr("empty"))));
 }
 
 TEST(Sdf, passes_on_the_parsers_message_for_a_broken_file) {
-    EXPECT_THAT(error_of("broken-xml.sdf"),
-                AllOf(HasSubstr("broken-xml.sdf: line 6"), HasSubstr("not well-formed XML")));
-    EXPECT_THAT(error_of("robot-instead.sdf"), HasSubstr("expected the root element 'sdf', found 'robot'"));
-    EXPECT_THAT(error_of("misspelt-element.sdf"), AllOf(HasSubstr("line 5"), HasSubstr("poze")));
-    EXPECT_THAT(error_of("text-for-a-number.sdf"),
-                AllOf(HasSubstr("text-for-a-number.sdf: line 7"), HasSubstr("left")));
-    EXPECT_THAT(error_of("no-such-file.sdf"), HasSubstr("no such file"));
-    EXPECT_THAT(error_of("empty.sdf"), HasSubstr("empty.sdf: "));
+    EXPECT_THAT(error_of("broken-xml.sdf"), AllOf(code_is(ErrorCode::bad_syntax), key_is("line 6"),
+                                                  what_is(HasSubstr("not well-formed XML"))));
+    EXPECT_THAT(error_of("robot-instead.sdf"),
+                AllOf(code_is(ErrorCode::foreign_format), what_is(HasSubstr("'sdf'")), value_is("'robot'")));
+    EXPECT_THAT(error_of("misspelt-element.sdf"), what_is(AllOf(HasSubstr("line 5"), HasSubstr("poze"))));
+    EXPECT_THAT(error_of("text-for-a-number.sdf"), what_is(AllOf(StartsWith("line 7"), HasSubstr("left"))));
+    EXPECT_THAT(error_of("no-such-file.sdf"),
+                AllOf(code_is(ErrorCode::not_found), what_is(HasSubstr("no such file"))));
+    EXPECT_THAT(error_of("empty.sdf"), Not(what_is("")));
 }
 
 /// A world with a box of 0.2 m, something else in its link and visual, and in the world.
@@ -156,7 +171,7 @@ TEST(Sdf, takes_a_ground_of_any_use_and_refuses_one_beyond_all_measure) {
     for (const char* const size : {"3e9 1", "1 1e200", "1e308 1e308"}) {
         const auto world = ground(size);
         ASSERT_FALSE(world) << size;
-        EXPECT_THAT(world.error().message(), AllOf(HasSubstr("visual 'ground'"), HasSubstr("1e9 m")));
+        EXPECT_THAT(world.error(), AllOf(key_is(HasSubstr("visual 'ground'")), what_is(HasSubstr("1e9 m"))));
     }
 }
 
@@ -172,7 +187,7 @@ TEST(Sdf, refuses_an_unknown_element_that_may_decide_what_is_seen) {
           world_with("<visal name='x'>" + box + "</visal>"), world_with("", "<mode name='x'/>")}) {
         const auto world = World::read(scratch.write("w.sdf", text));
         ASSERT_FALSE(world) << text;
-        EXPECT_THAT(world.error().message(), HasSubstr("not defined in SDF"));
+        EXPECT_THAT(world.error(), what_is(HasSubstr("not defined in SDF")));
     }
 }
 
@@ -309,20 +324,21 @@ TEST_F(ModelUri, of_an_earlier_folder_hides_that_of_a_later_one) {
 TEST_F(ModelUri, that_is_nowhere_is_refused_with_what_would_help) {
     const ModelFolders set("SDF_PATH", "/nonexistent");
     const auto error_of_world = [&](const std::string& inside) {
-        const auto read = World::read(world(inside));
-        return read ? "it was accepted" : read.error().message();
+        return error_in(World::read(world(inside)));
     };
     EXPECT_THAT(error_of_world("\n<include><uri>model://crate</uri></include>"),
-                AllOf(HasSubstr("w.sdf: line 2: "), HasSubstr("model://crate"), HasSubstr("--model-path")));
+                AllOf(file_is("w.sdf"), what_is(AllOf(HasSubstr("line 2: "), HasSubstr("model://crate"),
+                                                      HasSubstr("--model-path")))));
     EXPECT_THAT(error_of_world("<include><uri>https://fuel.example/1.0/a/models/b</uri></include>"),
-                AllOf(HasSubstr("octoskin fetches nothing"), HasSubstr("--model-path")));
-    EXPECT_THAT(error_of_world("<model name='m'><link name='l'>" +
-                               mesh_visual("https://fuel.example/a/files/b.dae") + "</link></model>"),
-                AllOf(HasSubstr("model 'm', link 'l', visual 'v'"), HasSubstr("octoskin fetches nothing")));
+                what_is(AllOf(HasSubstr("octoskin fetches nothing"), HasSubstr("--model-path"))));
+    EXPECT_THAT(
+        error_of_world("<model name='m'><link name='l'>" + mesh_visual("https://fuel.example/a/files/b.dae") +
+                       "</link></model>"),
+        AllOf(key_is("model 'm', link 'l', visual 'v'"), what_is(HasSubstr("octoskin fetches nothing"))));
     EXPECT_THAT(error_of_world("<model name='m'><link name='l'>" + mesh_visual("model://crate/meshes/a.obj") +
                                "</link></model>"),
-                AllOf(HasSubstr("model 'm', link 'l', visual 'v'"), HasSubstr("model://crate/meshes/a.obj"),
-                      HasSubstr("--model-path")));
+                AllOf(key_is("model 'm', link 'l', visual 'v'"),
+                      what_is(AllOf(HasSubstr("model://crate/meshes/a.obj"), HasSubstr("--model-path")))));
 }
 
 TEST_F(ModelUri, of_a_world_inside_a_recording_is_never_looked_for) {
@@ -332,19 +348,19 @@ TEST_F(ModelUri, of_a_world_inside_a_recording_is_never_looked_for) {
     const FilePlace inside(OpenFolder::open(scratch_.path(), FolderAccess::read).value(), "w.sdf");
     const auto mesh = World::read(inside);
     ASSERT_FALSE(mesh);
-    EXPECT_THAT(mesh.error().message(), HasSubstr("is not supported"));
+    EXPECT_THAT(mesh.error(), what_is(HasSubstr("is not supported")));
     (void)world("<include><uri>model://crate</uri></include>");
     EXPECT_FALSE(World::read(inside));
 }
 
 TEST(Sdf, refuses_sizes_and_meshes_that_make_no_solid) {
-    EXPECT_THAT(error_of("negative-radius.sdf"), AllOf(HasSubstr("model 'ball', link 'body', visual 'ball'"),
-                                                       HasSubstr("above 0 and up to 100")));
-    EXPECT_THAT(error_of("nan-pose.sdf"), HasSubstr("nan-pose.sdf"));
+    EXPECT_THAT(error_of("negative-radius.sdf"), AllOf(key_is("model 'ball', link 'body', visual 'ball'"),
+                                                       what_is(HasSubstr("above 0 and up to 100"))));
+    EXPECT_THAT(error_of("nan-pose.sdf"), Not(what_is("")));
     EXPECT_THAT(error_of("missing-mesh.sdf"),
-                AllOf(HasSubstr("visual 'shell'"), HasSubstr("no-such-mesh.obj")));
-    EXPECT_THAT(error_of("mesh-without-triangles.sdf"), HasSubstr("points-only.obj"));
-    EXPECT_THAT(error_of("nothing-to-see.sdf"), HasSubstr("no visual"));
+                AllOf(key_is(HasSubstr("visual 'shell'")), what_is(HasSubstr("no-such-mesh.obj"))));
+    EXPECT_THAT(error_of("mesh-without-triangles.sdf"), what_is(HasSubstr("points-only.obj")));
+    EXPECT_THAT(error_of("nothing-to-see.sdf"), what_is(HasSubstr("no visual")));
 }
 
 TEST(Sdf, survives_every_truncation_of_a_good_file) {

@@ -42,17 +42,22 @@ TEST(SolidsBytes, bring_every_bit_of_the_solids) {
 }
 
 TEST(SolidsBytes, bring_an_error_without_its_file) {
-    const auto again = from_bytes(to_bytes(unexpected(WorldError{"x.sdf", "model 'm'", "what\n"})));
+    const auto again = from_bytes(to_bytes(
+        unexpected(Error{ErrorCode::unsupported, "what\n", "value", "remedy", "x.sdf", 0, 0, "model 'm'"})));
     ASSERT_TRUE(again);
     ASSERT_FALSE(*again);
     EXPECT_EQ(again->error().file, "");
-    EXPECT_EQ(again->error().element, "model 'm'");
+    EXPECT_EQ(again->error().code, ErrorCode::unsupported);
+    EXPECT_EQ(again->error().key, "model 'm'");
     EXPECT_EQ(again->error().what, "what\n");
+    EXPECT_EQ(again->error().value, "value");
+    EXPECT_EQ(again->error().remedy, "remedy");
 }
 
 TEST(SolidsBytes, that_are_cut_off_or_go_on_are_refused) {
     for (const std::string& whole :
-         {to_bytes(SolidsOfFile{two_solids()}), to_bytes(unexpected(WorldError{"", "element", "what"}))}) {
+         {to_bytes(SolidsOfFile{two_solids()}),
+          to_bytes(unexpected(Error{.what = "what", .value = "value", .key = "element"}))}) {
         for (std::size_t size = 0; size < whole.size(); ++size)
             EXPECT_FALSE(from_bytes(std::string_view(whole).substr(0, size))) << size;
         EXPECT_FALSE(from_bytes(whole + '\0'));
