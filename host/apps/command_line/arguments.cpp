@@ -111,6 +111,16 @@ bool wants_json_errors(int argc, const char* const* argv) noexcept {
     return argc > 1 && argv[1] == kJsonErrors;
 }
 
+void check_json_errors(int argc, const char* const* argv) {
+    for (int i = 2; i < argc; ++i) {
+        if (argv[i] != kJsonErrors) continue;
+        throw CommandFailure(ExitCode::usage, {.code = ErrorCode::bad_argument,
+                                               .what = "expected once, as the first argument",
+                                               .remedy = "put it before the command",
+                                               .key = std::string(kJsonErrors)});
+    }
+}
+
 std::string_view first_argument(int argc, const char* const* argv) noexcept {
     const int first = wants_json_errors(argc, argv) ? 2 : 1;
     return argc > first ? argv[first] : std::string_view();

@@ -41,6 +41,8 @@ template <class T>
 /// The option before the command with which errors are printed as JSON.
 inline constexpr std::string_view kJsonErrors = "--json-errors";
 [[nodiscard]] bool wants_json_errors(int argc, const char* const* argv) noexcept;
+/// Throws CommandFailure if the option is anywhere but before the command.
+void check_json_errors(int argc, const char* const* argv);
 /// The first argument after the program and kJsonErrors; empty if there is none.
 [[nodiscard]] std::string_view first_argument(int argc, const char* const* argv) noexcept;
 

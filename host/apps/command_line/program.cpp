@@ -81,6 +81,7 @@ int run(const octoskin::app::Program& program, int argc, char** argv) {
     app.footer(program.footer);
     program.add_commands(app);
     try {
+        app::check_json_errors(argc, argv);
         app::check_command_name(app, program.others, argc, argv);
         app.parse(argc, argv);
         return static_cast<int>(ExitCode::ok);

@@ -55,6 +55,12 @@ Json error_of(const Ended& ended) {
     return json.at("error");
 }
 
+TEST(JsonErrors, are_asked_for_before_the_command_only) {
+    const Ended ended = run({"fail", "--json-errors"});
+    EXPECT_EQ(ended.exit_code, 64);
+    EXPECT_THAT(ended.standard_error, HasSubstr("--json-errors: expected once"));
+}
+
 TEST(JsonErrors, have_the_fields_of_the_error_and_the_exit_code) {
     const Ended ended = run({"--json-errors", "fail"});
     EXPECT_EQ(ended.exit_code, 65);
