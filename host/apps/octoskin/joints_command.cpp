@@ -254,8 +254,10 @@ void add_joints_command(CLI::App& app) {
         "radians, metres\nfor a prismatic joint, within +-8.388607. TIME is CLOCK_MONOTONIC of this machine "
         "in seconds (as Python's\ntime.monotonic()), within 1 s of now; without it the time of arrival "
         "counts. With --rig a line\nwith another number of joints, or over 0.005 beyond the robot's joint "
-        "limits, is refused here; without it\nthe daemon checks the lines, and `octoskin status` shows which "
-        "it refused.\nAt the end of the input, and on SIGINT or SIGTERM, it prints how many lines were sent, "
+        "limits, is refused here; without it\nthe daemon checks the lines, and `octoskin monitor` counts "
+        "those "
+        "that it refuses.\nAt the end of the input, and on SIGINT or SIGTERM, it prints how many lines were "
+        "sent, "
         "lost and refused.\nExit codes: 0 lines were sent; 64 command line; 65 a line without end; 66 no "
         "such rig file;\n69 no line was sent; 74 standard input cannot be read; 78 the rig is not valid.");
     command->callback([options] { forward(*options); });
