@@ -18,6 +18,7 @@
 #include "hw/rigfile/nesting.hpp"
 #include "hw/rigfile/rig_keys.hpp"
 #include "hw/rigfile/syntax_hint.hpp"
+#include "hw/rigfile/unopened_file.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -41,21 +42,10 @@ std::string_view xml_kind(std::string_view text) {
     return "XML";
 }
 
-Error error_of(const FolderError& error) {
-    Error refused = to_error(error);
-    if (error.fault == FolderFault::not_a_file) {
-        refused.remedy = "give the path of an ordinary YAML file";
-    } else if (error.fault != FolderFault::link && error.fault != FolderFault::outside) {
-        refused.what = "cannot be opened";
-        refused.remedy = "give the path of an existing, readable YAML file";
-    }
-    return refused;
-}
-
 std::string read_text(const FilePlace& place) {
     const std::filesystem::path file = place.shown();
     const auto opened = place.open();
-    if (!opened) throw error_of(opened.error());
+    if (!opened) throw unopened_file(opened.error(), "YAML");
     auto bytes = opened->read(kFileBytesMax);
     if (!bytes) throw to_error(bytes.error(), "cannot be read: ");
     std::string text = std::move(*bytes);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "hw/rigfile/element_fault.hpp"
+#include "hw/rigfile/unopened_file.hpp"
 #include "hw/rigfile/urdf_counted.hpp"
 #include "hw/rigfile/urdf_xml.hpp"
 
@@ -39,24 +40,13 @@ class CapturedLog final : public console_bridge::OutputHandler {
     std::string errors_;
 };
 
-Error error_of(const FolderError& error) {
-    Error refused = to_error(error);
-    if (error.fault == FolderFault::not_a_file) {
-        refused.remedy = "give the path of an ordinary URDF file";
-    } else if (error.fault != FolderFault::link && error.fault != FolderFault::outside) {
-        refused.what = "cannot be opened";
-        refused.remedy = "give the path of an existing, readable URDF file";
-    }
-    return refused;
-}
-
 Result<std::string, Error> read_text(const FilePlace& file) {
     const auto failed = [&file](Error error) {
         error.file = file.shown();
         return unexpected(std::move(error));
     };
     const auto opened = file.open();
-    if (!opened) return failed(error_of(opened.error()));
+    if (!opened) return failed(unopened_file(opened.error(), "URDF"));
     auto text = opened->read(kFileBytesMax);
     if (!text) return failed(to_error(text.error(), "cannot be read: "));
     if (text->size() > kFileBytesMax) {

@@ -32,11 +32,7 @@ class DepthRecorder::Work {
         try {
             outcome = record();
         } catch (const std::exception& thrown) {  // no memory, no thread
-            outcome =
-                unexpected(in_file(shortage_in(thrown)
-                                       .value_or(AppError{.error = {ErrorCode::system_error, thrown.what()}})
-                                       .error,
-                                   oni_.shown()));
+            outcome = unexpected(in_file(error_in(thrown), oni_.shown()));
         }
         const std::lock_guard lock(mutex_);
         if (!outcome) error_ = outcome.error();

@@ -208,9 +208,7 @@ void RecordingWriter::Work::run() {
     try {
         outcome = record();
     } catch (const std::exception& thrown) {  // no memory for the text of a map
-        outcome = unexpected(in_file(
-            shortage_in(thrown).value_or(AppError{.error = {ErrorCode::system_error, thrown.what()}}).error,
-            folder()));
+        outcome = unexpected(in_file(error_in(thrown), folder()));
     }
     {
         const std::lock_guard lock(mutex_);

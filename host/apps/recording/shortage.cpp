@@ -92,9 +92,13 @@ std::optional<AppError> shortage_in(const std::exception& thrown) {
     return AppError{ExitCode::no_resources, std::move(*error)};
 }
 
+Error error_in(const std::exception& thrown) {
+    auto shortage = shortage_in(thrown);
+    return shortage ? std::move(shortage->error) : Error{ErrorCode::system_error, thrown.what()};
+}
+
 std::string reason_of(const std::exception& thrown) {
-    const auto shortage = shortage_in(thrown);
-    return shortage ? shortage->message() : thrown.what();
+    return error_in(thrown).message();
 }
 
 }  // namespace octoskin

@@ -14,7 +14,9 @@ namespace octoskin {
 /// Resources: memory, descriptors, threads, the size of a file.
 [[nodiscard]] std::optional<AppError> shortage_in(const std::exception& thrown);
 
-/// The sentence of that shortage, or else the exception's own text.
+/// The error of that shortage, or else `system_error` with the exception's own text.
+[[nodiscard]] Error error_in(const std::exception& thrown);
+/// The sentence of error_in().
 [[nodiscard]] std::string reason_of(const std::exception& thrown);
 
 }  // namespace octoskin
