@@ -70,7 +70,8 @@ VoxelMask seen_mask(const sim::World& world, const TruthConfig& config, const Ke
     return seen;
 }
 
-/// Why surface_truth() would take hours; empty if it would not.
+}  // namespace
+
 std::optional<Error> surface_fault(const sim::World& world, const TruthConfig& config, const KeyBox& region,
                                    const Eigen::Isometry3d& T_map_base) {
     const auto bounds =
@@ -84,8 +85,6 @@ std::optional<Error> surface_fault(const sim::World& world, const TruthConfig& c
                  .value = fmt::format("{:.2g}", points),
                  .remedy = "make the region smaller, or the world's meshes coarser"};
 }
-
-}  // namespace
 
 VoxelGrid<SurfaceVoxel> surface_truth(const sim::World& world, const TruthConfig& config,
                                       const KeyBox& region, const Eigen::Isometry3d& T_map_base) {
@@ -116,9 +115,12 @@ Result<Truth, Error> build_truth(const sim::World& world, const Survey& survey, 
                                  const Eigen::Isometry3d& T_map_base) {
     const KeyBox region = region_of(config.region, config.resolution_m, T_map_base);
     if (auto fault = surface_fault(world, config, region, T_map_base)) return unexpected(std::move(*fault));
-    return Truth{config.resolution_m,
-                 camera_truth(survey, config.camera, region, config.resolution_m, T_map_base),
-                 surface_truth(world, config, region, T_map_base)};
+    Truth truth{config.resolution_m,
+                camera_truth(survey, config.camera, region, config.resolution_m, T_map_base),
+                surface_truth(world, config, region, T_map_base)};
+    if (config.external_camera)
+        truth.seen = seen_truth(world, *config.external_camera, config, T_map_base, truth.surface);
+    return truth;
 }
 
 }  // namespace octoskin::evaluation

@@ -2,7 +2,9 @@
 // surfaces and solids), so each is the other's oracle.
 #include <gtest/gtest.h>
 
+#include "host/lab/evaluation/seen.hpp"
 #include "host/lab/evaluation/truth.hpp"
+#include "tests/support/evidence.hpp"
 
 namespace octoskin::evaluation {
 namespace {
@@ -38,19 +40,31 @@ Counts count(const Truth& truth) {
 
 class ExperimentTruth : public ::testing::Test {
   protected:
-    static Truth at(double x, double y, double z) {
-        const std::filesystem::path hw = std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw";
-        const auto world = sim::World::read(hw / "worlds" / "experiment.sdf");
+    static sim::World read_world() {
+        auto world = sim::World::read(hw() / "worlds" / "experiment.sdf");
         EXPECT_TRUE(world) << world.error().message();
-        const auto rig = rig::read_rig(hw / "rigs" / "experiment.yaml");
+        return std::move(*world);
+    }
+    static rig::Camera read_camera() {
+        const auto rig = rig::read_rig(hw() / "rigs" / "experiment.yaml");
         EXPECT_TRUE(rig) << rig.error().message();
-        TruthConfig config;
-        config.hidden_models = {"cone", "crate"};
-        config.external_camera = rig->camera;
+        return rig->camera.value();
+    }
+    static Eigen::Isometry3d shifted(double x, double y, double z) {
         Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
         T_map_base.translation() << x, y, z;
-        return build_truth(*world, render_survey(*world, SurveyConfig{}), config, T_map_base).value();
+        return T_map_base;
     }
+    static Truth at(double x, double y, double z) {
+        const sim::World world = read_world();
+        TruthConfig config;
+        config.hidden_models = {"cone", "crate"};
+        config.external_camera = read_camera();
+        return build_truth(world, render_survey(world, SurveyConfig{}), config, shifted(x, y, z)).value();
+    }
+
+  private:
+    static std::filesystem::path hw() { return std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "hw"; }
 };
 
 TEST_F(ExperimentTruth, the_tour_sees_every_surface_and_nothing_else) {
@@ -72,6 +86,39 @@ TEST_F(ExperimentTruth, the_external_camera_sees_nothing_of_the_hidden_objects) 
     // The shelves' compartments: about a third of all surfaces.
     EXPECT_GT(counts.occluded, counts.surface / 4);
     EXPECT_LT(counts.occluded, counts.surface / 2);
+}
+
+/// The map of one image by OctoMap's own rule, any end is a hit, with space round the region.
+FusedMap map_of_image(const sim::World& world, const rig::Camera& camera, const SeenTruth& truth,
+                      const Eigen::Isometry3d& T_map_base) {
+    const Survey one_view{{render_view(world, camera, camera.T_base_camera, 1)}};
+    const KeyBox box = truth.region().padded(4);
+    const auto grid = camera_truth(one_view, CameraTruthConfig{}, box, truth.resolution_m, T_map_base);
+    std::vector<VoxelUpdate> terms;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        if (grid[i] != Occupancy::unknown)
+            terms.push_back({box.key_at(i), grid[i] == Occupancy::occupied ? 2.0F : -1.0F});
+    }
+    FusedMap map{MapConfig{}};
+    feed(map, terms);
+    return map;
+}
+
+TEST_F(ExperimentTruth, a_noise_free_image_is_right_in_all_that_it_sees) {
+    const sim::World world = read_world();
+    const rig::Camera camera = read_camera();
+    const Eigen::Isometry3d T_map_base = shifted(0.002990, 0.020829, 0.001814);
+    const auto truth = seen_truth(world, camera, TruthConfig{}, T_map_base);
+    ASSERT_TRUE(truth) << truth.error().message();
+    EXPECT_GT(truth->voxels.size(), 1500U);
+    EXPECT_EQ(truth->p_map_clear_spheres.size(), 3000U);
+    const SeenMetrics metrics = seen_metrics(map_of_image(world, camera, *truth, T_map_base), *truth);
+    EXPECT_EQ(metrics.seen_occupied.value(), 1.0);
+    EXPECT_EQ(metrics.body_2cm.value(), 0.0);
+    EXPECT_EQ(metrics.body_5cm.value(), 0.0);
+    EXPECT_GT(metrics.precision.value(), 0.998);
+    EXPECT_GT(metrics.f1_seen.value(), 0.999);
+    EXPECT_GT(metrics.availability_5cm.value(), 0.99);
 }
 
 }  // namespace
