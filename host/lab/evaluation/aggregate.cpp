@@ -32,6 +32,12 @@ void add_bins(Calibration& sum, const Calibration& addend) {
     }
 }
 
+void add_seen(std::optional<SeenPool>& pool, const SeenMetrics& addend) {
+    if (!pool) pool.emplace();
+    for (std::size_t i = 0; i < kThicknessClasses; ++i) pool->by_class[i].add(addend.by_class[i]);
+    pool->too_coarse.add(addend.too_coarse);
+}
+
 MapSummary summarise_map(const std::vector<const Run*>& runs) {
     MapSummary summary;
     summary.configuration = runs.front()->configuration;
@@ -39,6 +45,7 @@ MapSummary summarise_map(const std::vector<const Run*>& runs) {
     for (const auto* run : runs) {
         summary.seeds.push_back(run->seed);
         add_bins(summary.calibration, run->metrics.calibration);
+        if (run->metrics.seen) add_seen(summary.seen, *run->metrics.seen);
     }
     for (const auto& field : metric_fields()) {
         std::vector<std::optional<double>> per_seed;

@@ -31,6 +31,12 @@ struct Summary {
 
 using MetricSummaries = std::map<std::string, Summary, std::less<>>;
 
+/// Seen voxels of several seeds.
+struct SeenPool {
+    SharesByClass by_class;
+    SeenShares too_coarse;
+};
+
 /// One map of one configuration over all its seeds.
 struct MapSummary {
     std::string configuration;
@@ -38,6 +44,8 @@ struct MapSummary {
     std::vector<std::uint64_t> seeds;  ///< ascending; the order of `per_seed`
     MetricSummaries metrics;
     Calibration calibration;  ///< pooled over the seeds
+    /// Seen voxels by thickness, pooled over the seeds; empty without a camera.
+    std::optional<SeenPool> seen = std::nullopt;
 
     /// The metric must exist (asserted).
     [[nodiscard]] const Summary& at(std::string_view metric) const;

@@ -99,22 +99,40 @@ std::optional<double> as_double(std::uint64_t count) {
     return static_cast<double>(count);
 }
 
-constexpr std::array<MetricField, 15> kFields{{
-    {"occupied", true, true, [](const Metrics& m) { return as_double(m.occupied); }},
-    {"free", true, true, [](const Metrics& m) { return as_double(m.free); }},
-    {"missed", true, false, [](const Metrics& m) { return as_double(m.missed); }},
-    {"incorrect", true, false, [](const Metrics& m) { return as_double(m.incorrect); }},
-    {"lost", true, false, [](const Metrics& m) { return as_double(m.lost); }},
-    {"precision", false, true, [](const Metrics& m) { return m.precision; }},
-    {"recall", false, true, [](const Metrics& m) { return m.recall; }},
-    {"f1", false, true, [](const Metrics& m) { return m.f1; }},
-    {"iou", false, true, [](const Metrics& m) { return m.iou; }},
-    {"precision_tolerant", false, true, [](const Metrics& m) { return m.precision_tolerant; }},
-    {"occluded_recall", false, true, [](const Metrics& m) { return m.occluded_recall; }},
-    {"object_recall", false, true, [](const Metrics& m) { return m.object_recall; }},
-    {"coverage", false, true, [](const Metrics& m) { return m.coverage; }},
-    {"log_loss", false, false, [](const Metrics& m) { return m.log_loss; }},
-    {"brier", false, false, [](const Metrics& m) { return m.brier; }},
+/// A figure of the seen surfaces; empty without a camera.
+template <std::optional<double> SeenMetrics::*kFigure>
+std::optional<double> seen(const Metrics& metrics) {
+    return metrics.seen ? (*metrics.seen).*kFigure : std::nullopt;
+}
+
+constexpr std::array<MetricField, 23> kFields{{
+    {"occupied", MetricGroup::camera_truth, true, true,
+     [](const Metrics& m) { return as_double(m.occupied); }},
+    {"free", MetricGroup::camera_truth, true, true, [](const Metrics& m) { return as_double(m.free); }},
+    {"missed", MetricGroup::camera_truth, true, false, [](const Metrics& m) { return as_double(m.missed); }},
+    {"incorrect", MetricGroup::camera_truth, true, false,
+     [](const Metrics& m) { return as_double(m.incorrect); }},
+    {"lost", MetricGroup::camera_truth, true, false, [](const Metrics& m) { return as_double(m.lost); }},
+    {"precision", MetricGroup::surfaces, false, true, [](const Metrics& m) { return m.precision; }},
+    {"recall", MetricGroup::surfaces, false, true, [](const Metrics& m) { return m.recall; }},
+    {"f1", MetricGroup::surfaces, false, true, [](const Metrics& m) { return m.f1; }},
+    {"iou", MetricGroup::surfaces, false, true, [](const Metrics& m) { return m.iou; }},
+    {"precision_tolerant", MetricGroup::surfaces, false, true,
+     [](const Metrics& m) { return m.precision_tolerant; }},
+    {"occluded_recall", MetricGroup::surfaces, false, true,
+     [](const Metrics& m) { return m.occluded_recall; }},
+    {"object_recall", MetricGroup::surfaces, false, true, [](const Metrics& m) { return m.object_recall; }},
+    {"coverage", MetricGroup::surfaces, false, true, [](const Metrics& m) { return m.coverage; }},
+    {"log_loss", MetricGroup::probabilities, false, false, [](const Metrics& m) { return m.log_loss; }},
+    {"brier", MetricGroup::probabilities, false, false, [](const Metrics& m) { return m.brier; }},
+    {"seen_occupied", MetricGroup::seen, false, true, seen<&SeenMetrics::seen_occupied>},
+    {"seen_free", MetricGroup::seen, false, false, seen<&SeenMetrics::seen_free>},
+    {"seen_unknown", MetricGroup::seen, false, false, seen<&SeenMetrics::seen_unknown>},
+    {"f1_seen", MetricGroup::seen, false, true, seen<&SeenMetrics::f1_seen>},
+    {"f1_noise_free", MetricGroup::seen, false, true, seen<&SeenMetrics::f1_noise_free>},
+    {"body_2cm", MetricGroup::seen, false, false, seen<&SeenMetrics::body_2cm>},
+    {"body_5cm", MetricGroup::seen, false, false, seen<&SeenMetrics::body_5cm>},
+    {"availability", MetricGroup::seen, false, true, seen<&SeenMetrics::availability_5cm>},
 }};
 
 }  // namespace
@@ -152,7 +170,23 @@ Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth) {
 
 Metrics evaluate(const FusedMap& map, const Truth& truth) {
     assert(map.resolution_m() == truth.resolution_m);
-    return compute_metrics(sample_map(map, truth.region()), truth);
+    Metrics metrics = compute_metrics(sample_map(map, truth.region()), truth);
+    if (truth.seen) metrics.seen = seen_metrics(map, *truth.seen);
+    return metrics;
+}
+
+std::string_view title_of(MetricGroup group) noexcept {
+    switch (group) {
+        case MetricGroup::camera_truth:
+            return "camera truth";
+        case MetricGroup::surfaces:
+            return "surfaces";
+        case MetricGroup::probabilities:
+            return "probabilities";
+        case MetricGroup::seen:
+            break;
+    }
+    return "seen by the camera";
 }
 
 std::span<const MetricField> metric_fields() noexcept {

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "host/core/mapping/fused_map.hpp"
+#include "host/lab/evaluation/seen.hpp"
 #include "host/lab/evaluation/truth.hpp"
 #include "host/lab/evaluation/voxel_grid.hpp"
 
@@ -57,24 +58,33 @@ struct Metrics {
     std::optional<double> log_loss;            ///< natural logarithm; unknown predicts 0.5
     std::optional<double> brier;
     Calibration calibration;
+
+    std::optional<SeenMetrics> seen = std::nullopt;  ///< of the external camera; empty without one
 };
 
-/// `map` must be over the truth's region (asserted).
+/// `map` must be over the truth's region (asserted). Without `seen`, which also needs the map round the
+/// region.
 [[nodiscard]] Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth);
 
 /// Samples the map over the truth's region and computes the metrics. The resolutions must be equal
 /// (asserted).
 [[nodiscard]] Metrics evaluate(const FusedMap& map, const Truth& truth);
 
+/// What scalar metrics compare with: tables have a part for each.
+enum class MetricGroup : std::uint8_t { camera_truth, surfaces, probabilities, seen };
+/// "camera truth", "seen by the camera".
+[[nodiscard]] std::string_view title_of(MetricGroup group) noexcept;
+
 /// A scalar metric by name, for tables and files. `is_count`: print without decimals.
 /// `is_more_better`: a larger value is the better one.
 struct MetricField {
     std::string_view name;
+    MetricGroup group;
     bool is_count;
     bool is_more_better;
     std::optional<double> (*value)(const Metrics&);
 };
-/// All scalar metrics, in the order in which they are printed.
+/// All scalar metrics, in the order in which they are printed, group by group.
 [[nodiscard]] std::span<const MetricField> metric_fields() noexcept;
 
 }  // namespace octoskin::evaluation

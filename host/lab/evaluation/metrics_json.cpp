@@ -45,6 +45,27 @@ Json calibration_json(const Calibration& calibration) {
     return bins;
 }
 
+Json body_json(const BodyTests& tests) {
+    return {{"spheres", tests.spheres}, {"free", tests.free}};
+}
+
+Json shares_json(const SeenShares& shares) {
+    return {{"voxels", shares.voxels},
+            {"occupied", shares.occupied},
+            {"free", shares.free},
+            {"unknown", shares.unknown},
+            {"body_2cm", body_json(shares.body_2cm)},
+            {"body_5cm", body_json(shares.body_5cm)}};
+}
+
+Json seen_json(const SeenPool& seen) {
+    Json classes = Json::object();
+    for (std::size_t i = 0; i < kThicknessClasses; ++i)
+        classes[std::string(name_of(kEveryThickness[i]))] = shares_json(seen.by_class[i]);
+    classes["too_coarse"] = shares_json(seen.too_coarse);
+    return classes;
+}
+
 Json unknown_json(const UnknownSpace& space) {
     Json json = {{"radius_m", space.region.radius_m},
                  {"region_m3", space.region_m3},
@@ -67,6 +88,7 @@ Json run_json(const Results& results) {
     }
     for (const auto& map : results.maps) {
         run["calibration"][map.configuration][map.map] = calibration_json(map.calibration);
+        if (map.seen) run["thickness"][map.configuration][map.map] = seen_json(*map.seen);
     }
     run["times"] = Json::array();
     for (const auto& time : results.times) {

@@ -75,6 +75,16 @@ std::string seeds_text(std::size_t seeds) {
     return seeds == 1 ? "one seed" : fmt::format("mean ± sd of {} seeds", seeds);
 }
 
+/// Without a camera the figures of a group are all undefined.
+bool has_group(const std::vector<Column>& columns, MetricGroup group) {
+    const auto has = [&](const Column& column) {
+        return std::ranges::any_of(metric_fields(), [&](const MetricField& field) {
+            return field.group == group && column.metrics->find(field.name)->second.mean;
+        });
+    };
+    return group != MetricGroup::seen || std::ranges::any_of(columns, has);
+}
+
 void add_columns(std::string& text, std::string_view heading, const std::vector<Column>& columns) {
     auto out = std::back_inserter(text);
     fmt::format_to(out, "\n{:<20}", heading);
@@ -82,7 +92,11 @@ void add_columns(std::string& text, std::string_view heading, const std::vector<
         fmt::format_to(out, "{:>20}", column.title);
     }
     fmt::format_to(out, "\n");
+    std::optional<MetricGroup> group;
     for (const auto& field : metric_fields()) {
+        if (!has_group(columns, field.group)) continue;
+        if (group != field.group) fmt::format_to(out, "  [{}]\n", title_of(field.group));
+        group = field.group;
         fmt::format_to(out, "{:<20}", field.name);
         for (const auto& column : columns) {
             const auto& summary = column.metrics->find(field.name)->second;
@@ -90,6 +104,36 @@ void add_columns(std::string& text, std::string_view heading, const std::vector<
         }
         fmt::format_to(out, "\n");
     }
+}
+
+std::string share_text(const std::optional<double>& share) {
+    return share ? fmt::format("{:.3f}", *share) : std::string(kUndefined);
+}
+
+void add_shares(std::string& text, std::string_view thickness, std::string_view map,
+                const SeenShares& shares) {
+    if (shares.voxels == 0) return;
+    fmt::format_to(std::back_inserter(text), "{:<20}{:<12}{:>9}{:>11}{:>9}{:>9}{:>10}{:>10}\n", thickness,
+                   map, shares.voxels, share_text(shares.occupied_share()), share_text(shares.free_share()),
+                   share_text(shares.unknown_share()), share_text(shares.body_2cm.free_share()),
+                   share_text(shares.body_5cm.free_share()));
+}
+
+/// Seen voxels by the thickness of what is seen in them, for the maps of one configuration.
+void add_thickness(std::string& text, const Results& results, std::string_view configuration) {
+    std::vector<const MapSummary*> maps;
+    for (const auto& map : results.maps) {
+        if (map.configuration == configuration && map.seen) maps.push_back(&map);
+    }
+    if (maps.empty()) return;
+    fmt::format_to(std::back_inserter(text), "\n{:<20}{:<12}{:>9}{:>11}{:>9}{:>9}{:>10}{:>10}\n",
+                   "seen thickness", "map", "voxels", "occupied", "free", "unknown", "body_2cm", "body_5cm");
+    for (const ThicknessClass thickness : kEveryThickness) {
+        for (const auto* map : maps)
+            add_shares(text, name_of(thickness), map->map,
+                       map->seen->by_class[static_cast<std::size_t>(thickness)]);
+    }
+    for (const auto* map : maps) add_shares(text, "too_coarse", map->map, map->seen->too_coarse);
 }
 
 /// One table per configuration: its maps, and what fusion adds to the camera, paired.
@@ -114,6 +158,7 @@ void add_configurations(std::string& text, const Results& results) {
         }
         fmt::format_to(out, "\n{}, {}", first.configuration, seeds_text(first.seeds.size()));
         add_columns(text, "metric", columns);
+        add_thickness(text, results, first.configuration);
     }
 }
 

@@ -29,7 +29,8 @@ void run_experiment(const StudyRequest& request) {
     print(
         "Two ground truths: occupied to lost count voxels against the map of a noise-free camera, "
         "precision to\n"
-        "brier judge by where the world's surfaces are. docs/reference/evaluation.md has both.\n");
+        "brier judge by where the world's surfaces are, seen_occupied to availability by what the camera\n"
+        "sees of them. docs/reference/evaluation.md has all.\n");
     print("{:.0f} s in all. Look at {}\n", seconds,
           std::filesystem::absolute(request.out / "report.html").string());
 }

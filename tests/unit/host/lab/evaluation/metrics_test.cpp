@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/unit/host/lab/evaluation/keys.hpp"
 
 namespace octoskin::evaluation {
@@ -188,9 +190,12 @@ TEST(MetricFields, name_every_scalar_once) {
         names.push_back(field.name);
     }
     EXPECT_EQ(names,
-              (std::vector<std::string_view>{"occupied", "free", "missed", "incorrect", "lost", "precision",
-                                             "recall", "f1", "iou", "precision_tolerant", "occluded_recall",
-                                             "object_recall", "coverage", "log_loss", "brier"}));
+              (std::vector<std::string_view>{
+                  "occupied",        "free",          "missed",       "incorrect", "lost",
+                  "precision",       "recall",        "f1",           "iou",       "precision_tolerant",
+                  "occluded_recall", "object_recall", "coverage",     "log_loss",  "brier",
+                  "seen_occupied",   "seen_free",     "seen_unknown", "f1_seen",   "f1_noise_free",
+                  "body_2cm",        "body_5cm",      "availability"}));
 }
 
 TEST(MetricFields, each_reads_the_figure_of_its_name) {
@@ -210,12 +215,34 @@ TEST(MetricFields, each_reads_the_figure_of_its_name) {
     metrics.coverage = 13;
     metrics.log_loss = 14;
     metrics.brier = 15;
+    metrics.seen.emplace();
+    metrics.seen->seen_occupied = 16;
+    metrics.seen->seen_free = 17;
+    metrics.seen->seen_unknown = 18;
+    metrics.seen->f1_seen = 19;
+    metrics.seen->f1_noise_free = 20;
+    metrics.seen->body_2cm = 21;
+    metrics.seen->body_5cm = 22;
+    metrics.seen->availability_5cm = 23;
     double expected = 1.0;
     for (const auto& field : metric_fields()) {
         EXPECT_EQ(field.value(metrics).value(), expected) << field.name;
         EXPECT_EQ(field.is_count, expected <= 5.0) << field.name;
+        EXPECT_EQ(field.group == MetricGroup::seen, expected > 15.0) << field.name;
         expected += 1.0;
     }
+}
+
+TEST(MetricFields, of_what_is_seen_are_empty_without_a_camera) {
+    const Metrics metrics = metrics_of(kCases);
+    for (const auto& field : metric_fields()) {
+        EXPECT_EQ(field.value(metrics).has_value(), field.group != MetricGroup::seen) << field.name;
+    }
+}
+
+TEST(MetricFields, come_group_by_group) {
+    const auto fields = metric_fields();
+    EXPECT_TRUE(std::ranges::is_sorted(fields, {}, &MetricField::group));
 }
 
 }  // namespace

@@ -47,8 +47,11 @@ TEST(MetricsJson, nests_configuration_map_metric_and_statistic) {
 TEST(MetricsJson, has_every_metric_by_its_full_name_in_every_map) {
     const auto json = nlohmann::json::parse(metrics_json(two_seeds()));
     for (const char* name :
-         {"occupied", "free", "missed", "incorrect", "lost", "precision", "recall", "f1", "iou",
-          "precision_tolerant", "occluded_recall", "object_recall", "coverage", "log_loss", "brier"}) {
+         {"occupied",        "free",          "missed",       "incorrect", "lost",
+          "precision",       "recall",        "f1",           "iou",       "precision_tolerant",
+          "occluded_recall", "object_recall", "coverage",     "log_loss",  "brier",
+          "seen_occupied",   "seen_free",     "seen_unknown", "f1_seen",   "f1_noise_free",
+          "body_2cm",        "body_5cm",      "availability"}) {
         for (const char* map : {"depth", "fused"}) {
             const auto& metric = json.at("robust").at(map).at(name);
             EXPECT_EQ(metric.size(), 3U) << name;
@@ -87,6 +90,50 @@ TEST(MetricsJson, tabulates_the_calibration_pooled_over_seeds) {
     EXPECT_NEAR(bins.at(6).at("mean_predicted").get<double>(), 0.65, 1e-12);
     EXPECT_NEAR(bins.at(6).at("observed_fraction").get<double>(), 0.75, 1e-12);
     EXPECT_TRUE(bins.at(0).at("mean_predicted").is_null());
+}
+
+/// Two seeds of one map; in each the camera sees ten voxels of a cable and one that is too coarse.
+Results with_a_cable() {
+    Runs runs = {judge("fast", "depth", 0, 10), judge("fast", "depth", 1, 20)};
+    for (Run& run : runs) {
+        SeenMetrics& seen = run.metrics.seen.emplace();
+        seen.by_class[0] = {.voxels = 10,
+                            .occupied = 1,
+                            .free = 7,
+                            .unknown = 2,
+                            .body_2cm = {.spheres = 40, .free = 30},
+                            .body_5cm = {.spheres = 40, .free = 11}};
+        seen.too_coarse = {.voxels = 1, .free = 1, .body_2cm = {.spheres = 4}, .body_5cm = {.spheres = 4}};
+        seen.seen_free = 8.0 / 11.0;
+    }
+    return collect(runs);
+}
+
+TEST(MetricsJson, tabulates_what_is_seen_by_thickness_pooled_over_seeds) {
+    const auto json = nlohmann::json::parse(metrics_json(with_a_cable()));
+    const auto& classes = json.at("run").at("thickness").at("fast").at("depth");
+    EXPECT_EQ(classes.size(), 7U);
+    EXPECT_EQ(classes.at("rod_5_8_mm"), nlohmann::json::parse(R"({"voxels": 20, "occupied": 2, "free": 14,
+        "unknown": 4, "body_2cm": {"spheres": 80, "free": 60}, "body_5cm": {"spheres": 80, "free": 22}})"));
+    EXPECT_EQ(classes.at("board").at("voxels"), 0);
+    EXPECT_EQ(classes.at("too_coarse").at("voxels"), 2);
+    EXPECT_NEAR(json.at("fast").at("depth").at("seen_free").at("mean").get<double>(), 8.0 / 11.0, 1e-12);
+    EXPECT_FALSE(nlohmann::json::parse(metrics_json(two_seeds())).at("run").contains("thickness"))
+        << "without a camera";
+}
+
+TEST(MetricsTable, shows_thin_things_only_where_a_camera_sees_some) {
+    const std::string table = metrics_table(with_a_cable());
+    EXPECT_NE(
+        table.find(
+            "seen thickness      map            voxels   occupied     free  unknown  body_2cm  body_5cm\n"
+            "rod_5_8_mm          depth              20      0.100    0.700    0.200     0.750     0.275\n"
+            "too_coarse          depth               2      0.000    1.000    0.000     0.000     0.000\n"),
+        std::string::npos)
+        << table;
+    EXPECT_NE(table.find("  [seen by the camera]\n"), std::string::npos);
+    const std::string without = metrics_table(two_seeds());
+    EXPECT_EQ(without.find("seen"), std::string::npos) << without;
 }
 
 TEST(MetricsJson, survives_text_that_is_not_utf8) {
