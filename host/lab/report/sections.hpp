@@ -13,6 +13,8 @@ namespace octoskin::report {
 [[nodiscard]] std::string paired_section(const ReportInput& input);
 [[nodiscard]] std::string unknown_section(const ReportInput& input);
 [[nodiscard]] std::string metrics_section(const ReportInput& input);
+/// Empty without a camera.
+[[nodiscard]] std::string thickness_section(const ReportInput& input);
 [[nodiscard]] std::string update_section(const ReportInput& input);
 [[nodiscard]] std::string calibration_section(const ReportInput& input);
 [[nodiscard]] std::string inputs_section(const ReportInput& input);

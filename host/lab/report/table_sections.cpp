@@ -60,10 +60,21 @@ std::vector<std::string> configurations_of(const ReportInput& input) {
     return names;
 }
 
+/// Whether one of the maps was judged beside a camera.
+bool has_seen(const std::vector<const MapSummary*>& maps) {
+    return std::ranges::any_of(maps, [](const MapSummary* map) { return map->seen.has_value(); });
+}
+
 std::string metric_rows(const std::vector<const MapSummary*>& maps,
                         const std::optional<evaluation::PairedDifference>& difference) {
     std::string html;
+    std::optional<evaluation::MetricGroup> group;
     for (const auto& field : evaluation::metric_fields()) {
+        if (field.group == evaluation::MetricGroup::seen && !has_seen(maps)) continue;
+        if (group != field.group)
+            html += fmt::format("<tr class=\"group\"><th colspan=\"{}\">{}</th></tr>\n",
+                                maps.size() + (difference ? 2 : 1), title_of(field.group));
+        group = field.group;
         std::string name(field.name);
         std::ranges::replace(name, '_', ' ');
         html += fmt::format("<tr><th>{}</th>", name);
@@ -104,6 +115,43 @@ std::string configuration_table(const ReportInput& input, const std::string& con
         metric_rows(maps, difference));
 }
 
+constexpr std::array<std::string_view, evaluation::kThicknessClasses> kThicknessTitles = {
+    "rod, 5 to 8 mm", "rod, 10 to 16 mm", "rod, 20 to 40 mm", "rod, 70 to 90 mm", "board", "other"};
+
+/// Shares of one class of thickness in one map; empty without a voxel of it.
+std::string thickness_row(std::string_view thickness, const MapSummary& map,
+                          const evaluation::SeenShares& shares) {
+    if (shares.voxels == 0) return "";
+    std::string html = fmt::format("<tr><th>{}: {}</th><td>{}</td>", thickness, map_title(map.map),
+                                   count_text(static_cast<double>(shares.voxels)));
+    for (const auto& share : {shares.occupied_share(), shares.free_share(), shares.unknown_share(),
+                              shares.body_2cm.free_share(), shares.body_5cm.free_share()})
+        html += fmt::format("<td>{}</td>", ratio_text(share.value()));
+    return html + "</tr>\n";
+}
+
+std::string thickness_rows(const std::vector<const MapSummary*>& maps) {
+    std::string html;
+    for (std::size_t i = 0; i < kThicknessTitles.size(); ++i) {
+        for (const auto* map : maps) html += thickness_row(kThicknessTitles[i], *map, map->seen->by_class[i]);
+    }
+    for (const auto* map : maps) html += thickness_row("too coarse", *map, map->seen->too_coarse);
+    return html;
+}
+
+constexpr std::string_view kThicknessText =
+    R"(<section id="thickness">
+<h2>What the camera sees, by thickness</h2>
+<p>Surface voxels that a noise-free image has a pixel on, in <code>{}</code>, over all seeds; a voxel is of the thickest
+solid seen in it. Too coarse: rods of 5 to 8 mm on which a pixel is more than 2 mm wider than the rod. Body: share of
+spheres of 2 and 5 cm radius, 1 cm deep in a seen surface, whose voxels are all free: there a planner would collide.</p>
+<div class="table"><table>
+<thead><tr><th></th><th>voxels</th><th>occupied</th><th>free</th><th>unknown</th><th>body 2 cm</th><th>body 5 cm</th></tr></thead>
+<tbody>
+{}</tbody></table></div>
+</section>
+)";
+
 constexpr std::string_view kTableText =
     R"(<section id="paper">
 <h2>{}</h2>
@@ -127,7 +175,9 @@ constexpr std::string_view kMetricsText =
 <p>The first five as above. The others compare with the voxels that the world’s surfaces pass through; voxels inside a solid
 are not judged. Occluded recall is over surface voxels more than two voxels from every voxel that the camera sees, object
 recall over those of the objects that the scenario names as hidden. Coverage is the known share of the region; log loss and
-Brier score judge its probabilities, with one half for unknown voxels. Mean ± standard deviation over the seeds.</p>
+Brier score judge its probabilities, with one half for unknown voxels. Seen by the camera: shares of the surface voxels that
+a noise-free image has a pixel on; F1 of precision and their occupied share, and the plain F1 of that image; body tests as
+below; availability, the share of clear spheres of 5 cm in seen space that are free. Mean ± standard deviation over the seeds.</p>
 )";
 
 }  // namespace
@@ -172,6 +222,15 @@ std::string metrics_section(const ReportInput& input) {
         html += configuration_table(input, configuration);
     }
     return html + "</section>\n";
+}
+
+std::string thickness_section(const ReportInput& input) {
+    std::vector<const MapSummary*> maps;
+    for (const auto& map : input.results.maps) {
+        if (map.configuration == input.main_configuration && map.seen) maps.push_back(&map);
+    }
+    if (maps.empty()) return "";
+    return fmt::format(fmt::runtime(kThicknessText), escaped(input.main_configuration), thickness_rows(maps));
 }
 
 }  // namespace octoskin::report

@@ -13,6 +13,20 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+/// Ten voxels of a cable, and one of a wall.
+evaluation::SeenMetrics seen() {
+    evaluation::SeenMetrics seen;
+    seen.by_class[0] = {.voxels = 10,
+                        .occupied = 1,
+                        .free = 7,
+                        .unknown = 2,
+                        .body_2cm = {.spheres = 40, .free = 30},
+                        .body_5cm = {.spheres = 40, .free = 11}};
+    seen.by_class[5] = {.voxels = 1, .occupied = 1, .body_2cm = {.spheres = 4}, .body_5cm = {.spheres = 4}};
+    seen.f1_seen = 0.912;
+    return seen;
+}
+
 evaluation::Run judged(std::string configuration, std::string map, std::uint64_t seed, std::uint64_t missed,
                        double occluded_recall) {
     evaluation::Run run{std::move(configuration), std::move(map), seed, {}};
@@ -22,6 +36,7 @@ evaluation::Run judged(std::string configuration, std::string map, std::uint64_t
     run.metrics.f1 = 0.5 + occluded_recall;
     run.metrics.occluded_recall = occluded_recall;
     run.metrics.calibration[9] = {.count = 10, .probability_sum = 9.6, .occupied_count = 9};
+    if (run.map != "proximity") run.metrics.seen = seen();
     return run;
 }
 
@@ -83,8 +98,8 @@ std::string first_unbalanced_tag(const std::string& html) {
 
 TEST(Report, has_every_section) {
     const std::string html = report_html(two_seeds());
-    for (const char* id : {"pictures", "paper", "paired", "unknown", "metrics", "update", "calibration",
-                           "inputs", "idealisations", "times", "reproduce"}) {
+    for (const char* id : {"pictures", "paper", "paired", "unknown", "metrics", "thickness", "update",
+                           "calibration", "inputs", "idealisations", "times", "reproduce"}) {
         EXPECT_THAT(html, HasSubstr(std::string("<section id=\"") + id + "\"")) << id;
     }
     EXPECT_THAT(html, HasSubstr("<h1>octoskin: what the camera cannot see</h1>"));
@@ -164,6 +179,20 @@ TEST(Report, shows_what_nobody_has_seen_and_where) {
     EXPECT_EQ(first_unbalanced_tag(alone), "");
     input.results.unknown_space->samples.clear();
     EXPECT_THAT(report_html(input), Not(HasSubstr("<section id=\"unknown\"")));
+}
+
+TEST(Report, shows_thin_things_of_the_main_configuration) {
+    const std::string html = report_html(two_seeds());
+    EXPECT_THAT(
+        html,
+        HasSubstr("<tr><th>rod, 5 to 8 mm: Fused</th><td>20</td><td>0.100</td><td>0.700</td><td>0.200</td>"
+                  "<td>0.750</td><td>0.275</td></tr>"))
+        << "two seeds pooled";
+    EXPECT_THAT(html, HasSubstr("<tr><th>other: Depth camera only</th><td>2</td><td>1.000</td>"));
+    EXPECT_THAT(html, Not(HasSubstr("<th>board: "))) << "none was seen";
+    EXPECT_THAT(html, Not(HasSubstr("<th>too coarse: ")));
+    EXPECT_THAT(html, HasSubstr("<tr class=\"group\"><th colspan=\"4\">seen by the camera</th></tr>\n"));
+    EXPECT_THAT(html, HasSubstr("<th>f1 seen</th><td>0.912 ± 0.000</td><td>0.912 ± 0.000</td>"));
 }
 
 TEST(Report, judges_timid_and_bold_by_the_side_of_one_half) {
@@ -282,6 +311,8 @@ TEST(Report, of_a_rig_without_camera_says_nothing_of_one) {
     EXPECT_THAT(html, Not(HasSubstr("Depth camera only")));
     EXPECT_THAT(html, Not(HasSubstr("fused − depth")));
     EXPECT_THAT(html, Not(HasSubstr("<section id=\"paired\"")));
+    EXPECT_THAT(html, Not(HasSubstr("<section id=\"thickness\"")));
+    EXPECT_THAT(html, Not(HasSubstr("f1 seen")));
     EXPECT_THAT(html, HasSubstr("98.0\u00a0%"));
     EXPECT_EQ(first_unbalanced_tag(html), "");
 }
