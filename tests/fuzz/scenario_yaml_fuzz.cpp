@@ -2,6 +2,7 @@
 // evaluation can take.
 #include <cassert>
 #include <cmath>
+#include <variant>
 
 #include "hw/sim/scenario/scenario.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
@@ -32,6 +33,8 @@ class ScenarioInput {
         assert((motion.R_base_link.transpose() * motion.R_base_link - Eigen::Matrix3d::Identity()).norm() <
                1e-6);
         assert(scenario->ranges.min_m <= scenario->ranges.max_m && scenario->rest_s >= 3.0);
+        if (const auto* kinect = std::get_if<KinectNoise>(&scenario->depth_noise.model))
+            assert(kinect->flying_share + kinect->missing_share <= 1.0 && kinect->bias_spacing_px > 0);
         assert(scenario->slow_clocks.factor_min <= scenario->slow_clocks.factor_max);
         assert((scenario->region.p_base_min.array() < scenario->region.p_base_max.array()).all());
         for (const std::uint64_t seed : {std::uint64_t{0}, std::uint64_t{7}, ~std::uint64_t{0}}) {

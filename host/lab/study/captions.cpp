@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 #include <utility>
+#include <variant>
 
 #include "host/io/rig/zone_optics.hpp"
 
@@ -120,6 +121,23 @@ std::vector<std::string> cone_sentences(const Optics& optics, const sim::RangeOp
                     ranges.min_m, ranges.max_m)};
 }
 
+std::string camera_sentence(const sim::DepthNoise& noise) {
+    if (const auto* gaussian = std::get_if<sim::GaussianNoise>(&noise.model))
+        return fmt::format(
+            "The camera's noise ({:g} cm along the ray, independent from pixel to pixel) has no "
+            "flying pixels, no reflections and no dependence on distance or material.",
+            100.0 * gaussian->sigma_m);
+    const auto& kinect = std::get<sim::KinectNoise>(noise.model);
+    return fmt::format(
+        "The camera's noise is that of a Kinect: a deviation of {:g} mm + {:g} mm (z - {:g} m)^2, "
+        "a fixed error of up to {:g} mm z^2, disparity in steps of {:g} px; {:g} % of the pixels at edges "
+        "fly "
+        "and {:g} % are missing. It has no reflections and no dependence on material.",
+        1e3 * kinect.sigma_min_m, 1e3 * kinect.sigma_growth_per_m, kinect.sigma_min_at_m,
+        1e3 * kinect.bias_growth_per_m, kinect.disparity_step_px, 100.0 * kinect.flying_share,
+        100.0 * kinect.missing_share);
+}
+
 /// `text` as one word of a POSIX shell.
 std::string shell_word(const std::string& text) {
     const auto is_plain = [](char c) {
@@ -158,12 +176,7 @@ std::vector<std::string> idealisations_of(const rig::Rig& rig, const sim::Scenar
     const Optics optics = optics_of(rig);
     for (auto& sentence : ray_sentences(optics, scenario.ranges)) sentences.push_back(std::move(sentence));
     for (auto& sentence : cone_sentences(optics, scenario.ranges)) sentences.push_back(std::move(sentence));
-    if (rig.camera) {
-        sentences.push_back(
-            fmt::format("The camera's noise ({:g} cm along the ray, independent from pixel to pixel) has no "
-                        "flying pixels, no reflections and no dependence on distance or material.",
-                        100.0 * scenario.depth_sigma_m));
-    }
+    if (rig.camera) sentences.push_back(camera_sentence(scenario.depth_noise));
     sentences.push_back(
         "Extrinsics, link lengths and joint angles are exactly those of the rig file and the robot "
         "description.");

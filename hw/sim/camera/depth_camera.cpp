@@ -56,8 +56,9 @@ std::vector<RaySlope> rays_of(const rig::Camera& camera) {
 
 }  // namespace
 
-DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, double sigma_m, std::uint64_t seed)
-    : camera_(camera), sigma_m_(sigma_m), noise_(seed, NoiseSource::depth) {
+DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, const DepthNoise& noise,
+                         std::uint64_t seed)
+    : camera_(camera), noise_(noise), seed_(seed) {
     assert(camera.depth_max_m <= rig::kDepthLargest_m);  // checked where the rig was read
     if (!camera.lens.is_none()) {
         rays_ = rays_of(camera);
@@ -71,8 +72,8 @@ DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, double s
     }
     background_m_.resize(directions_base.size());
     // Noise may bring a surface back into the depth limits: cast well beyond them.
-    world.cast_fan(camera.T_base_camera.translation(), directions_base, camera.depth_max_m + 10.0 * sigma_m,
-                   background_m_);
+    world.cast_fan(camera.T_base_camera.translation(), directions_base,
+                   camera.depth_max_m + noise_margin_m(noise, camera.depth_max_m), background_m_);
 }
 
 Eigen::Vector3d DepthCamera::direction_camera(std::uint32_t u, std::uint32_t v) const {
@@ -116,17 +117,6 @@ void DepthCamera::draw(const BodyCapsule& capsule, std::vector<double>& depth_m)
     }
 }
 
-std::uint16_t DepthCamera::measured_mm(double depth_m, const Noise& noise, std::size_t pixel) const {
-    if (!std::isfinite(depth_m)) {
-        return 0;
-    }
-    const double measured_m = sigma_m_ > 0.0 ? depth_m + sigma_m_ * noise.gaussian(pixel) : depth_m;
-    if (measured_m < camera_.depth_min_m || measured_m > camera_.depth_max_m) {
-        return 0;
-    }
-    return static_cast<std::uint16_t>(std::lround(measured_m * 1e3));
-}
-
 std::vector<std::uint16_t> DepthCamera::render(const std::vector<BodyCapsule>& body,
                                                std::uint32_t frame_index) const {
     std::vector<double> depth_m = background_m_;
@@ -134,12 +124,8 @@ std::vector<std::uint16_t> DepthCamera::render(const std::vector<BodyCapsule>& b
     for (const BodyCapsule& capsule : body) {
         draw({T_camera_base * capsule.p_base_a, T_camera_base * capsule.p_base_b, capsule.radius_m}, depth_m);
     }
-    const Noise noise = noise_.of(frame_index);
-    std::vector<std::uint16_t> image(depth_m.size());
-    for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
-        image[pixel] = measured_mm(depth_m[pixel], noise, pixel);
-    }
-    return image;
+    return measured_mm(noise_, {camera_.width, camera_.height, depth_m},
+                       {camera_.depth_min_m, camera_.depth_max_m}, seed_, frame_index);
 }
 
 }  // namespace octoskin::sim

@@ -216,7 +216,7 @@ Result<ExperimentSummary, Error> run(const ExperimentInput& input, const Experim
     rig.mark(wire::MarkKind::stop, end);
     std::uint32_t frames = 0;
     if (input.rig.camera) {
-        const double sigma_m = input.is_depth_noise_free ? 0.0 : input.scenario.depth_sigma_m;
+        const DepthNoise noise = input.is_depth_noise_free ? DepthNoise{} : input.scenario.depth_noise;
         std::optional<DepthCamera> camera;
         const double period_s = 1.0 / input.rig.camera->rate_hz;
         for (int index = -kFramesBeforeStart;; ++index) {
@@ -225,8 +225,7 @@ Result<ExperimentSummary, Error> run(const ExperimentInput& input, const Experim
             rig.run_until(captured);
             // A camera casts a static world once. If models move, it is created again for each frame.
             if (!camera || moving)
-                camera.emplace(moving ? moving(captured) : input.world, *input.rig.camera, sigma_m,
-                               input.seed);
+                camera.emplace(moving ? moving(captured) : input.world, *input.rig.camera, noise, input.seed);
             output.on_depth(
                 SimulatedHostClock(kHostAtStart).at(captured), input.rig.camera->width,
                 input.rig.camera->height,

@@ -9,7 +9,14 @@
 namespace octoskin::sim {
 
 /// Sources of noise. The numbers define the noise of a seed: never reuse one.
-enum class NoiseSource : std::uint64_t { depth = 1, range = 2, map_shift = 3, signal = 4 };
+enum class NoiseSource : std::uint64_t {
+    depth = 1,
+    range = 2,
+    map_shift = 3,
+    signal = 4,
+    depth_edge = 5,
+    depth_bias = 6
+};
 
 /// A sequence of independent random numbers that can be read at any index, in O(1). Counter-based: Steele,
 /// Lea and Flood 2014 (SplitMix64), whose output function is applied to a key plus a multiple of the golden

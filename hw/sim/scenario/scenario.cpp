@@ -80,8 +80,40 @@ void read_motion(const Table& top, Scenario& scenario) {
     note_place(table, keys::motion::kCircle, scenario);
 }
 
+KinectNoise read_kinect(const Table& depth) {
+    KinectNoise kinect;
+    if (depth.find(keys::depth::kKinectTable) == nullptr) return kinect;
+    const Table table = table_of(depth, keys::depth::kKinectTable, keys::kKinect);
+    kinect.sigma_min_m = table.number(keys::kinect::kSigmaMin);
+    kinect.sigma_min_at_m = table.number(keys::kinect::kSigmaMinAt);
+    kinect.sigma_growth_per_m = table.number(keys::kinect::kSigmaGrowth);
+    kinect.bias_growth_per_m = table.number(keys::kinect::kBiasGrowth);
+    kinect.bias_spacing_px = table.integer<std::uint32_t>(keys::kinect::kBiasSpacing);
+    kinect.disparity_step_px = table.number(keys::kinect::kDisparityStep);
+    kinect.baseline_m = table.number(keys::kinect::kBaseline);
+    kinect.focal_px = table.number(keys::kinect::kFocal);
+    kinect.edge_step_m = table.number(keys::kinect::kEdgeStep);
+    kinect.flying_share = table.number(keys::kinect::kFlyingShare);
+    kinect.missing_share = table.number(keys::kinect::kMissingShare);
+    if (kinect.flying_share + kinect.missing_share > 1.0)
+        table.fail(keys::kinect::kMissingShare,
+                   {ErrorCode::out_of_range,
+                    "expected at most 1 - flying_share, " + std::to_string(1.0 - kinect.flying_share),
+                    std::to_string(kinect.missing_share)});
+    return kinect;
+}
+
+DepthNoise read_depth_noise(const Table& top) {
+    const Table depth = table_of(top, keys::kDepthTable, keys::kDepth);
+    if (depth.choice(keys::depth::kNoise)) return {read_kinect(depth)};
+    if (depth.find(keys::depth::kKinectTable) != nullptr)
+        depth.fail(keys::depth::kKinectTable,
+                   {ErrorCode::conflict, "expected `noise: kinect` with it, found gaussian"});
+    return gaussian_noise(depth.number(keys::depth::kSigma));
+}
+
 void read_sensing(const Table& top, Scenario& scenario) {
-    scenario.depth_sigma_m = table_of(top, keys::kDepthTable, keys::kDepth).number(keys::depth::kSigma);
+    scenario.depth_noise = read_depth_noise(top);
     const Table ranges = table_of(top, keys::kRangesTable, keys::kRanges);
     scenario.ranges.sigma_m = ranges.number(keys::ranges::kSigma);
     scenario.ranges.min_m = ranges.number(keys::ranges::kMin);

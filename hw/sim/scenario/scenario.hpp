@@ -15,6 +15,7 @@
 #include "host/io/folder/file_place.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/arm/trajectory.hpp"
+#include "hw/sim/camera/depth_noise.hpp"
 #include "hw/sim/vl53l1x/ranging_timing.hpp"
 
 namespace octoskin::sim {
@@ -49,7 +50,7 @@ struct Scenario {
     FilePlace world_motion;
     double rest_s = 0.0;  ///< at rest from the start of the recording to the START mark
     CircleMotion motion;
-    double depth_sigma_m = 0.0;
+    DepthNoise depth_noise;
     RangeOptics ranges;
     SlowClockSpread slow_clocks;          ///< of the sensors
     std::vector<TraitsOf> sensor_traits;  ///< likewise

@@ -12,7 +12,11 @@ constexpr auto kTopKeys = std::to_array<AnyKey>(
     {&kName, &kWorld, &kWorldMotionFile, &kMotionTable, &kDepthTable, &kRangesTable, &kSlowClocksTable,
      &kSensorTraitsList, &kSeedsTable, &kHiddenModels, &kRegionTable});
 constexpr auto kMotionKeys = std::to_array<AnyKey>({&motion::kRest, &motion::kCircle});
-constexpr auto kDepthKeys = std::to_array<AnyKey>({&depth::kSigma});
+constexpr auto kDepthKeys = std::to_array<AnyKey>({&depth::kNoise, &depth::kSigma, &depth::kKinectTable});
+constexpr auto kKinectKeys = std::to_array<AnyKey>(
+    {&kinect::kSigmaMin, &kinect::kSigmaMinAt, &kinect::kSigmaGrowth, &kinect::kBiasGrowth,
+     &kinect::kBiasSpacing, &kinect::kDisparityStep, &kinect::kBaseline, &kinect::kFocal, &kinect::kEdgeStep,
+     &kinect::kFlyingShare, &kinect::kMissingShare});
 constexpr auto kRangesKeys =
     std::to_array<AnyKey>({&ranges::kSigma, &ranges::kMin, &ranges::kMax, &ranges::kReflectivity});
 constexpr auto kSlowClocksKeys = std::to_array<AnyKey>({&slow_clocks::kFactorMin, &slow_clocks::kFactorMax});
@@ -37,6 +41,7 @@ constexpr std::string_view kMotionFile = "scenario keys of a world_motion";
 constinit const rig::KeyTable kTop{kScenario, kTopKeys};
 constinit const rig::KeyTable kMotion{kScenario, kMotionKeys};
 constinit const rig::KeyTable kDepth{kScenario, kDepthKeys};
+constinit const rig::KeyTable kKinect{"scenario keys of depth.kinect", kKinectKeys};
 constinit const rig::KeyTable kRanges{kScenario, kRangesKeys};
 constinit const rig::KeyTable kSlowClocks{kScenario, kSlowClocksKeys};
 constinit const rig::KeyTable kSeeds{kScenario, kSeedsKeys};
@@ -50,9 +55,10 @@ constinit const rig::KeyTable kPlace{kMotionFile, kPlaceKeys};
 }  // namespace keys
 
 std::span<const rig::KeyTable> scenario_key_tables() noexcept {
-    static const std::array kTables{keys::kTop,        keys::kMotion,      keys::kDepth,  keys::kRanges,
-                                    keys::kSlowClocks, keys::kSeeds,       keys::kRegion, keys::kSensorTraits,
-                                    keys::kCircle,     keys::kWorldMotion, keys::kModel,  keys::kPlace};
+    static const std::array kTables{keys::kTop,        keys::kMotion, keys::kDepth,       keys::kRanges,
+                                    keys::kSlowClocks, keys::kSeeds,  keys::kRegion,      keys::kSensorTraits,
+                                    keys::kKinect,     keys::kCircle, keys::kWorldMotion, keys::kModel,
+                                    keys::kPlace};
     return kTables;
 }
 

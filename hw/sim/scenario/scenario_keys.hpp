@@ -1,7 +1,10 @@
 // The one declaration of each key of a scenario file and of a file with the motion of a world.
 #pragma once
 
+#include <array>
 #include <span>
+#include <string_view>
+#include <utility>
 
 #include "common/config/node_config.hpp"
 #include "hw/rigfile/key.hpp"
@@ -18,6 +21,7 @@ namespace keys {
 extern const rig::KeyTable kTop;
 extern const rig::KeyTable kMotion;
 extern const rig::KeyTable kDepth;
+extern const rig::KeyTable kKinect;
 extern const rig::KeyTable kRanges;
 extern const rig::KeyTable kSlowClocks;
 extern const rig::KeyTable kSeeds;
@@ -70,11 +74,86 @@ inline constexpr rig::TableKey kCircle{.path = "motion.circle",
 }  // namespace motion
 
 namespace depth {
+inline constexpr std::array<std::pair<std::string_view, bool>, 2> kNoises{
+    {{"gaussian", false}, {"kinect", true}}};
+/// The meaning of its words: a Kinect's.
+inline constexpr rig::WordKey<bool> kNoise{.path = "depth.noise",
+                                           .words = kNoises,
+                                           .fallback = {false},
+                                           .meaning = "model of the noise; `kinect` ignores `sigma_m`"};
 inline constexpr rig::NumberKey kSigma{.path = "depth.sigma_m",
                                        .unit = "m",
                                        .range = {0.0, 1.0},
                                        .meaning = "camera noise along the ray, independent per pixel"};
+inline constexpr rig::TableKey kKinectTable{.path = "depth.kinect",
+                                            .fallback = {.text = "its defaults"},
+                                            .meaning = "numbers of the model; with `noise: kinect` only"};
 }  // namespace depth
+
+namespace kinect {
+inline constexpr KinectNoise kDefaults{};
+inline constexpr rig::Range<double> kShare{0.0, 1.0};
+inline constexpr rig::NumberKey kSigmaMin{
+    .path = "depth.kinect.sigma_min_m",
+    .unit = "m",
+    .range = {0.0, 1.0},
+    .fallback = {kDefaults.sigma_min_m},
+    .meaning = "deviation at depth z: *sigma_min_m + sigma_growth_per_m (z - sigma_min_at_m)^2*"};
+inline constexpr rig::NumberKey kSigmaMinAt{.path = "depth.kinect.sigma_min_at_m",
+                                            .unit = "m",
+                                            .range = {0.0, 10.0},
+                                            .fallback = {kDefaults.sigma_min_at_m},
+                                            .meaning = "depth of the least deviation"};
+inline constexpr rig::NumberKey kSigmaGrowth{.path = "depth.kinect.sigma_growth_per_m",
+                                             .unit = "1/m",
+                                             .range = {0.0, 0.1},
+                                             .fallback = {kDefaults.sigma_growth_per_m},
+                                             .meaning = "growth of the deviation"};
+inline constexpr rig::NumberKey kBiasGrowth{
+    .path = "depth.kinect.bias_growth_per_m",
+    .unit = "1/m",
+    .range = {0.0, 0.1},
+    .fallback = {kDefaults.bias_growth_per_m},
+    .meaning = "an error that stays from frame to frame, of the seed: at most *bias_growth_per_m z^2*"};
+inline constexpr rig::IntegerKey kBiasSpacing{
+    .path = "depth.kinect.bias_spacing_px",
+    .unit = "px",
+    .range = {1, 4096},
+    .fallback = {kDefaults.bias_spacing_px},
+    .meaning = "it is drawn at pixels this far apart and interpolated between them"};
+inline constexpr rig::NumberKey kDisparityStep{
+    .path = "depth.kinect.disparity_step_px",
+    .unit = "px",
+    .range = {0.0, 10.0},
+    .fallback = {kDefaults.disparity_step_px},
+    .meaning = "*focal_px baseline_m / z* is rounded to multiples of it; 0: not rounded"};
+inline constexpr rig::NumberKey kBaseline{.path = "depth.kinect.baseline_m",
+                                          .unit = "m",
+                                          .range = {0.001, 10.0},
+                                          .fallback = {kDefaults.baseline_m},
+                                          .meaning = "from projector to camera"};
+inline constexpr rig::NumberKey kFocal{.path = "depth.kinect.focal_px",
+                                       .unit = "px",
+                                       .range = {1.0, 100'000.0},
+                                       .fallback = {kDefaults.focal_px},
+                                       .meaning = "of the camera that measures disparity"};
+inline constexpr rig::NumberKey kEdgeStep{
+    .path = "depth.kinect.edge_step_m",
+    .unit = "m",
+    .range = {0.001, 10.0},
+    .fallback = {kDefaults.edge_step_m},
+    .meaning = "a pixel is at an edge if one of its four neighbours differs by more"};
+inline constexpr rig::NumberKey kFlyingShare{
+    .path = "depth.kinect.flying_share",
+    .range = kShare,
+    .fallback = {kDefaults.flying_share},
+    .meaning = "of edge pixels: lies between the two surfaces, in each frame elsewhere"};
+inline constexpr rig::NumberKey kMissingShare{
+    .path = "depth.kinect.missing_share",
+    .range = kShare,
+    .fallback = {kDefaults.missing_share},
+    .meaning = "of edge pixels: has no depth; at most *1 - flying_share*"};
+}  // namespace kinect
 
 namespace ranges {
 inline constexpr rig::Range<double> kRange_m{0.0, 10.0};

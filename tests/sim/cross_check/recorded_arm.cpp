@@ -74,7 +74,7 @@ struct Stage {
           scenario(needed(sim::read_scenario(kHw / ".." / choice.scenario))),
           world(needed(sim::World::read(scenario.world))),
           trajectory(revolutions_of(arm, scenario, choice.revolutions)),
-          camera(world, *rig.camera, scenario.depth_sigma_m, choice.seed) {}
+          camera(world, *rig.camera, scenario.depth_noise, choice.seed) {}
 
     sim::Arm arm;
     std::vector<rig::Capsule> capsules;

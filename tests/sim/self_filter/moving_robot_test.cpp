@@ -151,7 +151,7 @@ class MovingRobot : public testing::Test {
     /// a surface in it: of a panel seen at a grazing angle the arm may hide those rays that would clear it.
     /// What the second has less of, it lost.
     Outcome run(const Injected& injected, double margin_m, const MappingConfig& mapping, const char* what) {
-        const sim::DepthCamera camera(world_, *rig_.camera, scenario_.depth_sigma_m, 1);
+        const sim::DepthCamera camera(world_, *rig_.camera, scenario_.depth_noise, 1);
         MappingConfig without_filter = mapping;
         without_filter.removes_robot_from_depth = false;
         MapBuilder world = builder(injected, margin_m, without_filter);

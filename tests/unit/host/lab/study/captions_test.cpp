@@ -27,7 +27,7 @@ rig::Rig bench() {
 sim::Scenario kitchen() {
     sim::Scenario scenario;
     scenario.ranges = {.sigma_m = 0.015, .min_m = 0.05, .max_m = 2.5};
-    scenario.depth_sigma_m = 0.01;
+    scenario.depth_noise = sim::gaussian_noise(0.01);
     return scenario;
 }
 
@@ -107,6 +107,10 @@ TEST(Idealisations, speak_of_a_camera_only_if_there_is_one) {
     EXPECT_THAT(idealisations_of(rig, kitchen()), Each(Not(HasSubstr("camera"))));
     rig.camera = rig::Camera{};
     EXPECT_THAT(idealisations_of(rig, kitchen()), Contains(HasSubstr("camera's noise (1 cm along the ray")));
+    sim::Scenario before_kinect = kitchen();
+    before_kinect.depth_noise = {sim::KinectNoise{}};
+    EXPECT_THAT(idealisations_of(rig, before_kinect),
+                AllOf(Contains(HasSubstr("1.2 mm + 1.9 mm (z - 0.4 m)^2")), Each(Not(HasSubstr("1 cm")))));
 }
 
 TEST(SceneCaption, names_only_what_is_in_the_picture) {

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "common/wire/crc.hpp"
 #include "hw/sim/world/shapes.hpp"
 #include "tests/support/lens/published_lens.hpp"
 
@@ -39,7 +41,7 @@ std::uint16_t at(const std::vector<std::uint16_t>& image, std::size_t u, std::si
 
 TEST(DepthCamera, measures_depth_along_the_optical_axis_not_along_the_ray) {
     const World world = wall();
-    const DepthCamera camera(world, camera_at({0, 0, 0}), 0.0, 0);
+    const DepthCamera camera(world, camera_at({0, 0, 0}), {}, 0);
     for (const std::uint16_t depth_mm : camera.render({}, 0)) {
         ASSERT_EQ(depth_mm, 2000);
     }
@@ -51,7 +53,7 @@ TEST(DepthCamera, sends_its_rays_through_the_middles_of_the_pixels) {
     // and z = -(v + 0.5 - 212) / 365, so the box covers u + 0.5 in (256 - 292, 256 + 73) and v + 0.5 in
     // (175.5, 394.5).
     const World world(std::vector<Solid>{box_at({1.0, 1.0, 0.6}, {1.5, 0.3, -0.2})});
-    const DepthCamera camera(world, camera_at({0, 0, 0}), 0.0, 0);
+    const DepthCamera camera(world, camera_at({0, 0, 0}), {}, 0);
     const auto image = camera.render({}, 0);
     EXPECT_EQ(at(image, 0, 300), 1000);
     EXPECT_EQ(at(image, 328, 300), 1000);
@@ -70,7 +72,7 @@ TEST(DepthCamera, bends_its_picture_as_the_lens_does) {
         "", 365, 365, 255.5, 211.5, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
     // The box of the test above: its right edge is 0.2 to the right of the axis, 1 m ahead.
     const World world(std::vector<Solid>{box_at({1.0, 1.0, 0.6}, {1.5, 0.3, -0.2})});
-    const DepthCamera camera(world, model, 0.0, 0);
+    const DepthCamera camera(world, model, {}, 0);
     const auto image = camera.render({}, 0);
     for (double down = -0.08; down < 0.45; down += 0.01) {
         const auto [column, row] = testing_support::project(published, 0.2, down);
@@ -82,7 +84,7 @@ TEST(DepthCamera, bends_its_picture_as_the_lens_does) {
     // A robot in front of the wall, pixel by pixel.
     const World behind = wall();
     const std::vector<BodyCapsule> body{{{1.0, 0.4, -0.3}, {1.4, 0.7, 0.5}, 0.08}};
-    const auto picture = DepthCamera(behind, model, 0.0, 0).render(body, 0);
+    const auto picture = DepthCamera(behind, model, {}, 0).render(body, 0);
     int robot_pixels = 0;
     for (std::uint32_t v = 0; v < 424; v += 3) {
         for (std::uint32_t u = 0; u < 512; u += 3) {
@@ -99,19 +101,19 @@ TEST(DepthCamera, bends_its_picture_as_the_lens_does) {
 TEST(DepthCamera, sees_nothing_nearer_or_further_than_its_limits) {
     for (const double x : {0.501, 4.499}) {
         const World world(std::vector<Solid>{box_at({0.2, 20, 20}, {x + 0.1, 0, 0})});
-        EXPECT_EQ(at(DepthCamera(world, camera_at({0, 0, 0}), 0.0, 0).render({}, 0), 10, 20),
+        EXPECT_EQ(at(DepthCamera(world, camera_at({0, 0, 0}), {}, 0).render({}, 0), 10, 20),
                   std::lround(1e3 * x));
     }
     for (const double x : {0.499, 4.501}) {
         const World world(std::vector<Solid>{box_at({0.2, 20, 20}, {x + 0.1, 0, 0})});
-        EXPECT_EQ(at(DepthCamera(world, camera_at({0, 0, 0}), 0.0, 0).render({}, 0), 10, 20), 0);
+        EXPECT_EQ(at(DepthCamera(world, camera_at({0, 0, 0}), {}, 0).render({}, 0), 10, 20), 0);
     }
 }
 
 TEST(DepthCamera, draws_the_robot_exactly_where_each_pixels_ray_meets_it) {
     const World world = wall();
     const rig::Camera model = camera_at({0, 0, 0});
-    const DepthCamera camera(world, model, 0.0, 0);
+    const DepthCamera camera(world, model, {}, 0);
     // In front; partly outside the picture; beside the camera and reaching into the picture; behind the wall;
     // behind the camera.
     const std::vector<std::vector<BodyCapsule>> bodies = {
@@ -141,7 +143,7 @@ TEST(DepthCamera, draws_the_robot_exactly_where_each_pixels_ray_meets_it) {
 
 TEST(DepthCamera, has_gaussian_noise_of_the_given_deviation_in_every_pixel) {
     const World world = wall();
-    const DepthCamera camera(world, camera_at({0, 0, 0}), 0.03, 11);
+    const DepthCamera camera(world, camera_at({0, 0, 0}), gaussian_noise(0.03), 11);
     double sum = 0.0, squares = 0.0;
     const auto image = camera.render({}, 4);
     for (const std::uint16_t depth_mm : image) {
@@ -156,22 +158,55 @@ TEST(DepthCamera, has_gaussian_noise_of_the_given_deviation_in_every_pixel) {
 
 TEST(DepthCamera, has_noise_that_depends_on_seed_frame_and_pixel_alone) {
     const World world = wall();
-    const DepthCamera camera(world, camera_at({0, 0, 0}), 0.03, 11);
+    const DepthCamera camera(world, camera_at({0, 0, 0}), gaussian_noise(0.03), 11);
     const auto first = camera.render({}, 4);
     const auto other_frame = camera.render({}, 5);
     EXPECT_EQ(camera.render({}, 4), first) << "the order of rendering has a part in it";
     EXPECT_NE(other_frame, first);
-    EXPECT_NE(DepthCamera(world, camera_at({0, 0, 0}), 0.03, 12).render({}, 4), first);
+    EXPECT_NE(DepthCamera(world, camera_at({0, 0, 0}), gaussian_noise(0.03), 12).render({}, 4), first);
     // A body in some pixels leaves the noise of all others.
     const auto with_body = camera.render({{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.1}}, 4);
     EXPECT_EQ(at(with_body, 5, 5), at(first, 5, 5));
     EXPECT_NE(at(with_body, 256, 212), at(first, 256, 212));
 }
 
+// The checksum is that of the image before the noise had models: recordings of a seed stay the same.
+TEST(DepthCamera, gives_the_same_bytes_for_a_seed_as_in_earlier_versions) {
+    const World world = wall();
+    const DepthCamera camera(world, camera_at({0, 0, 0}), gaussian_noise(0.03), 11);
+    std::vector<std::uint8_t> bytes;
+    for (const std::uint16_t depth_mm : camera.render({{{1.0, -0.2, -0.1}, {1.4, 0.3, 0.2}, 0.08}}, 4)) {
+        bytes.push_back(static_cast<std::uint8_t>(depth_mm & 0xFF));
+        bytes.push_back(static_cast<std::uint8_t>(depth_mm >> 8));
+    }
+    EXPECT_EQ(crc32(bytes), 0x9798006Du);
+}
+
+TEST(DepthCamera, measures_world_and_robot_with_the_noise_of_a_kinect) {
+    const World world = wall();
+    KinectNoise kinect;
+    kinect.flying_share = 0.0;
+    kinect.missing_share = 1.0;
+    const DepthCamera camera(world, camera_at({0, 0, 0}), {kinect}, 11);
+    const auto empty = camera.render({}, 4);
+    EXPECT_EQ(std::ranges::count(empty, 0), 0);
+    for (const std::uint16_t depth_mm : empty) ASSERT_NEAR(depth_mm, 2000, 60);
+    // The outline of a robot in front of the wall is an edge.
+    const auto robot = camera.render({{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.1}}, 4);
+    EXPECT_NEAR(at(robot, 256, 212), 900, 15);
+    EXPECT_GT(std::ranges::count(robot, 0), 200);
+    EXPECT_EQ(at(robot, 5, 5), at(empty, 5, 5));
+    // A wall beyond the limit, which noise of 33 mm brings back: P(noise < -10 mm) is 0.38.
+    const World far(std::vector<Solid>{box_at({0.2, 20, 20}, {4.61, 0, 0})});
+    const auto image = DepthCamera(far, camera_at({0, 0, 0}), {KinectNoise{}}, 0).render({}, 0);
+    EXPECT_GT(std::ranges::count_if(image, [](auto depth_mm) { return depth_mm != 0; }), 60'000);
+}
+
 TEST(DepthCamera, noise_can_carry_a_surface_over_either_limit) {
     const World world(std::vector<Solid>{box_at({0.2, 20, 20}, {4.61, 0, 0})});  // its face at 4.51 m
     int seen = 0;
-    for (const std::uint16_t depth_mm : DepthCamera(world, camera_at({0, 0, 0}), 0.03, 0).render({}, 0)) {
+    for (const std::uint16_t depth_mm :
+         DepthCamera(world, camera_at({0, 0, 0}), gaussian_noise(0.03), 0).render({}, 0)) {
         EXPECT_LE(depth_mm, 4500);
         seen += depth_mm != 0 ? 1 : 0;
     }

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <variant>
 
 #include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -64,7 +65,7 @@ TEST_F(ScenarioFile, of_the_experiment_says_what_the_experiment_is) {
     EXPECT_EQ(Eigen::Matrix3d(quarter.linear()), Eigen::Matrix3d(Eigen::Vector3d(1, -1, -1).asDiagonal()));
     EXPECT_EQ(scenario->motion.start_position.size(), 7);
     EXPECT_EQ(scenario->motion.start_position[3], -2.356);
-    EXPECT_EQ(scenario->depth_sigma_m, 0.03);
+    EXPECT_EQ(std::get<GaussianNoise>(scenario->depth_noise.model).sigma_m, 0.03);
     EXPECT_EQ(scenario->ranges.sigma_m, 0.02);
     EXPECT_EQ(scenario->ranges.min_m, 0.04);
     EXPECT_EQ(scenario->ranges.max_m, 4.0);
@@ -93,7 +94,7 @@ TEST_F(ScenarioFile, takes_other_values_laid_over_it) {
     const auto scenario =
         read_with("depth: {sigma_m: 0}\nregion: {floor_top_m: null}\nmotion: {circle: {revolutions: 2}}");
     ASSERT_TRUE(scenario) << scenario.error().message();
-    EXPECT_EQ(scenario->depth_sigma_m, 0.0);
+    EXPECT_EQ(std::get<GaussianNoise>(scenario->depth_noise.model).sigma_m, 0.0);
     EXPECT_FALSE(scenario->region.floor_top_m);
     EXPECT_EQ(scenario->motion.ticks(), 600u);
     const auto even = read_with("slow_clocks: {factor_min: 1.075, factor_max: 1.075}");
@@ -130,6 +131,52 @@ TEST_F(ScenarioFile, says_how_sensors_are_that_nothing_is_wrong_with) {
                 AllOf(code_is(ErrorCode::out_of_range), key_is("sensor_traits[0].sensor"), value_is("'34'")));
     EXPECT_THAT(error_of("sensor_traits: [{}, {range_spread_us: 20001}]"),
                 AllOf(code_is(ErrorCode::out_of_range), key_is("sensor_traits[1].range_spread_us")));
+}
+
+TEST_F(ScenarioFile, takes_the_noise_of_a_kinect_with_its_defaults_or_other_numbers) {
+    const auto plain = read_with("depth: {noise: kinect, sigma_m: null}");
+    ASSERT_TRUE(plain) << plain.error().message();
+    const auto& published = std::get<KinectNoise>(plain->depth_noise.model);
+    EXPECT_EQ(published.sigma_min_m, 0.0012);
+    EXPECT_EQ(published.sigma_min_at_m, 0.4);
+    EXPECT_EQ(published.sigma_growth_per_m, 0.0019);
+    EXPECT_EQ(published.bias_growth_per_m, 0.0015);
+    EXPECT_EQ(published.bias_spacing_px, 16u);
+    EXPECT_EQ(published.disparity_step_px, 0.125);
+    EXPECT_EQ(published.baseline_m, 0.075);
+    EXPECT_EQ(published.focal_px, 580.0);
+    EXPECT_EQ(published.edge_step_m, 0.05);
+    EXPECT_EQ(published.flying_share, 0.3);
+    EXPECT_EQ(published.missing_share, 0.3);
+    const auto other = read_with(
+        "depth:\n  noise: kinect\n  kinect: {sigma_min_m: 0.01, sigma_min_at_m: 0.02, sigma_growth_per_m: "
+        "0.03,"
+        " bias_growth_per_m: 0.04, bias_spacing_px: 5, disparity_step_px: 6, baseline_m: 7, focal_px: 8,"
+        " edge_step_m: 9, flying_share: 0.1, missing_share: 0.9}");
+    ASSERT_TRUE(other) << other.error().message();
+    const auto& kinect = std::get<KinectNoise>(other->depth_noise.model);
+    EXPECT_EQ(kinect.sigma_min_m, 0.01);
+    EXPECT_EQ(kinect.sigma_min_at_m, 0.02);
+    EXPECT_EQ(kinect.sigma_growth_per_m, 0.03);
+    EXPECT_EQ(kinect.bias_growth_per_m, 0.04);
+    EXPECT_EQ(kinect.bias_spacing_px, 5u);
+    EXPECT_EQ(kinect.disparity_step_px, 6.0);
+    EXPECT_EQ(kinect.baseline_m, 7.0);
+    EXPECT_EQ(kinect.focal_px, 8.0);
+    EXPECT_EQ(kinect.edge_step_m, 9.0);
+    EXPECT_EQ(kinect.flying_share, 0.1);
+    EXPECT_EQ(kinect.missing_share, 0.9);
+}
+
+TEST_F(ScenarioFile, refuses_a_camera_noise_that_contradicts_itself) {
+    EXPECT_THAT(error_of("depth: {noise: fractal}"),
+                AllOf(code_is(ErrorCode::unknown_word), key_is("depth.noise"), value_is("'fractal'")));
+    EXPECT_THAT(error_of("depth: {kinect: {focal_px: 600}}"),
+                AllOf(code_is(ErrorCode::conflict), key_is("depth.kinect")));
+    EXPECT_THAT(error_of("depth: {noise: kinect, kinect: {flying_share: 0.75, missing_share: 0.26}}"),
+                AllOf(code_is(ErrorCode::out_of_range), key_is("depth.kinect.missing_share")));
+    EXPECT_THAT(error_of("depth: {noise: gaussian, sigma_m: null}"),
+                AllOf(code_is(ErrorCode::missing_key), key_is("depth.sigma_m")));
 }
 
 TEST_F(ScenarioFile, with_an_unknown_key_is_refused_with_file_line_and_key) {
