@@ -1,23 +1,31 @@
-// The worlds that come with the house, each with its scenario and its rig: that the arm can do its motion,
-// that the camera does not see what is called hidden while some sensor does, and that the two ground truths
-// agree. Oracles: single rays, and each ground truth for the other.
+// The worlds that come with the house, each with its scenario and its rig: that the arm can do its motion and
+// touches nothing, that the camera does not see what is called hidden while some sensor does, and that the
+// two ground truths agree. Oracles: single rays, distances to points of the surfaces, and each ground truth
+// for the other.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <limits>
 #include <ostream>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "host/lab/evaluation/truth.hpp"
 #include "host/lab/study/study.hpp"
 #include "hw/rigfile/rig.hpp"
+#include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
+#include "hw/sim/arm/body.hpp"
 #include "hw/sim/arm/trajectory.hpp"
 #include "hw/sim/scenario/hidden_models.hpp"
 #include "hw/sim/scenario/scenario.hpp"
+#include "hw/sim/world/triangle_lattice.hpp"
 #include "hw/sim/world/world.hpp"
 
 namespace octoskin::evaluation {
@@ -60,6 +68,69 @@ class ShippedWorld : public testing::TestWithParam<Shipped> {
 
 class WorldBeforeCamera : public ShippedWorld {};
 class WorldOfTwoTruths : public ShippedWorld {};
+class WorldOfAnArm : public ShippedWorld {};
+
+/// Voxels of both ground truths.
+struct TruthCounts {
+    explicit TruthCounts(const Truth& truth) {
+        for (std::size_t i = 0; i < truth.camera.size(); ++i) {
+            const SurfaceVoxel& voxel = truth.surface[i];
+            surface += voxel.is_surface;
+            occupied += truth.camera[i] == Occupancy::occupied;
+            occupied_elsewhere += truth.camera[i] == Occupancy::occupied && !voxel.is_surface;
+            unseen += !voxel.is_interior && truth.camera[i] == Occupancy::unknown;
+            occluded += voxel.is_occluded;
+            hidden += voxel.is_hidden_object && voxel.is_occluded;
+        }
+    }
+    int surface = 0, occupied = 0, occupied_elsewhere = 0, unseen = 0, occluded = 0, hidden = 0;
+};
+
+/// The surfaces of a world as points about 5 mm apart.
+class SurfacePoints {
+  public:
+    explicit SurfacePoints(const sim::World& world) {
+        for (const sim::Solid& solid : world.solids()) {
+            for (const Eigen::Vector3i& triangle : solid.triangles) {
+                std::array<Eigen::Vector3d, 3> corners;
+                Eigen::AlignedBox3d box;
+                for (int i = 0; i < 3; ++i) {
+                    corners[static_cast<std::size_t>(i)] =
+                        solid.vertices[static_cast<std::size_t>(triangle[i])];
+                    box.extend(corners[static_cast<std::size_t>(i)]);
+                }
+                // TriangleLattice wants the longest side first.
+                const auto side = [&] { return (corners[1] - corners[0]).norm(); };
+                const double longest =
+                    std::max({side(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
+                while (side() < longest) std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+                triangles_.push_back({box, sim::TriangleLattice(corners, 0.005)});
+            }
+        }
+    }
+
+    /// From a capsule to the nearest point, at most `reach_m`; negative inside.
+    [[nodiscard]] double clearance_m(const sim::BodyCapsule& capsule, double reach_m) const {
+        Eigen::AlignedBox3d near(capsule.p_base_a);
+        near.extend(capsule.p_base_b);
+        const Eigen::Vector3d margin = Eigen::Vector3d::Constant(capsule.radius_m + reach_m);
+        near = Eigen::AlignedBox3d(near.min() - margin, near.max() + margin);
+        const Eigen::Vector3d along = capsule.p_base_b - capsule.p_base_a;
+        double clearance_m = reach_m;
+        const auto consider = [&](const Eigen::Vector3d& point) {
+            const Eigen::Vector3d from_a = point - capsule.p_base_a;
+            const double part =
+                along.isZero() ? 0.0 : std::clamp(from_a.dot(along) / along.squaredNorm(), 0.0, 1.0);
+            clearance_m = std::min(clearance_m, (from_a - part * along).norm() - capsule.radius_m);
+        };
+        for (const auto& [box, lattice] : triangles_)
+            if (box.intersects(near)) lattice.for_each_near(near, consider);
+        return clearance_m;
+    }
+
+  private:
+    std::vector<std::pair<Eigen::AlignedBox3d, sim::TriangleLattice>> triangles_;
+};
 
 const Shipped kBench = {"bench", "bench_one_board"};  // without a camera
 const Shipped kCell = {"cell", "cell"};
@@ -75,6 +146,8 @@ std::string name_of(const testing::TestParamInfo<Shipped>& shipped) {
 INSTANTIATE_TEST_SUITE_P(All, ShippedWorld, testing::ValuesIn(kAll), name_of);
 INSTANTIATE_TEST_SUITE_P(All, WorldBeforeCamera, testing::Values(kCell, kCupboard, kExperiment), name_of);
 INSTANTIATE_TEST_SUITE_P(All, WorldOfTwoTruths, testing::Values(kCell, kCupboard), name_of);
+// Not the bench, where the wrist dips into the table.
+INSTANTIATE_TEST_SUITE_P(All, WorldOfAnArm, testing::Values(kCell, kCupboard, kExperiment, kMoving), name_of);
 
 TEST(ShippedWorlds, are_all_tested_here) {
     std::set<std::string> there;
@@ -92,6 +165,20 @@ TEST_P(ShippedWorld, has_its_hidden_objects_and_every_tick_in_reach) {
     EXPECT_TRUE(checked) << checked.error().message();
     const auto trajectory = sim::Trajectory::circle(arm_, scenario_.motion, sim::SimTime{0});
     EXPECT_TRUE(trajectory) << trajectory.error().message();
+}
+
+TEST_P(WorldOfAnArm, leaves_room_for_the_arm) {
+    const auto trajectory = sim::Trajectory::circle(arm_, scenario_.motion, sim::SimTime{0});
+    ASSERT_TRUE(trajectory) << trajectory.error().message();
+    std::vector<rig::Capsule> capsules = read_or_fail(rig::real_body(rig_));
+    std::erase_if(capsules, [&](const rig::Capsule& capsule) { return capsule.link == rig_.base_link; });
+    ASSERT_FALSE(capsules.empty());
+    const SurfacePoints surfaces(world_);
+    double clearance_m = 0.1;
+    for (std::int64_t us = 0; us <= trajectory->end().us; us += 200'000)
+        for (const auto& capsule : sim::posed_body(capsules, arm_.forward(trajectory->at(sim::SimTime{us}))))
+            clearance_m = std::min(clearance_m, surfaces.clearance_m(capsule, 0.1));
+    EXPECT_GT(clearance_m, 0.03);
 }
 
 TEST_P(WorldBeforeCamera, hides_its_hidden_objects_from_every_pixel_of_the_camera) {
@@ -133,25 +220,15 @@ TEST_P(ShippedWorld, shows_its_hidden_objects_to_some_sensor_that_is_never_insid
 }
 
 TEST_P(WorldOfTwoTruths, has_two_ground_truths_that_agree) {
-    const Truth truth = truth_of_seed(0, scenario_, world_, rig_);
-    int surface = 0, occupied = 0, occupied_elsewhere = 0, unseen = 0, occluded = 0, hidden = 0;
-    for (std::size_t i = 0; i < truth.camera.size(); ++i) {
-        const SurfaceVoxel& voxel = truth.surface[i];
-        surface += voxel.is_surface;
-        occupied += truth.camera[i] == Occupancy::occupied;
-        occupied_elsewhere += truth.camera[i] == Occupancy::occupied && !voxel.is_surface;
-        unseen += !voxel.is_interior && truth.camera[i] == Occupancy::unknown;
-        occluded += voxel.is_occluded;
-        hidden += voxel.is_hidden_object && voxel.is_occluded;
-    }
-    EXPECT_LE(occupied_elsewhere, 2);
+    const TruthCounts count(truth_of_seed(0, scenario_, world_, rig_));
+    EXPECT_LE(count.occupied_elsewhere, 2);
     // Dark corners: none in the cell; in the cupboard the floor behind the drum, 1 %.
-    EXPECT_LE(unseen, 0.015 * surface);
+    EXPECT_LE(count.unseen, 0.015 * count.surface);
     // Corners and round sides that most rays pass: 2 % of the cell's surfaces, 6 % of the cupboard's.
-    EXPECT_GT(occupied, 0.92 * surface);
-    EXPECT_GT(occluded, surface / 10);
-    EXPECT_LT(occluded, surface / 2);
-    EXPECT_GT(hidden, 50);
+    EXPECT_GT(count.occupied, 0.92 * count.surface);
+    EXPECT_GT(count.occluded, count.surface / 10);
+    EXPECT_LT(count.occluded, count.surface / 2);
+    EXPECT_GT(count.hidden, 50);
 }
 
 }  // namespace
