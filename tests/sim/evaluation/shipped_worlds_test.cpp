@@ -68,6 +68,7 @@ class ShippedWorld : public testing::TestWithParam<Shipped> {
 
 class WorldBeforeCamera : public ShippedWorld {};
 class WorldOfTwoTruths : public ShippedWorld {};
+class WorldOfThinThings : public ShippedWorld {};
 class WorldOfAnArm : public ShippedWorld {};
 
 /// Voxels of both ground truths.
@@ -137,17 +138,22 @@ const Shipped kCell = {"cell", "cell"};
 const Shipped kCupboard = {"cupboard", "cupboard"};
 const Shipped kExperiment = {"experiment", "experiment"};  // its truths: experiment_truth_test
 const Shipped kMoving = {"moving", "experiment"};          // not to be judged
-const Shipped kAll[] = {kBench, kCell, kCupboard, kExperiment, kMoving};
+const Shipped kRods = {"rods", "rods"};
+const Shipped kThinBench = {"thin_bench", "thin_bench"};
+const Shipped kAll[] = {kBench, kCell, kCupboard, kExperiment, kMoving, kRods, kThinBench};
 
 std::string name_of(const testing::TestParamInfo<Shipped>& shipped) {
     return shipped.param.scenario;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedWorld, testing::ValuesIn(kAll), name_of);
-INSTANTIATE_TEST_SUITE_P(All, WorldBeforeCamera, testing::Values(kCell, kCupboard, kExperiment), name_of);
+INSTANTIATE_TEST_SUITE_P(All, WorldBeforeCamera,
+                         testing::Values(kCell, kCupboard, kExperiment, kRods, kThinBench), name_of);
 INSTANTIATE_TEST_SUITE_P(All, WorldOfTwoTruths, testing::Values(kCell, kCupboard), name_of);
+INSTANTIATE_TEST_SUITE_P(All, WorldOfThinThings, testing::Values(kRods, kThinBench), name_of);
 // Not the bench, where the wrist dips into the table.
-INSTANTIATE_TEST_SUITE_P(All, WorldOfAnArm, testing::Values(kCell, kCupboard, kExperiment, kMoving), name_of);
+INSTANTIATE_TEST_SUITE_P(All, WorldOfAnArm,
+                         testing::Values(kCell, kCupboard, kExperiment, kMoving, kRods, kThinBench), name_of);
 
 TEST(ShippedWorlds, are_all_tested_here) {
     std::set<std::string> there;
@@ -229,6 +235,14 @@ TEST_P(WorldOfTwoTruths, has_two_ground_truths_that_agree) {
     EXPECT_GT(count.occluded, count.surface / 10);
     EXPECT_LT(count.occluded, count.surface / 2);
     EXPECT_GT(count.hidden, 50);
+}
+
+TEST_P(WorldOfThinThings, has_two_ground_truths_that_agree) {
+    const TruthCounts count(truth_of_seed(0, scenario_, world_, rig_));
+    EXPECT_LE(count.occupied_elsewhere, 2);
+    EXPECT_LE(count.unseen, 0.025 * count.surface);
+    // Rods that most rays pass.
+    EXPECT_GT(count.occupied, 0.9 * count.surface);
 }
 
 }  // namespace

@@ -183,6 +183,8 @@ TEST_F(ShippedRigs, still_end_with_0) {
         const std::string out = path("rig_" + name);
         const std::string scenario = name.starts_with("cell")       ? "cell"
                                      : name.starts_with("cupboard") ? "cupboard"
+                                     : name == "rods"               ? "rods"
+                                     : name == "thin_bench"         ? "thin_bench"
                                                                     : "";
         const Said made = octoskin("simulate " + out + " --rig " + rig + " --scenario " +
                                    source(scenario.empty() ? "tests/data/short/scenario.yaml"
