@@ -1,5 +1,6 @@
 #include "host/core/mapping/depth_integrator.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <limits>
@@ -12,6 +13,7 @@
 #include "host/core/traversal/brick_visibility.hpp"
 #include "host/core/traversal/end_voxels.hpp"
 #include "host/core/traversal/image_traversal.hpp"
+#include "host/core/traversal/passed_voxels.hpp"
 #include "host/core/traversal/placed_voxels.hpp"
 #include "host/core/traversal/visited_grid.hpp"
 #include "host/core/traversal/voxel_rays.hpp"
@@ -50,29 +52,6 @@ void for_each_hit(const ProjectedImage& rays, const VoxelLattice& lattice, Visit
     });
 }
 
-/// The largest hit term of each voxel of one brick.
-class LargestHits {
-  public:
-    explicit LargestHits(std::span<const CellHits> hits) {
-        for (const CellHits& hit : hits) {
-            std::uint64_t& word = mask_[hit.cell / 64];
-            const std::uint64_t bit = std::uint64_t{1} << (hit.cell % 64);
-            float& most = most_[hit.cell];
-            // Not a branch: it would be unpredictable.
-            const float before = (word & bit) == 0 ? -std::numeric_limits<float>::max() : most;
-            word |= bit;
-            most = hit.most > before ? hit.most : before;
-        }
-    }
-
-    [[nodiscard]] const BrickMask& mask() const noexcept { return mask_; }
-    [[nodiscard]] float of(std::size_t cell) const noexcept { return most_[cell]; }
-
-  private:
-    BrickMask mask_{};
-    std::array<float, kBrickVoxels> most_;  ///< valid for voxels in the mask
-};
-
 /// The mean over a voxel's rays of hit and miss terms if it is positive, otherwise 0: a voxel in which rays
 /// end is never freed.
 float voted_term(const RayVote& vote, float hit, float miss) {
@@ -110,6 +89,30 @@ BrickMask without(BrickMask mask, const BrickMask& others) {
     return mask;
 }
 
+/// A hit with a term of 0 is still a hit: its voxel is not in `passed`.
+void add_sets(Evidence& terms, MortonCode brick, const BrickMask& passed, const BrickHits& hits) {
+    terms.add(brick, passed);
+    for_each_cell(hits.mask(), [&](std::size_t cell) {
+        terms.add_cell(brick, {static_cast<std::uint16_t>(cell), hits.largest(cell)});
+    });
+}
+
+constexpr BrickMask kAllVoxels = [] {
+    BrickMask all;
+    all.fill(~std::uint64_t{0});
+    return all;
+}();
+
+/// Rounding may lead a ray one voxel out of the box.
+KeyBox wider(const KeyBox& box) {
+    const auto lower = [](std::uint16_t key) { return static_cast<std::uint16_t>(std::max(key - 1, 0)); };
+    const auto higher = [](std::uint16_t key) {
+        return static_cast<std::uint16_t>(std::min(key + 1, kVoxelsPerAxis - 1));
+    };
+    return {{lower(box.lowest.x), lower(box.lowest.y), lower(box.lowest.z)},
+            {higher(box.highest.x), higher(box.highest.y), higher(box.highest.z)}};
+}
+
 }  // namespace
 
 /// Memory that stays allocated between frames.
@@ -121,6 +124,7 @@ struct DepthIntegrator::Workspace {
     EndVoxels ends;
     RangePyramid reach;
     VoxelRays voxel_rays;
+    PassedVoxels passed;
     TallyGrid tallies;
     std::vector<PartTerms> parts;   ///< the evidence of each cube, before it is joined
     std::size_t bricks_before = 0;  ///< of the previous image: the next one has about as many
@@ -197,26 +201,56 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
     return result;
 }
 
+/// Calls add_brick(terms, brick, is_all) for each brick of the box that rays may pass, in Morton order.
+/// `is_all`: they pass all of its voxels. In the thread pool, with evidence of its own for each part.
+template <class AddBrick>
+void DepthIntegrator::add_bricks(const KeyBox& box, const CertainView& view, const BrickVisibility& picture,
+                                 Evidence& terms, const AddBrick& add_brick) {
+    const auto coverage_of = [&](const VoxelCube& cube) {
+        const int edge = 1 << cube.height;
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * (edge - 1) * lattice_.resolution_m());
+        return picture.of_cube(view.T_camera_map * (lattice_.centre_of(cube.lowest) + half), edge);
+    };
+    const auto add_below = [&](Evidence& to, const VoxelCube& cube) {
+        walk_bricks(
+            box, coverage_of, [&](MortonCode brick, bool is_all) { add_brick(to, brick, is_all); }, cube);
+    };
+    if (pool_->size() == 1) return add_below(terms, kWholeOctree);
+    std::vector<VoxelCube> cubes;
+    walk_cubes(box, kPartHeight, coverage_of, [&](const VoxelCube& cube, bool) { cubes.push_back(cube); });
+    add_together(*pool_, cubes, add_below, workspace_->parts, terms);
+}
+
 /// The paper's sets: a hit wins over any number of passing rays, and the largest hit counts. A hit with a
 /// term of 0 (too near to be reliable) is still a hit: it never becomes a miss.
 bool DepthIntegrator::take_sets(const ProjectedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                 Evidence& terms) {
-    VisitedGrid& marks = workspace_->marks;
     HitBricks& hits = workspace_->hits;
     const KeyBox box = box_of(rays, lattice_);
-    if (!hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max) ||
-        !marks.span(box.lowest, box.highest, config_.depth_box_voxels_max)) {
-        return false;
-    }
-    workspace_->traversal.mark_passed(
-        rays, pixel_rays_, lattice_, T_map_camera, [&](MortonCode brick) { return hits.mask_of(brick); },
-        marks);
+    if (!hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max)) return false;
+    const CertainView view(pixel_rays_.camera(), lattice_, T_map_camera, rays);
+    if (!(view.depth_max_m > 0.0)) return take_walked(rays, box, terms);
+    RangePyramid& reach = workspace_->reach;
+    reach.take(rays);
+    const BrickVisibility picture(view, reach);
+    PassedVoxels& passed = workspace_->passed;
+    passed.begin(view, rays, picture, reach, lattice_, box);
+    add_bricks(wider(box), view, picture, terms, [&](Evidence& to, MortonCode brick, bool is_all) {
+        const BrickHits found = hits.of(brick);
+        add_sets(to, brick, is_all ? without(kAllVoxels, found.mask()) : passed.of(brick, found.mask()),
+                 found);
+    });
+    return true;
+}
+
+/// The same by walking each ray.
+bool DepthIntegrator::take_walked(const ProjectedImage& rays, const KeyBox& box, Evidence& terms) {
+    VisitedGrid& marks = workspace_->marks;
+    if (!marks.span(box.lowest, box.highest, config_.depth_box_voxels_max)) return false;
+    workspace_->traversal.mark_passed(rays, lattice_, marks);
     marks.drain([&](MortonCode brick, const BrickMask& passed) {
-        const LargestHits largest(hits.of(brick));
-        terms.add(brick, without(passed, largest.mask()));
-        for_each_cell(largest.mask(), [&](std::size_t cell) {
-            terms.add_cell(brick, {static_cast<std::uint16_t>(cell), largest.of(cell)});
-        });
+        const BrickHits found = workspace_->hits.of(brick);
+        add_sets(terms, brick, without(passed, found.mask()), found);
     });
     return true;
 }
@@ -254,18 +288,8 @@ bool DepthIntegrator::take_nearest(const ProjectedImage& rays, const CertainView
     const BrickVisibility picture(view, reach);
     VoxelRays& voxel_rays = workspace_->voxel_rays;
     voxel_rays.begin(view, rays, reach, lattice_);
-    const auto coverage_of = [&](const VoxelCube& cube) {
-        const int edge = 1 << cube.height;
-        const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * (edge - 1) * lattice_.resolution_m());
-        return picture.of_cube(view.T_camera_map * (lattice_.centre_of(cube.lowest) + half), edge);
-    };
-    constexpr BrickMask kAll = [] {
-        BrickMask all;
-        all.fill(~std::uint64_t{0});
-        return all;
-    }();
-    const auto add_brick = [&](Evidence& to, MortonCode brick, bool is_all) {
-        if (is_all) return to.add(brick, kAll);
+    add_bricks(box, view, picture, terms, [&](Evidence& to, MortonCode brick, bool is_all) {
+        if (is_all) return to.add(brick, kAllVoxels);
         const VoxelRays::Brick place = voxel_rays.brick_at(key_of_morton(brick));
         const BrickMask hit = ends.of(brick);
         to.add(brick, without(voxel_rays.passed(place, hit), hit));
@@ -277,19 +301,7 @@ bool DepthIntegrator::take_nearest(const ProjectedImage& rays, const CertainView
             const float term = voted_term(votes[cell], config_.model.depth.log_odds(range_m), terms.miss);
             to.add_cell(brick, {static_cast<std::uint16_t>(cell), term});
         });
-    };
-    const auto add_below = [&](Evidence& to, const VoxelCube& cube) {
-        walk_bricks(
-            box, coverage_of, [&](MortonCode brick, bool is_all) { add_brick(to, brick, is_all); }, cube);
-    };
-    if (pool_->size() == 1) {
-        add_below(terms, kWholeOctree);
-    } else {
-        std::vector<VoxelCube> cubes;
-        walk_cubes(box, kPartHeight, coverage_of,
-                   [&](const VoxelCube& cube, bool) { cubes.push_back(cube); });
-        add_together(*pool_, cubes, add_below, workspace_->parts, terms);
-    }
+    });
     return true;
 }
 

@@ -12,8 +12,10 @@
 #include "host/core/mapping/evidence.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/parallel/thread_pool.hpp"
+#include "host/core/traversal/brick_visibility.hpp"
 #include "host/core/traversal/certain_view.hpp"
 #include "host/core/traversal/projected_image.hpp"
+#include "host/core/voxels/key_box.hpp"
 
 namespace octoskin {
 
@@ -35,8 +37,7 @@ class DepthIntegrator {
   public:
     /// Takes the map's resolution, the model, the strategy and the memory limit from `config`. Every pixel
     /// must have a ray (asserted by PixelRays). `threads`: number of threads that work on an image, including
-    /// the caller; the terms do not depend on it. The strategy `robust` runs in the caller only. So does
-    /// `paper`, except for the projection of the pixels.
+    /// the caller; the terms do not depend on it. The strategy `robust` runs in the caller only.
     DepthIntegrator(const MappingConfig& config, const CameraIntrinsics& camera, unsigned threads = 1);
     DepthIntegrator(DepthIntegrator&&) noexcept;
     DepthIntegrator& operator=(DepthIntegrator&&) noexcept;
@@ -59,8 +60,13 @@ class DepthIntegrator {
     /// Each returns false if the rays span too many voxels.
     [[nodiscard]] bool take_sets(const ProjectedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                  Evidence& terms);
+    [[nodiscard]] bool take_walked(const ProjectedImage& rays, const KeyBox& box, Evidence& terms);
     [[nodiscard]] bool take_means(const ProjectedImage& rays, Evidence& terms);
     [[nodiscard]] bool take_nearest(const ProjectedImage& rays, const CertainView& view, Evidence& terms);
+
+    template <class AddBrick>
+    void add_bricks(const KeyBox& box, const CertainView& view, const BrickVisibility& picture,
+                    Evidence& terms, const AddBrick& add_brick);
 
     struct Workspace;
     MappingConfig config_;

@@ -9,9 +9,12 @@
 // clang-format on
 
 #include <algorithm>
-#include <bit>
+#include <cassert>
+#include <limits>
+#include <span>
 
-#include "host/core/bricks/brick_sets.hpp"
+#include "host/core/traversal/end_places-inl.hpp"
+#include "host/core/traversal/image_bands.hpp"
 #include "host/core/traversal/lanes-inl.hpp"
 
 #ifndef OCTOSKIN_HIT_BRICKS_TYPES
@@ -23,13 +26,18 @@ struct RowOfEnds {
     const std::uint32_t* key_xy;
     const std::uint32_t* key_z;
     const double* range_m;
+    std::size_t width;
 };
 
-BrickMask HitBricks::mask_of(MortonCode brick) const noexcept {
-    BrickMask mask{};
-    for (const CellHits& hit : of(brick)) put_in(mask, hit.cell);
-    return mask;
-}
+/// Where the word and the voxel of each ray of a row are stored, and its term.
+struct RowHits {
+    std::uint32_t* places;
+    std::uint32_t* bits;
+    float* terms;
+};
+
+/// Less than any term.
+inline constexpr float kNoHit = -std::numeric_limits<float>::infinity();
 
 }  // namespace octoskin
 #endif
@@ -52,22 +60,19 @@ HWY_INLINE void find_terms(const double* ranges_m, const HitModel& model, std::s
     }
 }
 
-/// The terms of a row, and a bit for each pixel whose right neighbour ends in another voxel. Both fill whole
-/// words of 64 pixels; those beyond the row are undefined.
-void find_row_runs(const RowOfEnds& row, const HitModel& model, std::size_t width, float* terms,
-                   std::uint64_t* run_ends) {
-    const hn::CappedTag<std::uint32_t, 16> k;
-    for (std::size_t word = 0; 64 * word < width; ++word) {
-        run_ends[word] = 0;
-        for (std::size_t bit = 0; bit < 64 && 64 * word + bit < width; bit += hn::Lanes(k)) {
-            const std::size_t u = 64 * word + bit;
-            const auto differs = [&](const std::uint32_t* keys) HWY_ATTR {
-                return hn::Ne(hn::LoadU(k, keys + u), hn::LoadU(k, keys + u + 1));
-            };
-            run_ends[word] |= bits_of(k, hn::Or(differs(row.key_xy), differs(row.key_z))) << bit;
-        }
-    }
-    find_terms(row.range_m, model, width, terms);
+/// Reads and writes whole vectors.
+void find_row_hits(const WordGrid& grid, const RowOfEnds& row, const HitModel& model, const RowHits& hits) {
+    find_places(grid, row.key_xy, row.key_z, row.width, hits.places, hits.bits);
+    find_terms(row.range_m, model, row.width, hits.terms);
+}
+
+/// The voxels of a word with hits, from its 64 terms.
+std::uint64_t hits_of(const float* terms) {
+    const hn::CappedTag<float, 16> f;
+    std::uint64_t hits = 0;
+    for (std::size_t bit = 0; bit < 64; bit += hn::Lanes(f))
+        hits |= bits_of(f, hn::Ne(hn::LoadU(f, terms + bit), hn::Set(f, kNoHit))) << bit;
+    return hits;
 }
 
 }  // namespace octoskin::HWY_NAMESPACE
@@ -77,7 +82,10 @@ HWY_AFTER_NAMESPACE();
 namespace octoskin {
 namespace {
 
-HWY_EXPORT(find_row_runs);
+HWY_EXPORT(find_row_hits);
+HWY_EXPORT(hits_of);
+
+constexpr std::size_t kWordBits = 64;
 
 }  // namespace
 
@@ -86,62 +94,61 @@ bool HitBricks::take(const ProjectedImage& rays, const KeyBox& box, const HitMod
     const BrickBox bricks = BrickBox::of(box);
     if (bricks.bricks() * kBrickVoxels > voxels_max) return false;
     box_ = bricks;
-    ends_.assign(bricks.bricks(), 0);
-    runs_.resize(std::max(runs_.size(), rays.pixels()));
-    bricks_.resize(runs_.size());
-    count_ = 0;
+    clear(kBrickWords * bricks.bricks() + 1);
+    places_.resize(rays.width + kLanesMax);
+    bits_.resize(places_.size());
+    row_terms_.resize(places_.size());
     for (std::uint32_t v = 0; v < rays.height; ++v) take_row(rays, std::size_t{v} * rays.width, model);
-    sort();
     return true;
 }
 
+/// Only the words that the previous image used are not zero.
+void HitBricks::clear(std::size_t words) {
+    for (const std::uint32_t word : used_) words_[word] = 0;
+    used_.clear();
+    if (words_.size() < words) words_.resize(words, 0);
+    terms_.assign(kWordBits, kNoHit);
+}
+
 void HitBricks::take_row(const ProjectedImage& rays, std::size_t first, const HitModel& model) {
-    constexpr std::size_t kWordBits = 64;
-    run_ends_.resize((rays.width + kWordBits - 1) / kWordBits);
-    terms_.resize(run_ends_.size() * kWordBits);
-    const std::uint32_t* const key_xy = rays.key_xy.data() + first;
-    const std::uint32_t* const key_z = rays.key_z.data() + first;
-    HWY_DYNAMIC_DISPATCH(find_row_runs)
-    ({key_xy, key_z, rays.range_m.data() + first}, model, rays.width, terms_.data(), run_ends_.data());
-    run_ends_.back() &= ~std::uint64_t{0} >> (kWordBits * run_ends_.size() - rays.width);
-    run_ends_.back() |= std::uint64_t{1} << ((rays.width - 1) % kWordBits);
-
-    std::size_t begin = 0;
-    for (std::size_t word = 0; word < run_ends_.size(); ++word) {
-        for (std::uint64_t bits = run_ends_[word]; bits != 0; bits &= bits - 1) {
-            const std::size_t last = kWordBits * word + static_cast<std::size_t>(std::countr_zero(bits));
-            if (key_z[last] != ProjectedImage::kNoKey) {
-                const VoxelKey key{static_cast<std::uint16_t>(key_xy[last]),
-                                   static_cast<std::uint16_t>(key_xy[last] >> 16U),
-                                   static_cast<std::uint16_t>(key_z[last])};
-                const auto run = std::span(terms_).subspan(begin, last + 1 - begin);
-                runs_[count_] = {static_cast<std::uint16_t>(cell_of(key)), std::ranges::max(run)};
-                bricks_[count_] = static_cast<std::uint32_t>(box_.index(BrickPlace::of(key)));
-                ++count_;
-            }
-            begin = last + 1;
-        }
+    const WordGrid grid = word_grid_of(box_);
+    HWY_DYNAMIC_DISPATCH(find_row_hits)
+    (grid, {rays.key_xy.data() + first, rays.key_z.data() + first, rays.range_m.data() + first, rays.width},
+     model, {places_.data(), bits_.data(), row_terms_.data()});
+    for (std::size_t u = 0; u < rays.width; ++u) {
+        const std::uint32_t place = places_[u];
+        if (words_[place] != 0 || place == grid.nowhere) continue;
+        words_[place] = static_cast<std::uint32_t>(terms_.size());
+        used_.push_back(place);
+        terms_.resize(terms_.size() + kWordBits, kNoHit);
     }
+    const auto put = [&, terms = terms_.data(), words = words_.data()](std::size_t u) {
+        float& most = terms[words[places_[u]] + bits_[u]];
+        const float term = row_terms_[u];
+        most = term > most ? term : most;
+    };
+    // Neighbouring pixels often share a voxel, and each write would wait for the one before.
+    const std::size_t quarter = rays.width / 4;
+    for (std::size_t u = 0; u < quarter; ++u) {
+        put(u);
+        put(u + quarter);
+        put(u + 2 * quarter);
+        put(u + 3 * quarter);
+    }
+    for (std::size_t u = 4 * quarter; u < rays.width; ++u) put(u);
 }
 
-void HitBricks::sort() {
-    for (std::size_t i = 0; i < count_; ++i) ++ends_[bricks_[i]];
-    std::uint32_t begin = 0;
-    for (std::uint32_t& end : ends_) {
-        const std::uint32_t count = end;
-        end = begin;  // temporarily its begin
-        begin += count;
-    }
-    if (sorted_.size() < count_) sorted_.resize(count_);
-    for (std::size_t i = 0; i < count_; ++i) sorted_[ends_[bricks_[i]]++] = runs_[i];
-}
-
-std::span<const CellHits> HitBricks::of(MortonCode brick) const noexcept {
+BrickHits HitBricks::of(MortonCode brick) const noexcept {
+    BrickHits hits;
     const BrickPlace place = BrickPlace::of(key_of_morton(brick));
-    if (!box_.holds(place)) return {};
-    const std::size_t at = box_.index(place);
-    const std::size_t begin = at == 0 ? 0 : ends_[at - 1];
-    return std::span(sorted_).subspan(begin, ends_[at] - begin);
+    if (!box_.holds(place)) return hits;
+    const std::uint32_t* const words = words_.data() + kBrickWords * box_.index(place);
+    for (std::size_t word = 0; word < kBrickWords; ++word) {
+        if (words[word] == 0) continue;
+        hits.words_[word] = terms_.data() + words[word];
+        hits.mask_[word] = HWY_DYNAMIC_DISPATCH(hits_of)(hits.words_[word]);
+    }
+    return hits;
 }
 
 }  // namespace octoskin

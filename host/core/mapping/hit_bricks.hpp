@@ -1,9 +1,9 @@
-// The hits of one image, grouped by brick.
+// The hits of one image, by brick.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "host/core/bricks/brick.hpp"
@@ -14,36 +14,39 @@
 
 namespace octoskin {
 
-/// The hits of adjacent pixels of a row whose rays end in the same voxel.
-struct CellHits {
-    std::uint16_t cell = 0;
-    float most = 0.0F;  ///< the largest of their terms
+/// The voxels of one brick in which rays end at a surface. It is valid until HitBricks takes the next image.
+class BrickHits {
+  public:
+    [[nodiscard]] const BrickMask& mask() const noexcept { return mask_; }
+    /// The largest term of the rays that end in a voxel of the mask.
+    [[nodiscard]] float largest(std::size_t cell) const noexcept { return words_[cell / 64][cell % 64]; }
+
+  private:
+    friend class HitBricks;
+    BrickMask mask_{};
+    std::array<const float*, kBrickVoxels / 64> words_{};
 };
 
-/// Groups the ends of an image's rays by brick with a counting sort. Reuses its memory for the next image.
+/// Finds the largest hit term of each voxel. Reuses its memory for the next image.
 class HitBricks {
   public:
     /// Takes all rays that end on a surface; `box` contains them. False, with nothing done, if the box has
-    /// over `voxels_max` voxels. O(pixels + bricks of the box). Throws std::bad_alloc.
+    /// over `voxels_max` voxels. About 0.4 ms for 512 x 424. Throws std::bad_alloc.
     [[nodiscard]] bool take(const ProjectedImage& rays, const KeyBox& box, const HitModel& model,
                             std::size_t voxels_max);
-    /// The hits in a brick, in the order of pixels.
-    [[nodiscard]] std::span<const CellHits> of(MortonCode brick) const noexcept;
-    [[nodiscard]] BrickMask mask_of(MortonCode brick) const noexcept;
+    [[nodiscard]] BrickHits of(MortonCode brick) const noexcept;
 
   private:
     void take_row(const ProjectedImage& rays, std::size_t first, const HitModel& model);
-    void sort();
+    void clear(std::size_t words);
 
     BrickBox box_;
-    std::vector<float> terms_;  ///< one for each ray of a row
-    /// A bit for each of those: the next ray ends in another voxel, or has no end.
-    std::vector<std::uint64_t> run_ends_;
-    std::vector<CellHits> runs_;         ///< capacity for one each pixel; in the order of pixels
-    std::vector<std::uint32_t> bricks_;  ///< the brick of each run
-    std::size_t count_ = 0;              ///< number of runs
-    std::vector<std::uint32_t> ends_;    ///< by brick: end of its hits, and begin of the next brick's
-    std::vector<CellHits> sorted_;
+    std::vector<std::uint32_t> words_;   ///< where the terms of each of the box's words begin; 0: no hits
+    std::vector<std::uint32_t> used_;    ///< the words with hits
+    std::vector<float> terms_;           ///< 64 for each word with hits, and as many for no word
+    std::vector<std::uint32_t> places_;  ///< the word of each ray of a row
+    std::vector<std::uint32_t> bits_;    ///< the voxel in that word
+    std::vector<float> row_terms_;
 };
 
 }  // namespace octoskin

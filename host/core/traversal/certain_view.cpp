@@ -18,15 +18,6 @@ CertainView::CertainView(const CameraIntrinsics& intrinsics, const VoxelLattice&
     margin_m = 1e-3 * resolution_m + 4e-6 * extent_m;
     if (!camera.lens.is_none() || margin_m > 0.05 * resolution_m) return;
     depth_max_m = (0.5 * resolution_m - margin_m) * std::min(camera.fx, camera.fy) * std::numbers::sqrt2;
-    double furthest_m = 0.0;
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        Eigen::Vector3f p = image.lowest;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            if ((corner >> axis & 1U) != 0) p[axis] = image.highest[axis];
-        }
-        furthest_m = std::max(furthest_m, (T_camera_map * p.cast<double>()).z());
-    }
-    is_by_voxel = furthest_m + half_depth_m <= depth_max_m;
 }
 
 }  // namespace octoskin

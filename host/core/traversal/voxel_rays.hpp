@@ -60,10 +60,12 @@ class VoxelRays {
         float fx = 0.0F, fy = 0.0F;
         float per_fx = 0.0F, per_fy = 0.0F;
         float u_centre = 0.0F,
-              v_centre = 0.0F;                   ///< optical axis, in pixels from the first one's centre
-        float half_x_m = 0.0F, half_y_m = 0.0F;  ///< half extent of a voxel along the camera's x and y
-        float inside_m = 0.0F;                   ///< from a voxel's centre to its faces, less the margin
-        float near_centre_m = 0.0F;              ///< a ray within this distance of the centre counts for it
+              v_centre = 0.0F;  ///< optical axis, in pixels from the first one's centre
+        /// How far from the middle of a word's voxels their rays may be, along the camera's x and y, and how
+        /// far behind and before it their depths.
+        float word_x_m = 0.0F, word_y_m = 0.0F, word_depth_m = 0.0F;
+        float inside_m = 0.0F;       ///< from a voxel's centre to its faces, less the margin
+        float near_centre_m = 0.0F;  ///< a ray within this distance of the centre counts for it
         float half_edge_m = 0.0F;
         float half_depth_m = 0.0F;
         float end_m = 0.0F;  ///< a ray that ends up to this far behind the centre ends in the voxel
@@ -74,6 +76,8 @@ class VoxelRays {
         std::array<const float*, RangePyramid::kLevels> shortest_m{};
         std::array<const float*, RangePyramid::kLevels> longest_m{};
     };
+
+    [[nodiscard]] const Kernel& kernel() const noexcept { return kernel_; }
 
   private:
     const CertainView* view_ = nullptr;

@@ -42,17 +42,16 @@ struct WordCoverage {
     std::uint32_t none = 0;
 };
 
-/// First and last pixel, of a row or column, whose rays may be inside one of 64 voxels at the depth of its
-/// centre.
+/// First and last pixel, of a row or column, whose rays count for one of 64 voxels.
 struct Seen {
     Words first, last;
 };
 
-HWY_INLINE Seen seen_of(Words middle, float half_m, Words per_nearest, Words per_furthest, float focal,
+/// `reach_m`: from the middle to the furthest place of such a ray.
+HWY_INLINE Seen seen_of(Words middle, float reach_m, Words per_nearest, Words per_furthest, float focal,
                         float optical_axis) {
     const WordTag f;
-    // A voxel's centre is up to three halves of an edge from the middle, and its side another half.
-    const Words reach = hn::Set(f, 4.0F * half_m);
+    const Words reach = hn::Set(f, reach_m);
     const Words low = hn::Sub(middle, reach);
     const Words high = hn::Add(middle, reach);
     const auto pixel = [&](Words slope) {
@@ -81,15 +80,15 @@ HWY_INLINE WordCoverage judge_words(const Kernel& rays, const Centre& first) {
         const Words x = hn::Add(hn::Set(f, first.x), hn::LoadU(f, rays.middles[0].data() + word));
         const Words y = hn::Add(hn::Set(f, first.y), hn::LoadU(f, rays.middles[1].data() + word));
         const Words z = hn::Add(hn::Set(f, first.z), hn::LoadU(f, rays.middles[2].data() + word));
-        const Words half_depth = hn::Set(f, 3.0F * rays.half_depth_m);  // of the voxels' centres
+        const Words half_depth = hn::Set(f, rays.word_depth_m);
         const Words nearest = hn::Sub(z, half_depth);
         const Words furthest = hn::Add(z, half_depth);
         const Words near = hn::Set(f, rays.near_m);
         const auto is_before = hn::Gt(nearest, near);
         const Words per_nearest = hn::Div(hn::Set(f, 1.0F), hn::Max(nearest, near));
         const Words per_furthest = hn::Div(hn::Set(f, 1.0F), hn::Max(furthest, near));
-        const Seen u = seen_of(x, rays.half_x_m, per_nearest, per_furthest, rays.fx, rays.u_centre);
-        const Seen v = seen_of(y, rays.half_y_m, per_nearest, per_furthest, rays.fy, rays.v_centre);
+        const Seen u = seen_of(x, rays.word_x_m, per_nearest, per_furthest, rays.fx, rays.u_centre);
+        const Seen v = seen_of(y, rays.word_y_m, per_nearest, per_furthest, rays.fy, rays.v_centre);
         const Words zero = hn::Zero(f);
         const Words last_u = hn::Set(f, rays.last_u);
         const Words last_v = hn::Set(f, rays.last_v);

@@ -156,7 +156,7 @@ TEST(DepthIntegrator, names_why_an_image_is_refused) {
 
 TEST(DepthIntegrator, refuses_a_box_beyond_its_memory_and_works_again_afterwards) {
     MappingConfig config = coarse(paper_mapping());
-    config.depth_box_voxels_max = 4096;  // in bricks of 8 with its margin 16 x 16 in cross-section: 16 deep
+    config.depth_box_voxels_max = 1024;  // two bricks: 16 deep
     DepthIntegrator integrator(config, narrow_camera(1));
     EXPECT_EQ(integrator.integrate(image_of({20.0F}), at_half_metres()).error(),
               DepthRejection::box_too_large);
