@@ -226,12 +226,18 @@ void DepthIntegrator::add_bricks(const KeyBox& box, const CertainView& view, con
 bool DepthIntegrator::take_sets(const ProjectedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                 Evidence& terms) {
     HitBricks& hits = workspace_->hits;
+    RangePyramid& reach = workspace_->reach;
     const KeyBox box = box_of(rays, lattice_);
-    if (!hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max)) return false;
+    reach.begin(rays);
+    bool has_room = false;
+    pool_->work(3, [&](std::size_t part) {
+        if (part == 0) has_room = hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max);
+        if (part == 1) reach.take_shortest(rays);
+        if (part == 2) reach.take_longest(rays);
+    });
+    if (!has_room) return false;
     const CertainView view(pixel_rays_.camera(), lattice_, T_map_camera, rays);
     if (!(view.depth_max_m > 0.0)) return take_walked(rays, box, terms);
-    RangePyramid& reach = workspace_->reach;
-    reach.take(rays);
     const BrickVisibility picture(view, reach);
     PassedVoxels& passed = workspace_->passed;
     passed.begin(view, rays, picture, reach, lattice_, box);
