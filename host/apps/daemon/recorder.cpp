@@ -27,7 +27,8 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
                       .joints = settings.joints,
                       .first_map = std::nullopt},
             .placement_crc32 = settings.placement_crc32,
-            .first = {copier(pipeline.map()), pipeline.builder().histories()}};
+            .first = {copier(pipeline.map()), pipeline.builder().histories(),
+                      pipeline.builder().camera_memory()}};
 }
 
 /// Result of `add`; false if there was no memory for it. Its input is already on the map: only the recording

@@ -25,8 +25,9 @@ std::string keys_text() {
     for (const MappingKey& key : mapping_keys()) {
         std::string meaning = std::regex_replace(std::string(key.meaning), link, "$1");
         std::erase_if(meaning, [](char character) { return character == '`' || character == '*'; });
-        text += fmt::format("{}{}{}{}: {}; default {}\n", key.path, key.unit.empty() ? "" : " [", key.unit,
-                            key.unit.empty() ? "" : "]", expected_text(key), value_text(key, fast_mapping()));
+        text +=
+            fmt::format("{}{}{}{}: {}; default {}\n", key.path, key.unit.empty() ? "" : " [", key.unit,
+                        key.unit.empty() ? "" : "]", expected_text(key), value_text(key, denoised_mapping()));
         if (!meaning.empty()) text += fmt::format("    {}\n", meaning);
     }
     return text;

@@ -96,7 +96,8 @@ std::optional<Eigen::Isometry3d> pose_of(const std::string& text) {
 void add_playback_options(CLI::App& command, PlaybackOptions& options) {
     command.add_option(
         "--configuration", options.configuration,
-        configuration_help("How measurements become voxels (default: as recorded by the daemon, else fast)"));
+        configuration_help(
+            "How measurements become voxels (default: as recorded by the daemon, else denoised)"));
     command.add_option("--rig", options.rig, "Rig (YAML) in place of the recording's")
         ->check(existing_file());
     command.add_option("--robot", options.robot, "Robot (URDF) in place of the recording's")

@@ -91,10 +91,15 @@ Result<std::vector<std::string>, AppError> begin_with_first(const PlaybackReques
         auto state = read_first_state(request, *header.first_state, header.mapping_crc32);
         if (!state) return unexpected(state.error());
         std::vector<std::string> warnings;
-        if (const auto left_out = pipeline.begin_with(std::move(*state)); left_out > 0)
+        const std::string file = request.recording.first_state().shown().string();
+        const MapBuilder::LeftOut left_out = pipeline.begin_with(std::move(*state));
+        if (left_out.zones > 0)
             warnings.push_back(
-                fmt::format("{}: range readings of {} zones are left out: the rig has no such zones",
-                            request.recording.first_state().shown().string(), left_out));
+                fmt::format("{}: range readings of {} zones are left out: the rig has no such zones", file,
+                            left_out.zones));
+        if (left_out.is_camera)
+            warnings.push_back(
+                fmt::format("{}: earlier images are left out: the rig has no such camera", file));
         return warnings;
     }
     if (!header.first_map) return std::vector<std::string>{};

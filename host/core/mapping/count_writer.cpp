@@ -11,7 +11,8 @@ void CountWriter::write(const Evidence& evidence) {
     switch (evidence.rule) {
         case EvidenceRule::image:
         case EvidenceRule::terms:
-            return;  // written by ImageWriter and TermWriter
+        case EvidenceRule::retract:
+            return;  // written by ImageWriter, TermWriter and RetractionWriter
         case EvidenceRule::counts:
             return count(evidence);
         case EvidenceRule::confirm:

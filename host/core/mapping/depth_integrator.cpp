@@ -142,8 +142,13 @@ DepthIntegrator::DepthIntegrator(DepthIntegrator&&) noexcept = default;
 DepthIntegrator& DepthIntegrator::operator=(DepthIntegrator&&) noexcept = default;
 DepthIntegrator::~DepthIntegrator() = default;
 
+const ProjectedImage& DepthIntegrator::rays() const noexcept {
+    return workspace_->rays;
+}
+
 Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage& image,
-                                                                const Eigen::Isometry3d& T_map_camera) {
+                                                                const Eigen::Isometry3d& T_map_camera,
+                                                                std::optional<float> miss_log_odds) {
     const CameraIntrinsics& camera = pixel_rays_.camera();
     const std::size_t pixels = std::size_t{camera.width} * camera.height;
     if (image.width != camera.width || image.height != camera.height || image.depth_m.size() != pixels) {
@@ -154,7 +159,7 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
     if (!lattice_.key_of(origin.cast<double>())) return unexpected(DepthRejection::camera_outside_map);
 
     try {
-        return updates_of(image, T_map_camera);
+        return updates_of(image, T_map_camera, miss_log_odds.value_or(config_.model.miss_log_odds));
     } catch (...) {  // no memory: the next image must not find data of an unfinished one
         *workspace_ = {};
         throw;
@@ -162,7 +167,8 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
 }
 
 Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImage& image,
-                                                                 const Eigen::Isometry3d& T_map_camera) {
+                                                                 const Eigen::Isometry3d& T_map_camera,
+                                                                 float miss_log_odds) {
     ProjectedImage& rays = workspace_->rays;
     const auto place = [&](auto& place_how) {
         place_how(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, pool_.get());
@@ -173,12 +179,13 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
     DepthUpdates result;
     result.pixels = rays.counts;
     Evidence& terms = result.terms;
-    terms.miss = config_.model.miss_log_odds;
+    terms.miss = miss_log_odds;
     terms.bricks.reserve(workspace_->bricks_before);
     terms.cells.reserve(workspace_->hits_before);
     bool has_room = false;
     switch (config_.depth_update) {
         case DepthUpdate::paper:
+        case DepthUpdate::denoised:
             has_room = take_sets(rays, T_map_camera, terms);
             break;
         case DepthUpdate::robust:

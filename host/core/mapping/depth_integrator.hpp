@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_frame.hpp"
@@ -29,6 +30,7 @@ enum class DepthRejection : std::uint8_t {
 
 struct DepthUpdates {
     Evidence terms;
+    Evidence retracted;  ///< of EndMemory, applied before `terms`; often empty
     DepthPixelCounts pixels;
 };
 
@@ -46,17 +48,23 @@ class DepthIntegrator {
     /// Rays of the camera's pixels.
     [[nodiscard]] const PixelRays& pixel_rays() const noexcept { return pixel_rays_; }
 
+    /// The rays of the last image that gave updates.
+    [[nodiscard]] const ProjectedImage& rays() const noexcept;
+
     /// The terms of one image (depth along the optical axis, metres, NaN = none), filtered and without the
     /// robot, seen from `T_map_camera` (optical frame: z forward, x right, y down). Hit and passed voxels are
     /// those of OctoMap's `computeUpdate` without discretisation, with the maximum range `depth_range_max_m`;
     /// DepthUpdate defines the terms. O(pixels * range / resolution). Throws std::bad_alloc; the next image
     /// is not affected.
-    [[nodiscard]] Result<DepthUpdates, DepthRejection> integrate(const DepthImage& image,
-                                                                 const Eigen::Isometry3d& T_map_camera);
+    /// `miss_log_odds`: the term of a voxel that is only passed, if not the configured one.
+    [[nodiscard]] Result<DepthUpdates, DepthRejection> integrate(
+        const DepthImage& image, const Eigen::Isometry3d& T_map_camera,
+        std::optional<float> miss_log_odds = std::nullopt);
 
   private:
     [[nodiscard]] Result<DepthUpdates, DepthRejection> updates_of(const DepthImage& image,
-                                                                  const Eigen::Isometry3d& T_map_camera);
+                                                                  const Eigen::Isometry3d& T_map_camera,
+                                                                  float miss_log_odds);
     /// Each returns false if the rays span too many voxels.
     [[nodiscard]] bool take_sets(const ProjectedImage& rays, const Eigen::Isometry3d& T_map_camera,
                                  Evidence& terms);

@@ -31,6 +31,8 @@ enum class EvidenceRule : std::uint8_t {
     withdraw,
     /// VoxelRules::clear: `voxels` that are occupied become free.
     clear,
+    /// VoxelRules::retract: the camera's evidence that `voxels` are occupied was of an earlier estimate.
+    retract,
 };
 
 /// Everything that a measurement states about one brick.

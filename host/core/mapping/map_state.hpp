@@ -1,6 +1,9 @@
 // The complete state on which later maps depend, given the same joint samples, readings and images.
 #pragma once
 
+#include <optional>
+
+#include "host/core/mapping/camera_memory.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/mapping/sensor_history.hpp"
 
@@ -12,6 +15,7 @@ namespace octoskin {
 struct MapState {
     FusedMap map;
     SensorHistories histories;
+    std::optional<CameraMemory> camera = {};  ///< empty: no image yet, or the mapping needs none
 };
 
 }  // namespace octoskin

@@ -39,4 +39,13 @@ MappingConfig fast_mapping() {
     return config;
 }
 
+MappingConfig denoised_mapping() {
+    MappingConfig config = robust_mapping();
+    config.depth_update = DepthUpdate::denoised;
+    config.map.log_odds_hit_min = 0.0F;
+    config.map.log_odds_passed_max = 2.5F;
+    config.depth_filter.is_enabled = false;
+    return config;
+}
+
 }  // namespace octoskin

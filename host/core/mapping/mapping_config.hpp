@@ -1,9 +1,10 @@
-// All parameters that decide how measurements become voxels. Three named configurations are built in; a file
+// All parameters that decide how measurements become voxels. Four named configurations are built in; a file
 // may override any value (host/io/mapping).
 #pragma once
 
 #include <cstdint>
 
+#include "host/core/depth/depth_denoiser.hpp"
 #include "host/core/depth/depth_filter.hpp"
 #include "host/core/mapping/cone_model.hpp"
 #include "host/core/mapping/map_config.hpp"
@@ -21,6 +22,10 @@ enum class DepthUpdate : std::uint8_t {
     /// mean of hits (rays that end before the centre) and misses (rays that continue), or nothing if the mean
     /// is not above 0.
     fast,
+    /// For a camera's own images: they are denoised over time and over the pixels of a surface
+    /// (DepthDenoiser). Then any ray that ends in a voxel is a hit, as with `paper`. An end that a newer
+    /// estimate replaces is retracted.
+    denoised,
 };
 
 enum class RangeUpdate : std::uint8_t {
@@ -41,6 +46,11 @@ struct MappingConfig {
     StationaryModel standing = {};  ///< for both, while they are stationary
     DepthUpdate depth_update = DepthUpdate::robust;
     DepthFilterConfig depth_filter;
+    DepthDenoiserConfig depth_denoiser;  ///< with `denoised` in place of the filter
+    /// With `denoised`, of an image of a moving camera, in place of `UpdateModel::miss_log_odds`: its noise
+    /// is not averaged over time, and a beam that passes a thin object by an error must not outweigh the
+    /// hits.
+    float moving_miss_log_odds = -0.2F;
     /// A depth pixel with a larger range clears space up to here and marks nothing; 0: no maximum.
     double depth_range_max_m = 0.0;
     bool removes_robot_from_depth = true;
@@ -55,6 +65,16 @@ struct MappingConfig {
     /// Maximum number of voxels in the box around one image's rays (1 byte each with `paper`, 8 with
     /// `robust`); an image with a larger box is refused.
     std::uint32_t depth_box_voxels_max = 1U << 26U;
+    /// True if the camera's images lose their noise before they become rays.
+    [[nodiscard]] bool removes_camera_noise() const noexcept {
+        return depth_update == DepthUpdate::denoised || depth_filter.is_enabled;
+    }
+    /// The camera's noise, metres; of a noise law at a depth of 2.5 m.
+    [[nodiscard]] double camera_sigma_m() const noexcept {
+        constexpr double kUsualDepth_m = 2.5;
+        return depth_update == DepthUpdate::denoised ? depth_denoiser.noise.sigma_m(kUsualDepth_m)
+                                                     : depth_filter.sigma_m;
+    }
     /// The parameters for counting a range of a beam with these optics, which are a cone.
     [[nodiscard]] const ConeModel& cone_of(const BeamOptics& optics) const noexcept {
         return optics.is_zone ? zone : cone;
@@ -64,10 +84,12 @@ struct MappingConfig {
 
 /// The paper's equations unchanged: no filter, one term per voxel and frame.
 [[nodiscard]] MappingConfig paper_mapping();
+/// The default: depth denoised over time, and any ray that ends in a voxel is a hit, as with `paper`.
+[[nodiscard]] MappingConfig denoised_mapping();
 /// Depth filtered, each voxel's term is the mean of its rays' terms. The former default, and the reference
 /// for `fast`.
 [[nodiscard]] MappingConfig robust_mapping();
-/// The default: depth filtered, each voxel evaluated by the rays near its centre.
+/// Depth filtered, each voxel evaluated by the rays near its centre.
 [[nodiscard]] MappingConfig fast_mapping();
 
 }  // namespace octoskin

@@ -112,6 +112,12 @@ void VoxelRules::clear(VoxelState& voxel) const noexcept {
     fuse(voxel);
 }
 
+void VoxelRules::retract(VoxelState& voxel) const noexcept {
+    if (!is_occupied(voxel.prior)) return;
+    voxel.prior = kUnknownLogOdds;
+    voxel.log_odds = log_odds_of(voxel, false);
+}
+
 void VoxelRules::fuse(VoxelState& voxel) const noexcept {
     const float log_odds = log_odds_of(voxel, !std::isnan(voxel.log_odds));
     if (!std::isnan(log_odds)) voxel.log_odds = log_odds;

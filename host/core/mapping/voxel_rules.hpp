@@ -47,6 +47,9 @@ class VoxelRules {
     void withdraw(VoxelState& voxel) const noexcept;
     /// Makes the voxel free, without hits and without the camera's earlier evidence that it is occupied.
     void clear(VoxelState& voxel) const noexcept;
+    /// Removes the camera's evidence that the voxel is occupied. Without counts of range sensors that suffice
+    /// to know it, it becomes unknown.
+    void retract(VoxelState& voxel) const noexcept;
     /// Makes the voxel unknown, as if nothing had ever been measured there.
     static void expire(VoxelState& voxel) noexcept { voxel = {}; }
     /// Recomputes `log_odds` from the other members, for instance under other limits.

@@ -1,12 +1,17 @@
 #include "host/core/pipeline/depth_stage.hpp"
 
 #include <cassert>
+#include <cmath>
+#include <limits>
+#include <span>
 
 #include "host/core/depth/depth_image.hpp"
 #include "host/core/self_filter/robot_filter.hpp"
 
 namespace octoskin {
 namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 DepthReason reason_of(DepthRejection rejection) {
     switch (rejection) {
@@ -31,9 +36,11 @@ DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned
       T_map_camera_(rig.T_map_base * camera_.T_base_camera),
       filter_(config.depth_filter),
       integrator_(config, camera_.intrinsics, threads) {
+    if (config.depth_update == DepthUpdate::denoised)
+        denoiser_.emplace(config.depth_denoiser, camera_.intrinsics);
     if (finds_certain)
-        certain_.emplace(camera_.intrinsics, CertaintyConfig{.camera_sigma_m = config.depth_filter.sigma_m,
-                                                             .is_filtered = config.depth_filter.is_enabled});
+        certain_.emplace(camera_.intrinsics, CertaintyConfig{.camera_sigma_m = config.camera_sigma_m(),
+                                                             .is_filtered = config.removes_camera_noise()});
 }
 
 std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot,
@@ -45,6 +52,76 @@ std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& rob
         capsule.p_b = T_camera_base * capsule.p_b;
     }
     return remove_robot(image, integrator_.pixel_rays(), body_camera_, self_margin_m_);
+}
+
+std::uint64_t DepthStage::filter(DepthImage& image, const DepthFrame& frame, const RobotPose* robot) {
+    if (config_.depth_filter.is_enabled) filter_.filter(image);
+    if (certain_) seen_.everything = image;
+    return needs_robot() ? take_robot_out(image, *robot, T_base_camera_of(frame)) : 0;
+}
+
+/// The robot is removed first: so the memory keeps what is behind it while it passes.
+std::uint64_t DepthStage::denoise(DepthImage& image, const DepthFrame& frame, const RobotPose* robot) {
+    const auto memory =
+        is_from_same_place(frame) ? DepthDenoiser::Memory::used : DepthDenoiser::Memory::of_other_place;
+    const std::uint64_t robot_pixels =
+        needs_robot() ? take_robot_out(image, *robot, T_base_camera_of(frame)) : 0;
+    if (!certain_) {
+        denoiser_->denoise(image, memory);
+        return robot_pixels;
+    }
+    std::vector<float>& everything_m = seen_.everything.depth_m;
+    seen_.everything = raw_;
+    for (std::size_t i = 0; i < everything_m.size(); ++i)
+        if (!std::isnan(image.depth_m[i])) everything_m[i] = kNone;
+    denoiser_->denoise(image, memory);
+    for (std::size_t i = 0; i < everything_m.size(); ++i)
+        if (std::isnan(everything_m[i])) everything_m[i] = image.depth_m[i];
+    return robot_pixels;
+}
+
+bool DepthStage::is_from_same_place(const DepthFrame& frame) const {
+    return T_map_camera_before_ && T_map_camera_before_->matrix() == T_map_camera_of(frame).matrix();
+}
+
+void DepthStage::keep(const DepthFrame& frame) {
+    if (!denoiser_) return;
+    if (!is_from_same_place(frame)) ends_.forget();
+    ends_.keep(integrator_.rays());
+    denoiser_->keep();
+    T_map_camera_before_ = T_map_camera_of(frame);
+}
+
+std::optional<CameraMemory> DepthStage::memory() const {
+    if (!denoiser_ || !T_map_camera_before_) return std::nullopt;
+    CameraMemory memory{.width = denoiser_->width(),
+                        .height = denoiser_->height(),
+                        .T_map_camera = *T_map_camera_before_,
+                        .pixels = {}};
+    const std::span<const EndMemory::End> ends = ends_.ends();
+    assert(ends.size() == std::size_t{memory.width} * memory.height);
+    memory.pixels.reserve(ends.size());
+    for (std::uint32_t v = 0; v < memory.height; ++v)
+        for (std::uint32_t u = 0; u < memory.width; ++u)
+            memory.pixels.push_back({denoiser_->pixel(u, v), ends[memory.pixels.size()]});
+    return memory;
+}
+
+bool DepthStage::resume_with(const CameraMemory& memory) {
+    assert(memory.pixels.size() == std::size_t{memory.width} * memory.height);
+    const bool is_own = denoiser_ && memory.width == denoiser_->width() &&
+                        memory.height == denoiser_->height() &&
+                        memory.T_map_camera.matrix() == T_map_camera_.matrix();
+    if (!is_own) return false;
+    std::vector<EndMemory::End> ends;
+    ends.reserve(memory.pixels.size());
+    for (const CameraMemory::Pixel& pixel : memory.pixels) ends.push_back(pixel.end);
+    for (std::uint32_t v = 0; v < memory.height; ++v)
+        for (std::uint32_t u = 0; u < memory.width; ++u)
+            denoiser_->set_pixel(u, v, memory.pixels[std::size_t{v} * memory.width + u].depth);
+    ends_.resume_with(std::move(ends));
+    T_map_camera_before_ = memory.T_map_camera;
+    return true;
 }
 
 Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, const RobotPose* robot) {
@@ -60,19 +137,16 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
     if (certain_) {
         raw_ = image;
     }
-    if (config_.depth_filter.is_enabled) {
-        filter_.filter(image);
-    }
-    const Eigen::Isometry3d T_base_camera =
-        frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_base_camera;
-    if (certain_) {
-        seen_.everything = image;
-    }
-    const std::uint64_t robot_pixels = needs_robot() ? take_robot_out(image, *robot, T_base_camera) : 0;
-    Result<DepthUpdates, DepthRejection> updates = integrator_.integrate(image, T_map_camera_of(frame));
+    const std::uint64_t robot_pixels = denoiser_ ? denoise(image, frame, robot) : filter(image, frame, robot);
+    const bool is_moving = denoiser_ && frame.T_map_camera;
+    Result<DepthUpdates, DepthRejection> updates =
+        integrator_.integrate(image, T_map_camera_of(frame),
+                              is_moving ? std::optional(config_.moving_miss_log_odds) : std::nullopt);
     if (!updates) {
         return unexpected(reason_of(updates.error()));
     }
+    if (denoiser_ && is_from_same_place(frame))
+        ends_.find(integrator_.rays(), denoiser_->restarted(), updates->terms, updates->retracted);
     if (certain_) {
         certain_->find(raw_, seen_.everything, seen_.certainty);
         seen_.world = std::move(image);

@@ -9,10 +9,13 @@
 #include "host/core/beams/robot_pose.hpp"
 #include "host/core/cross_check/certain_pixels.hpp"
 #include "host/core/cross_check/cross_check.hpp"
+#include "host/core/depth/depth_denoiser.hpp"
 #include "host/core/depth/depth_filter.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/reasons.hpp"
+#include "host/core/mapping/camera_memory.hpp"
 #include "host/core/mapping/depth_integrator.hpp"
+#include "host/core/mapping/end_memory.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/rig/host_rig.hpp"
 
@@ -30,6 +33,17 @@ class DepthStage {
 
     /// `robot`: at the frame's capture time; may be null unless `needs_robot()`.
     [[nodiscard]] Result<DepthUpdates, DepthReason> updates(const DepthFrame& frame, const RobotPose* robot);
+    /// The frame that gave the last updates goes into the map: the next ones build on it. Frames that do not
+    /// leave no trace. Throws std::bad_alloc the first time.
+    void keep(const DepthFrame& frame);
+    /// What the next frame builds on; empty if the update has no memory or no frame was kept. Another thread
+    /// may be in `updates`, which does not change it, but not in `keep`. O(pixels). Throws std::bad_alloc.
+    [[nodiscard]] std::optional<CameraMemory> memory() const;
+    /// Continues from this memory, of as many pixels as its size says (asserted). False: nothing is changed,
+    /// because the update has no memory, or the rig's camera has another size or pose. Throws std::bad_alloc.
+    [[nodiscard]] bool resume_with(const CameraMemory& memory);
+    /// The next frame builds on nothing.
+    void forget() noexcept { T_map_camera_before_.reset(); }
 
     [[nodiscard]] const HostCamera& camera() const noexcept { return camera_; }
     /// Images of the newest frame that gave updates, for the comparison with range sensors; only if
@@ -54,6 +68,13 @@ class DepthStage {
     [[nodiscard]] const DepthPixelCounts& pixels() const noexcept { return pixels_; }
 
   private:
+    /// Each of the two removes noise and the robot; returns the number of the robot's pixels.
+    [[nodiscard]] std::uint64_t filter(DepthImage& image, const DepthFrame& frame, const RobotPose* robot);
+    [[nodiscard]] std::uint64_t denoise(DepthImage& image, const DepthFrame& frame, const RobotPose* robot);
+    [[nodiscard]] bool is_from_same_place(const DepthFrame& frame) const;
+    [[nodiscard]] Eigen::Isometry3d T_base_camera_of(const DepthFrame& frame) const {
+        return frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_base_camera;
+    }
     /// Returns the number of removed pixels.
     [[nodiscard]] std::uint64_t take_robot_out(DepthImage& image, const RobotPose& robot,
                                                const Eigen::Isometry3d& T_base_camera);
@@ -64,7 +85,10 @@ class DepthStage {
     Eigen::Isometry3d T_map_base_;
     Eigen::Isometry3d T_map_camera_;  ///< for a frame without its own camera pose
     DepthFilter filter_;
+    std::optional<DepthDenoiser> denoiser_;
+    std::optional<Eigen::Isometry3d> T_map_camera_before_;  ///< of the last frame that was kept
     DepthIntegrator integrator_;
+    EndMemory ends_;
     std::vector<PosedCapsule> body_camera_;
     std::optional<CertainPixels> certain_;
     DepthImage raw_;

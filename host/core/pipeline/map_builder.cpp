@@ -94,8 +94,8 @@ MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams
         depth_stage_.emplace(rig, mapping, depth_threads, compares);
     }
     if (compares) {
-        cross_check_.emplace(rig, CrossCheckConfig{.camera_sigma_m = mapping.depth_filter.sigma_m,
-                                                   .is_filtered = mapping.depth_filter.is_enabled});
+        cross_check_.emplace(rig, CrossCheckConfig{.camera_sigma_m = mapping.camera_sigma_m(),
+                                                   .is_filtered = mapping.removes_camera_noise()});
         refuses_contradicting_ = mapping.refuses_contradicting_sensors;
     }
 }
@@ -105,11 +105,13 @@ void MapBuilder::begin_with(FusedMap map) {
     own_map() = std::move(map);
 }
 
-std::size_t MapBuilder::begin_with(MapState state) {
+MapBuilder::LeftOut MapBuilder::begin_with(MapState state) {
+    if (depth_stage_) depth_stage_->forget();
+    const bool is_camera_taken = !state.camera || (depth_stage_ && depth_stage_->resume_with(*state.camera));
     begin_with(std::move(state.map));
-    const std::size_t left_out = leave_out_others(state.histories, beams_);
+    const std::size_t zones = leave_out_others(state.histories, beams_);
     ranges_.resume_with(std::move(state.histories));
-    return left_out;
+    return {.zones = zones, .is_camera = !is_camera_taken};
 }
 
 void MapBuilder::wait(std::int64_t seconds) {
@@ -233,7 +235,10 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
 }
 
 void MapBuilder::add_depth(const DepthWork& depth) {
-    MapFeeder(maps_, depth.frame.captured, nullptr, listener_).apply(depth.updates->terms, nullptr);
+    depth_stage_->keep(depth.frame);
+    MapFeeder feeder(maps_, depth.frame.captured, nullptr, listener_);
+    if (!depth.updates->retracted.empty()) feeder.apply(depth.updates->retracted, nullptr);
+    feeder.apply(depth.updates->terms, nullptr);
     if (cross_check_) {
         depth_stage_->swap_images(seen_);
         cross_check_->on_depth(seen_, depth_stage_->T_map_camera_of(depth.frame), depth.frame.captured);

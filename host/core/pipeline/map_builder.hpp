@@ -42,15 +42,26 @@ class MapBuilder {
     /// The map of all sensors (asserted: it exists) continues from `map`, which must have the mapping's
     /// resolution (asserted).
     void begin_with(FusedMap map);
-    /// The same, with the sensors' histories: for an equal rig and mapping, later inputs have the same effect
-    /// as in the builder that the state comes from. Returns the number of zones whose history was dropped,
-    /// because this rig does not have them or their optics differ. O(readings).
-    [[nodiscard]] std::size_t begin_with(MapState state);
+    /// What of a state was dropped, because this rig is another.
+    struct LeftOut {
+        std::size_t zones = 0;   ///< that this rig does not have, or with other optics
+        bool is_camera = false;  ///< its camera has another size or pose
+        friend bool operator==(const LeftOut&, const LeftOut&) = default;
+    };
+    /// The same, with the memory of the sensors and of the camera: for an equal rig and mapping, later inputs
+    /// have the same effect as in the builder that the state comes from. O(readings + pixels). Throws
+    /// std::bad_alloc.
+    [[nodiscard]] LeftOut begin_with(MapState state);
     /// The complete state of the map of all sensors, except the joint samples (`for_each_joint_sample`). A
-    /// copy: O(sensors). Throws std::bad_alloc.
-    [[nodiscard]] MapState state() const { return {map().copy(), ranges_.histories()}; }
+    /// copy: O(sensors + pixels). While a frame is in work, the state is that before the frame. Throws
+    /// std::bad_alloc.
+    [[nodiscard]] MapState state() const { return {map().copy(), ranges_.histories(), camera_memory()}; }
     /// The sensors' histories of that state. Throws std::bad_alloc.
     [[nodiscard]] SensorHistories histories() const { return ranges_.histories(); }
+    /// The camera's part of that state: DepthStage::memory.
+    [[nodiscard]] std::optional<CameraMemory> camera_memory() const {
+        return depth_stage_ ? depth_stage_->memory() : std::nullopt;
+    }
     /// The map of all sensors waits for its next measurement: FusedMap::begin_to_wait. A replay does not
     /// reproduce this: call it after `clear_motion`.
     void begin_to_wait() noexcept { own_map().begin_to_wait(); }
@@ -76,7 +87,7 @@ class MapBuilder {
 
     /// The same in three steps, so that another thread can run the second, which takes most of the time. One
     /// frame at a time. Between the first and the last step, readings and joint samples may be added, and
-    /// `depth_stage()` may be used for its camera only.
+    /// `depth_stage()` may be used for its camera and its memory only.
     struct DepthWork {
         DepthFrame frame;
         std::optional<RobotPose> robot;  ///< at the frame's time, if the frame requires it

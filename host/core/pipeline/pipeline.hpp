@@ -68,8 +68,10 @@ class Pipeline {
 
     /// The fused map continues from `fused`, which must have the mapping's resolution (asserted).
     void begin_with(FusedMap fused) { builder_.begin_with(std::move(fused)); }
-    /// The same with the sensors' histories: MapBuilder::begin_with.
-    [[nodiscard]] std::size_t begin_with(MapState state) { return builder_.begin_with(std::move(state)); }
+    /// The same with the memory of sensors and camera: MapBuilder::begin_with.
+    [[nodiscard]] MapBuilder::LeftOut begin_with(MapState state) {
+        return builder_.begin_with(std::move(state));
+    }
     /// Makes all of the fused map stale until it is seen again: FusedMap::clear_times.
     void clear_times() noexcept { builder_.clear_times(); }
     /// For a saved map that still waits for its first measurement: FusedMap::wait.

@@ -27,8 +27,10 @@ MappingConfig configuration_of(DepthUpdate depth_update) {
             return robust_mapping();
         case DepthUpdate::fast:
             return fast_mapping();
+        case DepthUpdate::denoised:
+            break;
     }
-    return fast_mapping();
+    return denoised_mapping();
 }
 
 /// Reads one key of `table` over the value that holds without it. A number of a map is stored in single
@@ -181,7 +183,7 @@ MappingConfig read_checked(const FilePlace& file) {
     }
     const std::vector<std::string_view> names = names_at_top();
     const Table top(document, "", names, paths_below_top());
-    MappingConfig config = fast_mapping();
+    MappingConfig config = denoised_mapping();
     if (top.find("base") != nullptr) config = configuration_of(top.choice("base", depth_update_words()));
     for (const std::string_view name : names) {
         const std::vector<std::string_view> keys = names_in(name);

@@ -15,12 +15,12 @@ namespace octoskin {
 /// The built-in configurations. `paper`: the paper's equations on noisy depth. `paper_noise_free_robot_seen`:
 /// the same with the robot left in the image; on depth without noise this matches what the paper's figures
 /// suggest. `fast`: depth filtered, each voxel looked up in the image. `robust`: depth filtered, each voxel
-/// decided by a vote of all beams that reach it.
-inline constexpr std::array<std::string_view, 4> kBuiltInMappings{"paper", "paper_noise_free_robot_seen",
-                                                                  "robust", "fast"};
+/// decided by a vote of all beams that reach it. `denoised`: depth averaged over time, any end is a hit.
+inline constexpr std::array<std::string_view, 5> kBuiltInMappings{"paper", "paper_noise_free_robot_seen",
+                                                                  "robust", "fast", "denoised"};
 
 /// The configuration used if none is named.
-inline constexpr const char* kDefaultMapping = "fast";
+inline constexpr const char* kDefaultMapping = "denoised";
 
 /// `name_or_file`: a built-in name (write ./paper for a file of that name), or the path of a YAML file. A
 /// file starts from the configuration in its key `base` (default: kDefaultMapping) and overrides the keys it

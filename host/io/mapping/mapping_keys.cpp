@@ -10,8 +10,11 @@ namespace octoskin {
 namespace {
 
 /// The depth updates, each also the name of the configuration that is built round it.
-constexpr std::array<std::pair<std::string_view, DepthUpdate>, 3> kDepthUpdates{
-    {{"paper", DepthUpdate::paper}, {"robust", DepthUpdate::robust}, {"fast", DepthUpdate::fast}}};
+constexpr std::array<std::pair<std::string_view, DepthUpdate>, 4> kDepthUpdates{
+    {{"paper", DepthUpdate::paper},
+     {"robust", DepthUpdate::robust},
+     {"fast", DepthUpdate::fast},
+     {"denoised", DepthUpdate::denoised}}};
 constexpr std::array<std::pair<std::string_view, RangeUpdate>, 2> kRangeUpdates{
     {{"ray", RangeUpdate::ray}, {"cone", RangeUpdate::cone}}};
 
@@ -37,16 +40,19 @@ constexpr std::array kMappingKeys = {
                {0, 100},
                at<&MappingConfig::map, &MapConfig::log_odds_max>,
                "upper limit. A higher one needs more misses until a removed object is free"},
-    MappingKey{"map.log_odds_passed_max",
-               "log-odds",
-               {-100, 100},
-               at<&MappingConfig::map, &MapConfig::log_odds_passed_max>,
-               "limit for a voxel that all rays of an image pass: a removed object is free after 5 images"},
+    MappingKey{
+        "map.log_odds_passed_max",
+        "log-odds",
+        {-100, 100},
+        at<&MappingConfig::map, &MapConfig::log_odds_passed_max>,
+        "limit for a voxel that all rays of an image pass: a removed object is free after 8 images, with "
+        "1.5 after 5"},
     MappingKey{"map.log_odds_hit_min",
                "log-odds",
                {-100, 100},
                at<&MappingConfig::map, &MapConfig::log_odds_hit_min>,
-               "least value of a voxel that an image marks occupied: a new object is occupied after 2 or 3"},
+               "least value of a voxel that an image marks occupied: a new object is occupied at once, with "
+               "-0.4 after 2 or 3"},
     MappingKey{"map.log_odds_occupied",
                "log-odds",
                {-100, 100},
@@ -121,12 +127,14 @@ constexpr std::array kMappingKeys = {
                at<&MappingConfig::depth_update>,
                "[effect of an image on a voxel](concepts/sensor-models.md#depth-images). `paper`: one term, "
                "the largest hit before any miss. `robust`: the mean of the terms of its beams. `fast`: the "
-               "mean over the rays around its centre, at least 0 where a ray ends"},
-    MappingKey{"depth_filter.is_enabled",
-               "",
-               {},
-               at<&MappingConfig::depth_filter, &DepthFilterConfig::is_enabled>,
-               "filters the image first; recommended with every `depth_update` but `paper`"},
+               "mean over the rays around its centre, at least 0 where a ray ends. `denoised`: as `paper`, "
+               "of images averaged over time"},
+    MappingKey{
+        "depth_filter.is_enabled",
+        "",
+        {},
+        at<&MappingConfig::depth_filter, &DepthFilterConfig::is_enabled>,
+        "filters the image first; recommended with `robust` and `fast`, without effect with `denoised`"},
     MappingKey{"depth_filter.window_px",
                "pixels",
                {1, 7},
@@ -152,6 +160,63 @@ constexpr std::array kMappingKeys = {
                {0, 48},
                at<&MappingConfig::depth_filter, &DepthFilterConfig::min_support>,
                "no value if no more than these remain; below `window_px`², the centre included"},
+    MappingKey{"depth_denoiser.noise_m",
+               "m",
+               {1e-4, 1},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::noise, &DepthNoiseLaw::constant_m>,
+               "with `depth_update: denoised`: the camera's noise, one standard deviation of a pixel at "
+               "`noise_from_m`"},
+    MappingKey{
+        "depth_denoiser.noise_per_m",
+        "1/m",
+        {0, 1},
+        at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::noise, &DepthNoiseLaw::quadratic_per_m>,
+        "its growth with the square of the distance from `noise_from_m`; 0.0019 for a Kinect"},
+    MappingKey{"depth_denoiser.noise_from_m",
+               "m",
+               {0, 10},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::noise, &DepthNoiseLaw::from_m>,
+               "see `noise_per_m`"},
+    MappingKey{"depth_denoiser.gate_sigmas",
+               "sigmas",
+               {0.1, 100},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::gate_sigmas>,
+               "a value further from its pixel's mean is held back; two in a row begin a new mean"},
+    MappingKey{"depth_denoiser.step_sigmas",
+               "sigmas",
+               {0.1, 100},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::step_sigmas>,
+               "so does a step of the pixels around it that is larger"},
+    MappingKey{"depth_denoiser.drift_sigmas",
+               "sigmas",
+               {0.1, 100},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::drift_sigmas>,
+               "and a running mean of their steps that is larger"},
+    MappingKey{"depth_denoiser.drift_memory",
+               "",
+               {0, 0.99},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::drift_memory>,
+               "what this running mean keeps of itself from image to image"},
+    MappingKey{"depth_denoiser.count_max",
+               "images",
+               {1, 10000},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::count_max>,
+               "a mean weighs at most as much"},
+    MappingKey{"depth_denoiser.pair_sigmas",
+               "sigmas",
+               {0.1, 100},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::pair_sigmas>,
+               "opposite pixels of the 5 x 5 around a pixel that agree with it within this are averaged"},
+    MappingKey{"depth_denoiser.min_support",
+               "pixels",
+               {0, 24},
+               at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::support_min>,
+               "a pixel with fewer further values and agreeing pixels has no value"},
+    MappingKey{"moving_miss_log_odds",
+               "log-odds",
+               {-100, 0},
+               at<&MappingConfig::moving_miss_log_odds>,
+               "with `depth_update: denoised`: in place of `miss_log_odds` for images of a moving camera"},
     MappingKey{"range_update",
                "",
                {},
@@ -360,7 +425,7 @@ constexpr std::array kMappingKeys = {
                {1000, 1073741824},
                at<&MappingConfig::depth_box_voxels_max>,
                "an image whose rays span a larger box is refused (`box_too_large`). 1 byte each with "
-               "`paper`, 8 with `robust`, 1 bit with `fast` for each of its threads"},
+               "`paper` and `denoised`, 8 with `robust`, 1 bit with `fast` for each of its threads"},
 };
 
 template <class Words>

@@ -9,7 +9,7 @@ namespace octoskin::snapshot {
 namespace {
 
 constexpr std::array<std::string_view, kBlockKinds> kTags{"HEAD", "LOGO", "PRIO", "MISS", "HITS",
-                                                          "AGES", "CONF", "SEEN", "DONE"};
+                                                          "AGES", "CONF", "SEEN", "CAMR", "DONE"};
 constexpr std::size_t kTagBytes = 4;
 /// Kind, number and length.
 constexpr std::size_t kHeadBytes = kTagBytes + 2 * sizeof(std::uint32_t);

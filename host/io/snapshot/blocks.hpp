@@ -14,13 +14,24 @@ namespace octoskin::snapshot {
 
 /// The beginning of the file: 16 bytes, the last of which is the version.
 inline constexpr std::string_view kMagic = "octoskin-state/2";
-/// Limit of a block's bytes. The record of a brick has at most 2.1 kB, that of a zone's readings far less
-/// than this limit.
+/// Limit of a block's bytes. The record of a brick has at most 2.1 kB, that of a row of a camera 86 kB, that
+/// of a zone's readings far less than this limit.
 inline constexpr std::size_t kPayloadMax = std::size_t{16} << 20U;
 
 /// In their order in a file.
-enum class BlockKind : std::uint8_t { head, log_odds, prior, misses, hits, ages, confirmed, seen, done };
-inline constexpr std::size_t kBlockKinds = 9;
+enum class BlockKind : std::uint8_t {
+    head,
+    log_odds,
+    prior,
+    misses,
+    hits,
+    ages,
+    confirmed,
+    seen,
+    camera,
+    done
+};
+inline constexpr std::size_t kBlockKinds = 10;
 /// Four characters.
 [[nodiscard]] std::string_view tag_of(BlockKind kind) noexcept;
 

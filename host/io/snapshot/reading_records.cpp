@@ -7,6 +7,7 @@
 #include "host/core/beams/beam_limits.hpp"
 #include "host/core/mapping/beam_rejection.hpp"
 #include "host/core/mapping/confirmed_ranges.hpp"
+#include "host/io/snapshot/matrices.hpp"
 
 namespace octoskin::snapshot {
 namespace {
@@ -23,17 +24,6 @@ BeamSource get_source(ByteReader& reader) {
     source.sensor = reader.get<std::uint8_t>();
     source.zone = reader.get<std::uint8_t>();
     return source;
-}
-
-/// Column by column.
-template <class Matrix>
-void put_matrix(ByteWriter& writer, const Matrix& matrix) {
-    for (Eigen::Index i = 0; i < matrix.size(); ++i) writer.put(*(matrix.data() + i));
-}
-
-template <class Matrix>
-void get_matrix(ByteReader& reader, Matrix& matrix) {
-    for (Eigen::Index i = 0; i < matrix.size(); ++i) *(matrix.data() + i) = reader.get<double>();
 }
 
 /// Without its source, which the record contains.

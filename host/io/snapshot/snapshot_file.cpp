@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "host/io/mapfile/whole_file.hpp"
+#include "host/io/snapshot/camera_records.hpp"
 
 namespace octoskin {
 namespace {
@@ -15,7 +16,8 @@ namespace {
 /// Log-odds, counts and times need less than twice the share of the log-odds (`bytes_needed`), also if a
 /// daemon continues with less memory than before; readings need far less than the rest.
 std::uint64_t file_bytes_max_of(const MapConfig& config) {
-    return (std::uint64_t{config.memory_max_mib} << 21U) + (std::uint64_t{64} << 20U);
+    return (std::uint64_t{config.memory_max_mib} << 21U) + (std::uint64_t{64} << 20U) +
+           snapshot::kPixelBytesMax * snapshot::kCameraPixelsMax;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "host/io/snapshot/blocks.hpp"
 #include "host/io/snapshot/brick_records.hpp"
+#include "host/io/snapshot/camera_records.hpp"
 #include "host/io/snapshot/reading_records.hpp"
 #include "host/io/snapshot/snapshot.hpp"
 
@@ -93,7 +94,7 @@ class Decoder {
         }
         if (!blocks_.is_over()) return fail(ErrorCode::damaged, blocks_.at(), "bytes after the end");
         FusedMap map(mapping_.map, std::move(layers_), has_undated_);
-        return Snapshot{origin_, {std::move(map), std::move(histories_)}};
+        return Snapshot{origin_, {std::move(map), std::move(histories_), camera_.memory()}};
     }
 
   private:
@@ -128,6 +129,8 @@ class Decoder {
                 return records(block, readings_.take_confirmed(block.payload, mapping_.standing));
             case BlockKind::seen:
                 return records(block, readings_.take_seen(block.payload));
+            case BlockKind::camera:
+                return records(block, camera_.take(block.payload));
             case BlockKind::done:
                 return take_done(block);
         }
@@ -179,8 +182,8 @@ class Decoder {
         bool are_all = true;
         for (const std::uint64_t there : are) are_all = reader.get<std::uint64_t>() == there && are_all;
         is_done_ = true;
-        return records(block,
-                       are_all && reader.is_sound() && reader.is_over() && are_of_one_layer(layers_.counts));
+        return records(block, are_all && reader.is_sound() && reader.is_over() &&
+                                  are_of_one_layer(layers_.counts) && camera_.is_complete());
     }
 
     [[nodiscard]] std::size_t bytes_max() const noexcept {
@@ -200,6 +203,7 @@ class Decoder {
     StampTree stamps_;
     SensorHistories histories_;
     ReadingsTaker readings_{histories_};
+    CameraTaker camera_{mapping_};
     BrickTaker<float> log_odds_{layers_.log_odds, bytes_max()};
     BrickTaker<float> prior_{layers_.counts.prior, bytes_max()};
     BrickTaker<float> misses_{layers_.counts.misses, bytes_max()};

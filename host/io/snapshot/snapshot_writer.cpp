@@ -1,5 +1,6 @@
 #include "host/io/snapshot/blocks.hpp"
 #include "host/io/snapshot/brick_records.hpp"
+#include "host/io/snapshot/camera_records.hpp"
 #include "host/io/snapshot/reading_records.hpp"
 #include "host/io/snapshot/snapshot.hpp"
 
@@ -51,6 +52,7 @@ void write_snapshot(const MapState& state, const SnapshotOrigin& origin, const B
     put_bricks(blocks, BlockKind::hits, layers.counts.hits);
     put_bricks(blocks, BlockKind::ages, layers.ages.stamps());
     put_readings(blocks, state.histories);
+    if (state.camera) put_camera(blocks, *state.camera);
     blocks.add(BlockKind::done, [&](ByteWriter& writer, bool) { put_done(writer, state); });
     blocks.finish();
 }

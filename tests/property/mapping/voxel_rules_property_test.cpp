@@ -67,6 +67,9 @@ class VoxelByVoxel {
                     [](DatedVoxel&, float) {});
             case EvidenceRule::clear:
                 return clear(evidence, spares);
+            case EvidenceRule::retract:
+                return for_each(
+                    evidence, [&](DatedVoxel& voxel) { retract(voxel); }, [](DatedVoxel&, float) {});
         }
     }
 
@@ -148,6 +151,11 @@ class VoxelByVoxel {
         };
         for_each(evidence, mark, [](DatedVoxel&, float) {});
     }
+    void retract(DatedVoxel& voxel) const {
+        rules_.retract(voxel.state);
+        const bool has_counts = voxel.state.hits > 0.0F || voxel.state.misses > 0.0F;
+        if (std::isnan(voxel.state.log_odds) && !has_counts) voxel = {};
+    }
     void clear(const Evidence& evidence, const std::function<bool(VoxelKey)>& spares) {
         for (const BrickEvidence& brick : evidence.bricks) {
             for_each_cell(brick.voxels, [&](std::size_t cell) {
@@ -173,10 +181,11 @@ class RandomEvidence {
 
     [[nodiscard]] Evidence next(bool withdraws) {
         Evidence evidence;
-        evidence.rule = static_cast<EvidenceRule>(below(6));
+        evidence.rule = static_cast<EvidenceRule>(below(7));
         if (evidence.rule == EvidenceRule::withdraw && !withdraws) evidence.rule = EvidenceRule::counts;
         const bool is_image = evidence.rule == EvidenceRule::image;
-        evidence.sensor = is_image ? SensorKind::camera : SensorKind::range;
+        const bool is_of_camera = is_image || evidence.rule == EvidenceRule::retract;
+        evidence.sensor = is_of_camera ? SensorKind::camera : SensorKind::range;
         if (evidence.rule == EvidenceRule::terms && below(4) == 0)
             evidence.sensor = below(2) == 0 ? SensorKind::camera : SensorKind::none;
         evidence.prefers_occupied = below(2) == 0;

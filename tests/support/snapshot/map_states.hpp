@@ -86,9 +86,10 @@ class MeasuredMap {
     OneMap sink_{map_};
 };
 
-/// A configuration in which voxels become stale or expire within seconds.
+/// A configuration in which voxels become stale or expire within seconds, and the camera has a memory.
 [[nodiscard]] inline MappingConfig quickly_aging() {
     MappingConfig mapping = fast_mapping();
+    mapping.depth_update = DepthUpdate::denoised;
     mapping.map.age = {.stale_after_s = 4, .unknown_after_s = 9};
     mapping.map.memory_max_mib = 4;
     return mapping;

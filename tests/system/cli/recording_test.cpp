@@ -161,7 +161,7 @@ TEST_F(Recording, another_robot_rig_and_world_need_no_rebuild) {
 }
 
 TEST_F(Recording, the_experiment_leaves_maps_metrics_a_recording_and_a_report) {
-    const Said said = octoskin("experiment --seeds 0 1 --jobs 2 --configurations fast paper --out " +
+    const Said said = octoskin("experiment --seeds 0 1 --jobs 2 --configurations denoised paper --out " +
                                path("out") + " --rig " + source("tests/data/short/rig.yaml") +
                                " --scenario " + source("tests/data/short/scenario.yaml"));
     ASSERT_EQ(said.exit_code, 0) << said.output;
@@ -171,7 +171,7 @@ TEST_F(Recording, the_experiment_leaves_maps_metrics_a_recording_and_a_report) {
         }
     }
     const auto metrics = nlohmann::json::parse(content(path("out/metrics.json")));
-    for (const char* configuration : {"fast", "paper"}) {
+    for (const char* configuration : {"denoised", "paper"}) {
         for (const char* map : {"depth", "proximity", "fused"}) {
             for (const char* metric : {"occupied", "free", "missed", "incorrect", "lost", "precision",
                                        "recall", "f1", "iou", "occluded_recall", "object_recall"}) {

@@ -41,7 +41,7 @@ class Restarting : public testing::Test {
                     layers.known_voxels += kBrickVoxels;
                 }
         layers.ages = VoxelAges(clock, std::move(stamps));
-        return {fast_mapping().map, std::move(layers), false};
+        return {denoised_mapping().map, std::move(layers), false};
     }
     static std::uint32_t placement_of(const std::filesystem::path& rig_file) {
         const auto rig = rig::read_rig(rig_file);
@@ -51,7 +51,7 @@ class Restarting : public testing::Test {
     /// As a daemon of then would have left it.
     void save(const std::optional<BootTime>& map_time, const std::filesystem::path& rig = kExperiment) const {
         std::filesystem::create_directories(folder_ / "maps");
-        const std::string text = mapping_text(fast_mapping());
+        const std::string text = mapping_text(denoised_mapping());
         const SnapshotOrigin origin{
             .mapping_crc32 = crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}),
             .placement_crc32 = placement_of(rig),

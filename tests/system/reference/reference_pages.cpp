@@ -116,12 +116,12 @@ Tables counter_tables() {
 Tables mapping_tables() {
     Tables tables;
     for (const MappingKey& key : mapping_keys()) {
-        const std::string fast = value_text(key, fast_mapping());
+        const std::string denoised = value_text(key, denoised_mapping());
         const std::string paper = value_text(key, paper_mapping());
-        add_row(tables, "mapping keys",
-                "| Key | Unit | Expected | Default | Meaning |\n|---|---|---|---|---|",
-                fmt::format("| `{}` | {} | {} | {} | {} |", key.path, key.unit, expected_text(key),
-                            fast == paper ? fast : fmt::format("{} ({})", fast, paper), key.meaning));
+        add_row(
+            tables, "mapping keys", "| Key | Unit | Expected | Default | Meaning |\n|---|---|---|---|---|",
+            fmt::format("| `{}` | {} | {} | {} | {} |", key.path, key.unit, expected_text(key),
+                        denoised == paper ? denoised : fmt::format("{} ({})", denoised, paper), key.meaning));
     }
     return tables;
 }

@@ -68,7 +68,7 @@ TEST_F(AgeWiring, grows_older_while_a_saved_map_waits_and_says_so_to_a_listener)
     ASSERT_TRUE(builder.integrate(flat_frame(3.5)));
     MapState saved = builder.state();
     saved.map.begin_to_wait();
-    EXPECT_EQ(builder.begin_with(std::move(saved)), 0U);
+    EXPECT_EQ(builder.begin_with(std::move(saved)), MapBuilder::LeftOut{});
     Waits waits;
     builder.set_listener(&waits);
     for (const std::int64_t seconds : {0, 1, 1, 4}) builder.wait(seconds);

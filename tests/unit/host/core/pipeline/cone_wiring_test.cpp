@@ -145,7 +145,7 @@ TEST_F(StandingCone, goes_on_with_readings_of_zones_alone_that_the_rig_has_so) {
         ZoneHistory& zone = state.histories.begin()->second.zones.begin()->second;
         change_newest(zone.newest.front().beam);
         change_passage(zone.passages.front().beam);
-        const std::size_t left_out = builder_->begin_with(std::move(state));
+        const std::size_t left_out = builder_->begin_with(std::move(state)).zones;
         EXPECT_EQ(builder_->histories().size(), 1U - left_out);
         return left_out;
     };

@@ -45,7 +45,8 @@ Error error_of(const std::string& text) {
 TEST(MappingFile, knows_those_that_ship_by_name) {
     EXPECT_EQ(*read_mapping("paper"), paper_mapping());
     EXPECT_EQ(*read_mapping("fast"), fast_mapping());
-    EXPECT_EQ(*read_mapping(kDefaultMapping), fast_mapping());
+    EXPECT_EQ(*read_mapping("denoised"), denoised_mapping());
+    EXPECT_EQ(*read_mapping(kDefaultMapping), denoised_mapping());
     EXPECT_EQ(*read_mapping("robust"), robust_mapping());
     EXPECT_EQ(read_mapping("paper")->depth_update, DepthUpdate::paper);
     EXPECT_FALSE(read_mapping("paper")->depth_filter.is_enabled);
@@ -64,11 +65,14 @@ TEST(MappingFile, shipped_files_say_what_is_built_in) {
     const auto fast = read_mapping(folder + "fast.yaml");
     ASSERT_TRUE(fast.has_value()) << fast.error().message();
     EXPECT_EQ(*fast, fast_mapping());
+    const auto denoised = read_mapping(folder + "denoised.yaml");
+    ASSERT_TRUE(denoised.has_value()) << denoised.error().message();
+    EXPECT_EQ(*denoised, denoised_mapping());
 }
 
 /// With another `base`, so that every value has to come from the file itself.
 TEST(MappingFile, shipped_files_leave_nothing_out) {
-    for (const std::string name : {"paper", "robust", "fast"}) {
+    for (const std::string name : {"paper", "robust", "fast", "denoised"}) {
         std::string text = ScratchFolder::read(OCTOSKIN_SOURCE_DIR "/host/config/" + name + ".yaml");
         const std::string base = "base: " + name;
         ASSERT_NE(text.find(base), std::string::npos);
@@ -78,7 +82,7 @@ TEST(MappingFile, shipped_files_leave_nothing_out) {
 }
 
 TEST(MappingFile, starts_from_the_default_or_the_base_it_names_and_overrides_what_it_mentions) {
-    EXPECT_EQ(*read_text("{}"), fast_mapping());
+    EXPECT_EQ(*read_text("{}"), denoised_mapping());
     EXPECT_EQ(*read_text("base: robust"), robust_mapping());
     MappingConfig expected = paper_mapping();
     expected.map.resolution_m = 0.02;
@@ -99,6 +103,9 @@ TEST(MappingFile, reads_every_key) {
         "miss_log_odds: -0.5\ndepth_update: paper\n"
         "depth_filter: {is_enabled: false, window_px: 3, sigma_m: 0.01, gate_sigmas: 5, mean_sigmas: 2, "
         "min_support: 4}\n"
+        "depth_denoiser: {noise_m: 0.0025, noise_per_m: 0.0019, noise_from_m: 0.5, gate_sigmas: 4.5, "
+        "step_sigmas: 5.5, drift_sigmas: 2.5, drift_memory: 0.75, count_max: 33, pair_sigmas: 2.25, "
+        "min_support: 7}\nmoving_miss_log_odds: -0.125\n"
         "range_update: ray\n"
         "cone: {hit_range_max_m: 2, cap_half_thickness_m: 0.25, cap_sigmas: 1.5, core_weight_min: 0.75, "
         "core_margin_voxels: 0.125, hit_mass: 1.25, miss_mass: 0.625, cap_angle_share: 0.75}\n"
@@ -164,6 +171,15 @@ TEST(MappingFile, reads_every_key) {
                          .gate_sigmas = 5.0,
                          .mean_sigmas = 2.0,
                          .min_support = 4},
+        .depth_denoiser = {.noise = {.constant_m = 0.0025, .quadratic_per_m = 0.0019, .from_m = 0.5},
+                           .gate_sigmas = 4.5,
+                           .step_sigmas = 5.5,
+                           .drift_sigmas = 2.5,
+                           .drift_memory = 0.75,
+                           .count_max = 33,
+                           .pair_sigmas = 2.25,
+                           .support_min = 7},
+        .moving_miss_log_odds = -0.125F,
         .depth_range_max_m = 3.5,
         .removes_robot_from_depth = false,
         .removes_robot_from_ranges = false,
@@ -184,10 +200,10 @@ TEST(MappingFile, names_file_line_key_value_and_remedy) {
     EXPECT_THAT(error_of("\nno_return_clear_mm: 100\n"),
                 AllOf(code_is(ErrorCode::unknown_key), line_is(2), key_is("no_return_clear_mm")));
     for (const auto& [key, value] : {std::pair("depth_update", "best"), std::pair("base", "worst")})
-        EXPECT_THAT(
-            error_of(std::string(key) + ": " + value + "\n"),
-            AllOf(code_is(ErrorCode::unknown_word), line_is(1), key_is(key),
-                  what_is(HasSubstr("paper or robust or fast")), value_is("'" + std::string(value) + "'")));
+        EXPECT_THAT(error_of(std::string(key) + ": " + value + "\n"),
+                    AllOf(code_is(ErrorCode::unknown_word), line_is(1), key_is(key),
+                          what_is(HasSubstr("paper or robust or fast or denoised")),
+                          value_is("'" + std::string(value) + "'")));
     EXPECT_THAT(error_of("miss_log_odds: 0.4\n"), AllOf(code_is(ErrorCode::out_of_range), line_is(1),
                                                         key_is("miss_log_odds"), value_is("'0.4'")));
     EXPECT_THAT(error_of("depth_filter: {window_px: 4}\n"),
@@ -228,7 +244,8 @@ TEST(MappingFile, refuses_sensors_only_where_they_are_reported) {
                       what_is(HasSubstr("reports_contradicting_sensors"))));
     EXPECT_THAT(error_of("refuses_contradicting_sensors: true\n"), is_no_error());
     EXPECT_THAT(error_of("reports_contradicting_sensors: false\n"), is_no_error());
-    for (const MappingConfig& config : {paper_mapping(), robust_mapping(), fast_mapping()}) {
+    for (const MappingConfig& config :
+         {paper_mapping(), robust_mapping(), fast_mapping(), denoised_mapping()}) {
         EXPECT_TRUE(config.reports_contradicting_sensors);
         EXPECT_FALSE(config.refuses_contradicting_sensors);
     }
@@ -243,18 +260,19 @@ TEST(MappingFile, refuses_to_believe_one_reading_alone) {
 }
 
 TEST(MappingFile, refuses_a_filter_whose_window_has_too_few_pixels_for_any_value) {
-    EXPECT_THAT(error_of("depth_filter: {window_px: 1}\n"),
-                AllOf(code_is(ErrorCode::conflict), line_is(1), key_is("depth_filter.min_support"),
+    EXPECT_THAT(error_of("base: fast\ndepth_filter: {window_px: 1}\n"),
+                AllOf(code_is(ErrorCode::conflict), line_is(2), key_is("depth_filter.min_support"),
                       what_is(HasSubstr("at most 0 with window_px 1")), value_is("5")));
-    EXPECT_THAT(error_of("depth_filter:\n  window_px: 3\n  min_support: 9\n"),
-                AllOf(code_is(ErrorCode::conflict), line_is(3), key_is("depth_filter.min_support"),
+    EXPECT_THAT(error_of("base: fast\ndepth_filter:\n  window_px: 3\n  min_support: 9\n"),
+                AllOf(code_is(ErrorCode::conflict), line_is(4), key_is("depth_filter.min_support"),
                       what_is(HasSubstr("at most 8 with window_px 3")), value_is("9"),
                       remedy_is(AllOf(HasSubstr("window_px"), HasSubstr("is_enabled: false")))));
-    EXPECT_THAT(error_of("depth_filter: {min_support: 25}\n"),
+    EXPECT_THAT(error_of("base: fast\ndepth_filter: {min_support: 25}\n"),
                 AllOf(what_is(HasSubstr("its window has 25")), value_is("25")));
-    EXPECT_THAT(error_of("depth_filter: {window_px: 1, min_support: 0}\n"), is_no_error());
-    EXPECT_THAT(error_of("depth_filter: {window_px: 3, min_support: 8}\n"), is_no_error());
-    EXPECT_THAT(error_of("depth_filter: {is_enabled: false, window_px: 1}\n"), is_no_error());
+    EXPECT_THAT(error_of("base: fast\ndepth_filter: {window_px: 1, min_support: 0}\n"), is_no_error());
+    EXPECT_THAT(error_of("base: fast\ndepth_filter: {window_px: 3, min_support: 8}\n"), is_no_error());
+    EXPECT_THAT(error_of("base: fast\ndepth_filter: {is_enabled: false, window_px: 1}\n"), is_no_error());
+    EXPECT_THAT(error_of("depth_filter: {window_px: 1}\n"), is_no_error()) << "the default has no filter";
 }
 
 TEST(MappingFile, knows_a_number_in_quotes_one_with_a_comma_and_a_key_of_another_table) {
@@ -311,16 +329,16 @@ std::string expected_of(const std::string& path) {
 TEST(MappingFile, expects_of_each_key_what_the_table_of_keys_declares) {
     for (const MappingKey& key : mapping_keys())
         EXPECT_EQ(expected_of(std::string(key.path)), expected_text(key)) << key.path;
-    EXPECT_EQ(expected_of("base"), "paper or robust or fast");
+    EXPECT_EQ(expected_of("base"), "paper or robust or fast or denoised");
 }
 
 TEST(MappingFile, writes_each_key_of_the_table_once_and_no_other) {
-    const auto values = values_by_path(mapping_text(fast_mapping()));
-    EXPECT_EQ(values.size(), 65U);
-    EXPECT_EQ(mapping_keys().size(), 65U);
+    const auto values = values_by_path(mapping_text(denoised_mapping()));
+    EXPECT_EQ(values.size(), 76U);
+    EXPECT_EQ(mapping_keys().size(), 76U);
     for (const MappingKey& key : mapping_keys()) {
         ASSERT_TRUE(values.contains(std::string(key.path))) << key.path;
-        EXPECT_EQ(values.at(std::string(key.path)), value_text(key, fast_mapping())) << key.path;
+        EXPECT_EQ(values.at(std::string(key.path)), value_text(key, denoised_mapping())) << key.path;
     }
 }
 
@@ -335,7 +353,7 @@ std::string other_value(const MappingKey& key, const std::string& text) {
 }
 
 TEST(MappingFile, puts_the_value_of_each_key_into_the_place_that_is_written_under_it_and_no_other) {
-    const auto before = values_by_path(mapping_text(fast_mapping()));
+    const auto before = values_by_path(mapping_text(denoised_mapping()));
     std::size_t checked = 0;
     for (const MappingKey& key : mapping_keys()) {
         const std::string path(key.path);
@@ -351,7 +369,7 @@ TEST(MappingFile, puts_the_value_of_each_key_into_the_place_that_is_written_unde
         EXPECT_EQ(values_by_path(mapping_text(*read)), expected) << path;
         ++checked;
     }
-    EXPECT_GE(checked, 50U);
+    EXPECT_GE(checked, 60U);
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ MapBuilder make_builder(const Scene& scene, const std::string& first_state) {
             .value();
     auto first = decode_snapshot(first_state, scene.mapping, kMapping);
     EXPECT_TRUE(first) << first.error().what;
-    EXPECT_EQ(builder.begin_with(std::move(first->state)), 0U);
+    EXPECT_EQ(builder.begin_with(std::move(first->state)), MapBuilder::LeftOut{});
     return builder;
 }
 
@@ -151,7 +151,7 @@ TEST(OrderedReplay, gives_the_live_map_where_a_saved_one_waits_for_its_first_mea
     ASSERT_GT(saved.map.known_voxels(), 0U);
     saved.map.begin_to_wait();
     Pipeline pipeline = make_pipeline(scene);
-    EXPECT_EQ(pipeline.begin_with(std::move(saved)), 0U);
+    EXPECT_EQ(pipeline.begin_with(std::move(saved)), MapBuilder::LeftOut{});
     pipeline.wait(4);
     const std::string first = encode_snapshot(pipeline.builder().state(), {.mapping_crc32 = kMapping});
     Saver saver;

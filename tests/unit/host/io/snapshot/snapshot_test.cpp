@@ -196,11 +196,15 @@ TEST(Snapshot, is_refused_with_any_byte_changed_and_at_any_length) {
 
 /// A change of the format takes another version.
 TEST(Snapshot, is_what_it_was_byte_for_byte) {
-    const std::string kept =
-        ScratchFolder::read(std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/fuzz/corpus/snapshot/small");
-    const auto snapshot = decode(kept);
-    ASSERT_TRUE(snapshot) << snapshot.error().message();
-    EXPECT_TRUE(encode_snapshot(snapshot->state, snapshot->origin) == kept);
+    const std::filesystem::path corpus =
+        std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/fuzz/corpus/snapshot";
+    for (const std::string name : {"small", "camera"}) {
+        const std::string kept = ScratchFolder::read(corpus / name);
+        const auto snapshot = decode(kept);
+        ASSERT_TRUE(snapshot) << snapshot.error().message();
+        EXPECT_EQ(snapshot->state.camera.has_value(), name == "camera");
+        EXPECT_TRUE(encode_snapshot(snapshot->state, snapshot->origin) == kept);
+    }
 }
 
 /// Behind the checksums: what is accepted is the state of a map, which can be written and gone on with.
@@ -287,7 +291,7 @@ TEST(Snapshot, is_a_file_like_any_other) {
     const auto again = load_snapshot(file, quickly_aging(), kMapping);
     ASSERT_TRUE(again) << again.error().message();
     expect_equal(again->state, measured.state());
-    std::filesystem::resize_file(file, std::uintmax_t{73} << 20U);
+    std::filesystem::resize_file(file, std::uintmax_t{409} << 20U);
     EXPECT_EQ(load_snapshot(file, quickly_aging(), kMapping).error().code, ErrorCode::too_large);
 }
 

@@ -1,0 +1,82 @@
+// The arithmetic of DepthDenoiser for one row of an image.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace octoskin {
+
+/// DenoiserConfig and DepthNoiseLaw in single precision.
+struct DenoiserRule {
+    float sigma_m = 0.0F;
+    float sigma_per_m = 0.0F;  ///< of the squared distance from `sigma_from_m`
+    float sigma_from_m = 0.0F;
+    float gate_sigmas = 0.0F;
+    float step_sigmas = 0.0F;
+    float drift_sigmas = 0.0F;
+    float drift_memory = 0.0F;
+    float count_max = 0.0F;
+    float pair_sigmas = 0.0F;
+    float pair_slope = 0.0F;    ///< largest change of depth from pixel to pixel, as a share of the depth
+    float member_slope = 0.0F;  ///< the same for a single neighbour
+    float support_min = 0.0F;
+};
+
+/// Pixels on each side of a window's centre.
+inline constexpr std::size_t kDenoiserHalf = 2;
+inline constexpr std::size_t kDenoiserSide = 2 * kDenoiserHalf + 1;
+/// Upper limit of the values read or written behind a row's last pixel.
+inline constexpr std::size_t kDenoiserLanesMax = 64;
+
+/// What is remembered of the pixels of a row. A count of 0: no value yet. A negative count: the pixel's last
+/// value was outside the gate and is held back; the number of values is the absolute value.
+struct PixelMemoryRow {
+    float* mean_m = nullptr;
+    float* count = nullptr;
+    float* drift = nullptr;
+};
+
+/// The difference of each new value from the pixel's mean, in sigmas and limited to the gate; 0 for a pixel
+/// without both. `depth_m`: NaN or 0 for none. `known` is 1 for a pixel with both, else 0. Like all functions
+/// here: the same bits for every instruction set.
+void find_innovations(const DenoiserRule& rule, const float* depth_m, const PixelMemoryRow& memory,
+                      std::size_t width, float* innovations, float* known);
+
+/// Sums of five neighbours in a row. `values` begins two values before the first pixel.
+void sum_fives(const float* values, std::size_t width, float* sums);
+
+/// Row sums of innovations of the five rows around a row; null for a row outside the image.
+struct PooledRows {
+    const float* innovations[kDenoiserSide] = {};
+    const float* known[kDenoiserSide] = {};
+};
+
+/// Inverse depths, 1 / m, their variances and the reciprocals of those; NaN, 0 and 0 for a pixel without a
+/// value that counts.
+struct PosteriorRow {
+    float* inverse = nullptr;
+    float* variance = nullptr;
+    float* weight = nullptr;
+};
+
+/// Takes the new values into the memory, and writes the pixels' posterior, also of pixels without a new
+/// value. A value that is held back becomes 0 in `depth_m`. `restarted` is 1 for a pixel whose earlier values
+/// were dropped, else 0. `next` is other memory.
+void take_row(const DenoiserRule& rule, float* depth_m, const PooledRows& pooled,
+              const PixelMemoryRow& memory, const PixelMemoryRow& next, const PosteriorRow& posterior,
+              std::size_t width, std::uint8_t* restarted);
+
+/// The five rows around a row, each beginning two values before its first pixel.
+struct PosteriorRows {
+    const float* inverse[kDenoiserSide] = {};
+    const float* variance[kDenoiserSide] = {};
+    const float* weight[kDenoiserSide] = {};
+};
+
+/// Replaces the depth of each pixel that has one, metres: the weighted mean of its inverse depth and of those
+/// of the pairs of opposite pixels that agree with it. `count`: of the pixel's values, after take_row(). NaN
+/// without enough support. About 5 us for 512 pixels.
+void denoise_row(const DenoiserRule& rule, const PosteriorRows& rows, const float* count, std::size_t width,
+                 float* depth_m);
+
+}  // namespace octoskin

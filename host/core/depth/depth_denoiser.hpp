@@ -1,0 +1,104 @@
+// Removes the noise of a depth camera: the mean of each pixel over time, then the mean of the pixels of one
+// surface around it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "host/core/depth/denoised_row.hpp"
+#include "host/core/depth/depth_frame.hpp"
+#include "host/core/depth/noise_law.hpp"
+
+namespace octoskin {
+
+/// Over time: the mean of a pixel's values, each within `gate_sigmas` of it. One value outside is held back,
+/// the second in a row begins a new mean. So does a step or a drift of the 5 x 5 pixels around it: the sum of
+/// their differences in sigmas, divided by the root of their number, beyond `step_sigmas`; or its running
+/// mean, which keeps `drift_memory` of itself, beyond `drift_sigmas`.
+///
+/// Over space: pairs of opposite pixels of the 5 x 5 window whose mean inverse depth agrees with the
+/// centre's within `pair_sigmas`. The mean of a pair on a plane is the centre's value, whatever the slope: so
+/// slopes are kept, and pixels beyond an edge do not agree. A pixel is dropped if its further values and the
+/// pixels that agree with it are fewer than `support_min`: a value at an edge, between two surfaces.
+struct DepthDenoiserConfig {
+    DepthNoiseLaw noise;
+    double gate_sigmas = 3.5;
+    double step_sigmas = 3.5;
+    double drift_sigmas = 1.6;
+    double drift_memory = 0.6;
+    std::uint32_t count_max = 100;
+    double pair_sigmas = 3.0;
+    std::uint32_t support_min = 3;
+    friend bool operator==(const DepthDenoiserConfig&, const DepthDenoiserConfig&) = default;
+};
+
+/// What is known of a camera's pixels from earlier images, row by row with a margin (DepthDenoiser).
+struct PixelMemory {
+    std::vector<float> mean_m;
+    std::vector<float> count;  ///< see PixelMemoryRow
+    std::vector<float> drift;
+};
+
+/// Takes the images of one camera in the order of their capture. Allocates no memory after its construction.
+class DepthDenoiser {
+  public:
+    /// Sigmas and counts positive, the noise at least 0.1 mm (asserted).
+    DepthDenoiser(const DepthDenoiserConfig& config, const CameraIntrinsics& camera);
+
+    /// Whether an image was captured from the same place as those in the memory.
+    enum class Memory : std::uint8_t { used, of_other_place };
+    /// Denoises an image of the camera's size (asserted) in place; NaN: no value. The memory is as before
+    /// until `keep`. About 2 ms for 512 x 424.
+    void denoise(DepthImage& image, Memory memory);
+    /// The last image becomes part of the memory, or replaces one of another place.
+    void keep() noexcept { std::swap(memory_, next_); }
+
+    /// Row-major; 1 for each pixel of the last image whose earlier values were dropped because its surface
+    /// has changed, else 0.
+    [[nodiscard]] std::span<const std::uint8_t> restarted() const noexcept { return restarted_; }
+
+    /// What is remembered of a pixel (PixelMemoryRow).
+    struct Pixel {
+        float mean_m = 0.0F;
+        float count = 0.0F;
+        float drift = 0.0F;
+        friend bool operator==(const Pixel&, const Pixel&) = default;
+    };
+    [[nodiscard]] Pixel pixel(std::uint32_t u, std::uint32_t v) const noexcept;
+    void set_pixel(std::uint32_t u, std::uint32_t v, const Pixel& pixel) noexcept;
+    [[nodiscard]] std::uint32_t width() const noexcept { return width_; }
+    [[nodiscard]] std::uint32_t height() const noexcept { return height_; }
+
+  private:
+    [[nodiscard]] std::size_t begin_of(std::size_t row) const noexcept {
+        return row * stride_ + kDenoiserHalf;
+    }
+    [[nodiscard]] static PixelMemoryRow row_of(PixelMemory& memory, std::size_t begin) noexcept;
+    void frame(const DepthImage& image);
+    void pool(Memory memory);
+    void take(Memory memory);
+    [[nodiscard]] PixelMemoryRow remembered(Memory memory, std::size_t begin) noexcept;
+
+    DenoiserRule rule_;
+    std::uint32_t width_;
+    std::uint32_t height_;
+    std::size_t stride_;
+    PixelMemory memory_;
+    PixelMemory next_;
+    std::vector<float> nothing_;  ///< a row of zeros
+    std::vector<float> depth_m_;
+    std::vector<float> innovations_;  ///< one row
+    std::vector<float> known_;        ///< one row
+    std::vector<float> pooled_;       ///< sums of fives of `innovations_`
+    std::vector<float> pooled_known_;
+    std::vector<float> inverse_;  ///< with an empty row before and behind the image, likewise the next two
+    std::vector<float> variance_;
+    std::vector<float> weight_;
+    std::vector<std::uint8_t> restarted_row_;
+    std::vector<std::uint8_t> restarted_;
+};
+
+}  // namespace octoskin

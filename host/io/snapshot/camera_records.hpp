@@ -1,0 +1,52 @@
+// The memory of the depth camera as records: its size and pose, then row by row the pixels that have a value:
+//
+//     until the row ends            pixels without a value; then, unless the row ends, pixels with one
+//     (counts)
+//       mean, drift, count          floats; the count, times four, plus 2 if a value is held back, plus 1 if
+//                                   the pixel has an end
+//       key x, y, z; depth          of the end, if there is one: 16 bits each, float
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "host/core/mapping/camera_memory.hpp"
+#include "host/core/mapping/mapping_config.hpp"
+#include "host/io/snapshot/blocks.hpp"
+
+namespace octoskin::snapshot {
+
+/// Of one pixel with a value.
+inline constexpr std::uint64_t kPixelBytesMax = 21;
+/// Pixels of the largest camera of a rig file.
+inline constexpr std::uint64_t kCameraPixelsMax = std::uint64_t{4096} * 4096;
+
+/// A pixel without a value must be as constructed (asserted). Throws std::bad_alloc.
+void put_camera(BlockWriter& blocks, const CameraMemory& memory);
+
+/// Reads the content of blocks of BlockKind::camera.
+class CameraTaker {
+  public:
+    /// `mapping` must outlive it.
+    explicit CameraTaker(const MappingConfig& mapping) noexcept : mapping_(mapping) {}
+
+    /// False: the content is not the memory of a camera with this mapping. Throws std::bad_alloc.
+    [[nodiscard]] bool take(std::string_view payload);
+    /// True without any block, and after the last row.
+    [[nodiscard]] bool is_complete() const noexcept;
+    /// Moves it out, after the last block; empty without any.
+    [[nodiscard]] std::optional<CameraMemory> memory() noexcept { return std::move(memory_); }
+
+  private:
+    [[nodiscard]] bool take_head(ByteReader& reader);
+    [[nodiscard]] bool take_row(ByteReader& reader);
+    [[nodiscard]] CameraMemory::Pixel take_pixel(ByteReader& reader) const;
+    [[nodiscard]] bool is_possible(const DepthDenoiser::Pixel& depth) const noexcept;
+
+    const MappingConfig& mapping_;
+    std::optional<CameraMemory> memory_;
+};
+
+}  // namespace octoskin::snapshot
