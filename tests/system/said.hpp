@@ -32,7 +32,7 @@ inline Said run(const std::string& command, const std::string& errors = "2>&1") 
 inline bool are_for_lab(const std::string& arguments) {
     const std::size_t begin = std::min(arguments.find_first_not_of(' '), arguments.size());
     const std::string command = arguments.substr(begin, arguments.find(' ', begin) - begin);
-    return command == "simulate" || command == "evaluate" || command == "experiment";
+    return command == "simulate" || command == "evaluate" || command == "experiment" || command == "depth";
 }
 
 /// The program that has the command which `arguments` begin with, and them: as typed.

@@ -9,5 +9,6 @@ namespace octoskin::app {
 void add_simulate_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_experiment_command(CLI::App& app);
+void add_depth_command(CLI::App& app);
 
 }  // namespace octoskin::app

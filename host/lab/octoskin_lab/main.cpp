@@ -10,6 +10,7 @@ void add_commands(CLI::App& app) {
     add_simulate_command(app);
     add_evaluate_command(app);
     add_experiment_command(app);
+    add_depth_command(app);
 }
 
 }  // namespace

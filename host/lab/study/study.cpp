@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <mutex>
-#include <set>
 
 #include "host/apps/playback/map_folder.hpp"
-#include "host/apps/profile/named_mapping.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/version/version.hpp"
@@ -16,6 +14,7 @@
 #include "host/lab/report/report.hpp"
 #include "host/lab/simulation/scene.hpp"
 #include "host/lab/study/captions.hpp"
+#include "host/lab/study/configurations.hpp"
 #include "host/lab/study/parallel.hpp"
 #include "host/lab/study/part_timer.hpp"
 #include "host/lab/study/results_folder.hpp"
@@ -51,54 +50,6 @@ Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double 
             evaluation::region_fault(truth.region, truth.resolution_m, Eigen::Isometry3d::Identity()))
         return fail(ExitCode::bad_config, scene->scenario.error("region", std::move(*fault)));
     return StudyWorld{std::move(*scene), source_file(inputs.rig, rig->extended_files), std::move(truth)};
-}
-
-/// Checks that a configuration's name is unique and that its figures can be compared with those before it.
-Status<AppError> check_next(const std::vector<NamedMapping>& before, const NamedMapping& next) {
-    for (const NamedMapping& one : before) {
-        if (one.name == next.name)
-            return fail(ExitCode::usage, {.code = ErrorCode::duplicate,
-                                          .what = "expected each configuration once",
-                                          .value = fmt::format("'{}' again", next.name),
-                                          .key = "--configurations"});
-        if (one.mapping.map.resolution_m != next.mapping.map.resolution_m) {
-            return fail(ExitCode::usage,
-                        {.code = ErrorCode::conflict,
-                         .what = fmt::format(
-                             "the figures of '{}' and '{}' cannot be compared: expected voxels of one "
-                             "size",
-                             one.name, next.name),
-                         .value = fmt::format("{} m and {} m", one.mapping.map.resolution_m,
-                                              next.mapping.map.resolution_m),
-                         .remedy = "run one at a time",
-                         .key = "--configurations"});
-        }
-    }
-    return Done{};
-}
-
-Result<std::vector<NamedMapping>, AppError> find_configurations(const std::vector<std::string>& names) {
-    std::vector<NamedMapping> found;
-    for (const std::string& name : names) {
-        auto configuration = named_mapping(name);
-        if (!configuration) return unexpected(configuration.error());
-        if (const auto checked = check_next(found, *configuration); !checked)
-            return unexpected(checked.error());
-        found.push_back(std::move(*configuration));
-    }
-    return found;
-}
-
-Status<AppError> check_seeds(const std::vector<std::uint64_t>& seeds) {
-    std::set<std::uint64_t> seen;
-    for (const std::uint64_t seed : seeds) {
-        if (!seen.insert(seed).second)
-            return fail(ExitCode::usage, {.code = ErrorCode::duplicate,
-                                          .what = "expected each seed once",
-                                          .value = fmt::format("{} again", seed),
-                                          .key = "--seeds"});
-    }
-    return Done{};
 }
 
 /// The configuration of the maps, the pictures and the headline.
