@@ -104,7 +104,7 @@ std::string table_of_shares(const Explanation& explanation) {
         const std::string last =
             forgotten.last ? fmt::format("{:.3f}", seconds_of(explanation, *forgotten.last)) : "-";
         fmt::format_to(std::back_inserter(text), "  {:<24} {:>6} {:>7} {:>+9.4f}  {:>9} {:>9}\n",
-                       "expired by age", "-", "-", forgotten.change, "", last);
+                       "expired or retracted", "-", "-", forgotten.change, "", last);
     }
     return text;
 }

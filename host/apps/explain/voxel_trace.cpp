@@ -21,12 +21,16 @@ void VoxelTrace::on_depth(const DepthFrame& frame, const Evidence& terms) {
     Contribution contribution;
     contribution.frame = depth_frames_++;
     contribution.captured = frame.captured;
+    depth_captured_ = frame.captured;
     const VoxelUpdate update{key_, term_of(terms, key_)};
     take(std::move(contribution), std::span(&update, 1));
 }
 
 void VoxelTrace::on_older(std::optional<HostTime> now, const FusedMap& map) {
-    if (!now_ || map.log_odds(key_)) return;
+    if (now_ && !map.log_odds(key_)) forget(now);
+}
+
+void VoxelTrace::forget(std::optional<HostTime> now) {
     ++forgotten_.times;
     forgotten_.change -= static_cast<double>(*now_);
     forgotten_.last = now;
@@ -37,6 +41,7 @@ void VoxelTrace::on_older(std::optional<HostTime> now, const FusedMap& map) {
 
 void VoxelTrace::on_fused(const FusedMap& map) {
     const auto now = map.log_odds(key_);
+    if (now_ && !now && !is_newest_of_commit_) return forget(depth_captured_);  // retracted by an image
     if (now == now_ && !map.layers().counts.has(brick_of(key_))) return;
     now_ = now;
     if (!is_newest_of_commit_ || newest_.empty()) return;

@@ -42,7 +42,8 @@ struct SourceShare {
     HostTime last;
 };
 
-/// The voxel expired: no sensor had confirmed it for `age.unknown_after_s`.
+/// The voxel became unknown: no sensor had confirmed it for `age.unknown_after_s`, or an image of the update
+/// `denoised` retracted it.
 struct Forgotten {
     std::uint64_t times = 0;
     double change = 0.0;           ///< log-odds, sum over all expiries
@@ -86,6 +87,7 @@ class VoxelTrace final : public CommitListener {
     [[nodiscard]] const Forgotten& forgotten() const noexcept { return forgotten_; }
 
   private:
+    void forget(std::optional<HostTime> now);
     void take(Contribution contribution, std::span<const VoxelUpdate> updates);
 
     VoxelKey key_;
@@ -94,6 +96,7 @@ class VoxelTrace final : public CommitListener {
     std::optional<float> now_;
     std::size_t kept_max_;
     std::uint64_t depth_frames_ = 0;
+    std::optional<HostTime> depth_captured_;  ///< of the newest frame
     std::uint64_t count_ = 0;
     bool is_newest_of_commit_ = false;  ///< newest_.back() belongs to the latest reading or frame
     std::deque<Contribution> newest_;
