@@ -120,6 +120,21 @@ class WriteResults(unittest.TestCase):
         self.assertIn("| 4 cm | 5.43 | `insertPointCloud` of the frame | 543 | 100 |", self.page())
         self.assertIn("| `fast`, 4 cm | 3.0 | 25 | 6.0 | 25 |", self.page())
 
+    def test_a_row_of_frames_from_one_place_is_compared_with_its_own_peer(self):
+        figures = self.figures()
+        frame = next(figure for figure in figures if figure["id"] == "bench/0.04/fast")
+        figures.append({**frame, "id": "bench/0.04/whole_denoised_stands", "value": {"ms": 1, "peer_ms": 1, "ratio": 1}})
+        (self.folder / "figures.json").write_text(json.dumps(figures))
+        rows = bench_json()["0.04"]
+        stands = {"whole_denoised_stands": {**rows["fast"], "parts_ms": {"denoise": 1.0}}, "octomap_stands": rows["octomap"]}
+        code, out, error = self.run_with(self.file({"0.04": stands}), *MEASURED, *COMMIT)
+        self.assertEqual((code, out, error), (0, "replaced bench/0.04/whole_denoised_stands\n", ""))
+        self.assertEqual(self.figure("bench/0.04/whole_denoised_stands")["value"],
+                         {"ms": 5.43, "peer_ms": 543, "ratio": 100})
+
+    def test_refuses_a_bench_of_other_frames(self):
+        self.refuses("of a data set", self.file({**bench_json(), "frames": {"folder": "/data"}}), *MEASURED, *COMMIT)
+
     def test_refuses_metrics_that_are_not_comparable(self):
         self.refuses("run.seeds is [0]", self.file(metrics_json(seeds=[0])), *MEASURED)
         self.refuses("run.provenance.scenario is cell.scenario.yaml",
