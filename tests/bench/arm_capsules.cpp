@@ -16,7 +16,6 @@ namespace {
 constexpr std::size_t kPostures = 100;
 constexpr std::array kReady = {0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785};
 constexpr double kTurn_rad = 0.8;
-const Eigen::Vector3d kOnTheTable(0.6, 0.4, 0.76);
 
 octomap::OcTreeKey key_of(const octomap::OcTree& tree, const Eigen::Vector3d& point) {
     return tree.coordToKey(point.x(), point.y(), point.z());
@@ -24,7 +23,8 @@ octomap::OcTreeKey key_of(const octomap::OcTree& tree, const Eigen::Vector3d& po
 
 }  // namespace
 
-std::vector<ArmCapsules> arm_on_the_table(const std::filesystem::path& rig) {
+std::vector<ArmCapsules> postures_of_arm(const std::filesystem::path& rig,
+                                         const Eigen::Isometry3d& T_map_arm) {
     const auto read = rig::read_rig(rig);
     if (!read) throw std::runtime_error("the rig cannot be read");
     const auto setup = make_host_setup(*read);
@@ -43,8 +43,8 @@ std::vector<ArmCapsules> arm_on_the_table(const std::filesystem::path& rig) {
         setup->robot.forward(position, T_base_link);
         body->pose(T_base_link, capsules);
         for (PosedCapsule& capsule : capsules) {
-            capsule.p_a += kOnTheTable;
-            capsule.p_b += kOnTheTable;
+            capsule.p_a = T_map_arm * capsule.p_a;
+            capsule.p_b = T_map_arm * capsule.p_b;
         }
     }
     return postures;

@@ -16,9 +16,11 @@
 #include "tests/bench/figures.hpp"
 #include "tests/bench/frame_rows.hpp"
 #include "tests/bench/map_rows.hpp"
+#include "tests/bench/peer_rows.hpp"
 #include "tests/bench/room_frames.hpp"
 #include "tests/bench/task.hpp"
 #include "tests/bench/verify.hpp"
+#include "tests/bench/whole_rows.hpp"
 
 namespace octoskin::bench {
 namespace {
@@ -33,11 +35,15 @@ constexpr std::array kShareBeyond = {0.12, 0.18};
 struct NamedCamera {
     const char* suffix;
     CameraIntrinsics camera;
+    bool stands = false;
 };
+constexpr CameraIntrinsics kCamera{
+    .width = 512, .height = 424, .fx = 365.0, .fy = 365.0, .cx = 256.0, .cy = 212.0};
 constexpr std::array kCameras = {
-    NamedCamera{"", {.width = 512, .height = 424, .fx = 365.0, .fy = 365.0, .cx = 256.0, .cy = 212.0}},
-    NamedCamera{"_640x480",
-                {.width = 640, .height = 480, .fx = 440.0, .fy = 440.0, .cx = 320.0, .cy = 240.0}},
+    NamedCamera{.suffix = "", .camera = kCamera},
+    NamedCamera{.suffix = "_640x480",
+                .camera = {.width = 640, .height = 480, .fx = 440.0, .fy = 440.0, .cx = 320.0, .cy = 240.0}},
+    NamedCamera{.suffix = "_stands", .camera = kCamera, .stands = true},
 };
 
 /// Removed at the end, with all that is in it.
@@ -87,6 +93,7 @@ struct Options {
     std::vector<std::string> resolutions = {"0.04", "0.02", "0.01"};
     std::vector<std::string> rows;
     unsigned runs = kFrames;
+    std::string frames;
     std::string json;
     bool verifies = false;
     bool lists = false;
@@ -98,8 +105,12 @@ std::vector<Row> rows_of(const std::vector<RoomFrames>& rooms, const std::string
         std::stod(resolution) < 0.015 ? std::min(options.runs, kOctomapFramesBelow15mm) : options.runs;
     std::vector<Row> rows;
     const auto append = [&](std::vector<Row> more) { std::ranges::move(more, std::back_inserter(rows)); };
-    for (std::size_t i = 0; i < rooms.size(); ++i)
-        append(frame_rows(rooms[i], resolution, options.runs, octomap_runs, kCameras[i].suffix));
+    for (std::size_t i = 0; i < rooms.size(); ++i) {
+        const std::string suffix = kCameras[i].suffix;
+        append(peer_rows(rooms[i], resolution, options.runs, octomap_runs, suffix));
+        append(whole_rows(rooms[i], resolution, options.runs, suffix));
+        if (!rooms[i].stands) append(frame_rows(rooms[i], resolution, options.runs, suffix));
+    }
     append(map_rows(rooms.front(), resolution, options.runs, folder));
     return rows;
 }
@@ -151,11 +162,14 @@ void measure(const std::vector<Row>& rows, const Options& options, std::map<std:
     }
 }
 
-/// Says in one line what the frames are, and on the error stream if they are not what they should be.
-bool tell_room(const RoomFrames& room) {
-    fmt::print("{} frames of {} x {}: mean depth {:.2f} m, {:.1f} % beyond {} m\n", room.frames.size(),
-               room.camera.width, room.camera.height, room.mean_depth_m, 100.0 * room.share_beyond,
-               kRangeMax_m);
+void tell_frames(const RoomFrames& room) {
+    fmt::print("{} frames of {} x {}{}: mean depth {:.2f} m, {:.1f} % beyond {} m\n", room.frames.size(),
+               room.camera.width, room.camera.height, room.stands ? " from one place" : "", room.mean_depth_m,
+               100.0 * room.share_beyond, kRangeMax_m);
+}
+
+/// Says on the error stream if the frames are not what they should be.
+bool check_room(const RoomFrames& room) {
     const auto is_within = [](double value, const std::array<double, 2>& range) {
         return value >= range[0] && value <= range[1];
     };
@@ -175,15 +189,43 @@ bool tell_room(const RoomFrames& room) {
 /// Not 0: an exit code, already told why.
 int render(std::vector<RoomFrames>& rooms) {
     for (const NamedCamera& named : kCameras) {
-        auto room = render_room(OCTOSKIN_ROOM, named.camera, kFrames, kRangeMax_m);
+        auto room = render_room(OCTOSKIN_ROOM, named.camera, named.stands, kFrames, kRangeMax_m);
         if (!room) {
             fmt::print(stderr, "{}\n", room.error().message());
             return 1;
         }
-        if (!tell_room(*room)) return 1;
+        tell_frames(*room);
+        if (!check_room(*room)) return 1;
         rooms.push_back(std::move(*room));
     }
     return 0;
+}
+
+/// Likewise; one camera, that of the data set.
+int read(const std::string& folder, std::vector<RoomFrames>& rooms) {
+    auto room = read_frames(folder, kFrames, kRangeMax_m);
+    if (!room) {
+        fmt::print(stderr, "{}\n", room.error().message());
+        return 1;
+    }
+    tell_frames(*room);
+    rooms.push_back(std::move(*room));
+    return 0;
+}
+
+/// Frames without images: the names of the rows depend on nothing else.
+std::vector<RoomFrames> rooms_of(const Options& options) {
+    if (!options.frames.empty()) return std::vector<RoomFrames>(1);
+    std::vector<RoomFrames> rooms;
+    for (const NamedCamera& named : kCameras)
+        rooms.push_back({.camera = named.camera, .frames = {}, .stands = named.stands});
+    return rooms;
+}
+
+std::optional<DataSetFrames> data_set_of(const std::vector<RoomFrames>& rooms, const Options& options) {
+    if (options.frames.empty()) return std::nullopt;
+    const RoomFrames& room = rooms.front();
+    return DataSetFrames{options.frames, room.camera.width, room.camera.height, room.mean_depth_m};
 }
 
 std::string check_resolution(const std::string& text) {
@@ -195,9 +237,10 @@ std::string check_resolution(const std::string& text) {
 }
 
 int measure_all(const std::vector<RoomFrames>& rooms, const Options& options) {
+    const auto data_set = data_set_of(rooms, options);
     // Better now than after an hour.
     AllFigures all;
-    if (!options.json.empty() && !write_json(all, options.json)) {
+    if (!options.json.empty() && !write_json(all, data_set, options.json)) {
         fmt::print(stderr, "{}: cannot write\n", options.json);
         return 1;
     }
@@ -205,7 +248,7 @@ int measure_all(const std::vector<RoomFrames>& rooms, const Options& options) {
     for (const std::string& resolution : options.resolutions)
         measure(rows_of(rooms, resolution, options, folder.path()), options, all[resolution]);
     print(all);
-    if (!options.json.empty() && !write_json(all, options.json)) {
+    if (!options.json.empty() && !write_json(all, data_set, options.json)) {
         fmt::print(stderr, "{}: cannot write\n", options.json);
         return 1;
     }
@@ -214,17 +257,18 @@ int measure_all(const std::vector<RoomFrames>& rooms, const Options& options) {
 
 int run_with(const Options& options, char* program) {
     std::vector<RoomFrames> rooms;
-    // Names depend on the cameras alone.
-    const std::vector<Row> rows = rows_of(std::vector<RoomFrames>(kCameras.size()), "1", options, {});
+    const std::vector<RoomFrames> unseen = rooms_of(options);
+    const std::vector<Row> rows = rows_of(unseen, "1", options, {});
     if (options.lists) {
-        for (const Row& row : rows) fmt::print("{:<22} {}\n", row.name, row.peer == row.name ? "" : row.peer);
+        for (const Row& row : rows) fmt::print("{:<32} {}\n", row.name, row.peer == row.name ? "" : row.peer);
         return 0;
     }
     if (const std::string fault = check(rows, options.rows); !fault.empty()) {
         fmt::print(stderr, "{}\n", fault);
         return 2;
     }
-    if (const int code = render(rooms); code != 0) return code;
+    const int code = options.frames.empty() ? render(rooms) : read(options.frames, rooms);
+    if (code != 0) return code;
     if (options.verifies) {
         bool is_equal = true;
         for (const std::string& resolution : options.resolutions)
@@ -242,15 +286,16 @@ int run_with(const Options& options, char* program) {
 int run(int argc, char** argv) {
     CLI::App app(
         "How long the work of a map takes, beside OctoMap, on the same data in the same run: CPU times, but "
-        "of "
-        "rows of several threads and their peers the clock's.");
+        "of rows of several threads and their peers the clock's.");
     Options options;
     app.add_option("--resolution", options.resolutions, "Of the maps, metres")
         ->capture_default_str()
         ->check(CLI::Validator(check_resolution, "METRES"));
     app.add_option("--row", options.rows, "Measure these rows only; a ratio needs OctoMap's row, too");
     app.add_flag("--list", options.lists, "Name the rows, each with OctoMap's that it is compared with");
-    app.add_option("--frames", options.runs, "Runs of each row; 5 at most of OctoMap's frames below 1.5 cm")
+    app.add_option("--frames", options.frames,
+                   "Take the images of this data set (TUM RGB-D, ICL-NUIM, ETH3D or 7-Scenes layout)");
+    app.add_option("--runs", options.runs, "Runs of each row; 5 at most of OctoMap's frames below 1.5 cm")
         ->capture_default_str()
         ->check(CLI::Range(1U, 10'000U));
     app.add_option("--json", options.json, "Write the figures to this file, too");

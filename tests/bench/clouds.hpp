@@ -3,6 +3,8 @@
 
 #include <octomap/octomap.h>
 
+#include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "host/core/depth/pixel_rays.hpp"
@@ -19,6 +21,7 @@ inline octomap::point3d origin_of(const RoomFrame& frame) {
     return {origin.x(), origin.y(), origin.z()};
 }
 
+/// Without the pixels that have no value.
 inline octomap::Pointcloud cloud_of(const RoomFrame& frame, const CameraIntrinsics& camera) {
     const PixelRays rays(camera);
     octomap::Pointcloud cloud;
@@ -26,6 +29,7 @@ inline octomap::Pointcloud cloud_of(const RoomFrame& frame, const CameraIntrinsi
     for (std::uint32_t i = 0; i < frame.image.depth_m.size(); ++i) {
         const RaySlope ray = rays.at(i % camera.width, i / camera.width);
         const double depth_m = static_cast<double>(frame.image.depth_m[i]);
+        if (std::isnan(depth_m)) continue;
         const Eigen::Vector3f point =
             (frame.T_map_camera * (depth_m * Eigen::Vector3d(ray.x, ray.y, 1.0))).cast<float>();
         cloud.push_back(point.x(), point.y(), point.z());
@@ -33,10 +37,23 @@ inline octomap::Pointcloud cloud_of(const RoomFrame& frame, const CameraIntrinsi
     return cloud;
 }
 
+inline MappingConfig mapping_with(DepthUpdate update) {
+    switch (update) {
+        case DepthUpdate::paper:
+            return paper_mapping();
+        case DepthUpdate::robust:
+            return robust_mapping();
+        case DepthUpdate::fast:
+            return fast_mapping();
+        case DepthUpdate::denoised:
+            return denoised_mapping();
+    }
+    throw std::logic_error("an unknown depth update");
+}
+
 /// Whatever is hit counts, so that a key's set can be told from its term.
 inline MappingConfig bench_mapping(const std::string& resolution, DepthUpdate update) {
-    MappingConfig config = update == DepthUpdate::paper ? paper_mapping() : robust_mapping();
-    config.depth_update = update;
+    MappingConfig config = mapping_with(update);
     config.map.resolution_m = std::stod(resolution);
     config.map.memory_max_mib = 8000;
     config.model.depth.range_min_m = 0.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,6 +17,16 @@ struct Figures {
     std::size_t heap_bytes = 0;  ///< of the map at the end; 0: no map
     std::size_t voxels = 0;      ///< known, at the finest level
     std::size_t leaves = 0;      ///< of the map as a pruned octree
+    /// CPU time of each run by the step's name; empty for most rows.
+    std::map<std::string, std::vector<double>> parts_ms;
+};
+
+/// Images of a data set in place of those of the furnished room.
+struct DataSetFrames {
+    std::string folder;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    double mean_depth_m = 0.0;
 };
 
 /// By resolution in metres, then by row.
@@ -25,7 +36,9 @@ using AllFigures = std::map<std::string, std::map<std::string, Figures>>;
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 void print(const AllFigures& all);
 /// resolution -> row -> ms_median, ms_p95, ratio_octomap (null without a peer in this run), heap_bytes,
-/// leaves, voxels, runs. False if the file could not be written.
-[[nodiscard]] bool write_json(const AllFigures& all, const std::filesystem::path& file);
+/// leaves, voxels, runs, and parts_ms with the median of each step. Of a data set the file has "frames", too.
+/// False if the file could not be written.
+[[nodiscard]] bool write_json(const AllFigures& all, const std::optional<DataSetFrames>& frames,
+                              const std::filesystem::path& file);
 
 }  // namespace octoskin::bench

@@ -1,13 +1,13 @@
 #include "tests/bench/frame_rows.hpp"
 
-#include <octomap/octomap.h>
-
 #include <array>
 #include <stdexcept>
 
 #include "host/core/depth/depth_filter.hpp"
 #include "host/core/mapping/depth_integrator.hpp"
 #include "tests/bench/clouds.hpp"
+#include "tests/bench/frame_task.hpp"
+#include "tests/bench/peer_rows.hpp"
 #include "tests/bench/sizes.hpp"
 
 namespace octoskin::bench {
@@ -43,53 +43,6 @@ constexpr OurMethod kDated{
 constexpr std::array kTogether = {
     OurMethod{.name = kOneThread, .update = DepthUpdate::fast, .is_filtered = true},
     OurMethod{.name = "fast_2_threads", .update = DepthUpdate::fast, .is_filtered = true, .threads = 2},
-};
-
-struct OctomapMethod {
-    const char* name;
-    bool is_lazy;
-};
-constexpr const char* kOctomap = "octomap";
-constexpr std::array kOctomaps = {
-    OctomapMethod{.name = kOctomap, .is_lazy = false},
-    OctomapMethod{.name = "octomap_lazy", .is_lazy = true},
-};
-
-/// One frame after the other, then the first again.
-class FrameTask : public Task {
-  public:
-    explicit FrameTask(const RoomFrames& room) : room_(room) {}
-
-  protected:
-    [[nodiscard]] const RoomFrame& next() { return room_.frames[next_++ % room_.frames.size()]; }
-    [[nodiscard]] const CameraIntrinsics& camera() const { return room_.camera; }
-
-  private:
-    const RoomFrames& room_;
-    std::size_t next_ = 0;
-};
-
-class OctomapFrames final : public FrameTask {
-  public:
-    OctomapFrames(const RoomFrames& room, const std::string& resolution, bool is_lazy)
-        : FrameTask(room), tree_(std::stod(resolution)), is_lazy_(is_lazy) {}
-    void prepare() override {
-        const RoomFrame& frame = next();
-        cloud_ = cloud_of(frame, camera());
-        origin_ = origin_of(frame);
-    }
-    void run() override {
-        // Lazy evaluation leaves inner nodes to be worked out once: that is part of it.
-        tree_.insertPointCloud(cloud_, origin_, kRangeMax_m, is_lazy_, is_lazy_);
-        if (is_lazy_) tree_.updateInnerOccupancy();
-    }
-    void tell(Figures& figures) const override { tell_size(tree_, figures); }
-
-  private:
-    octomap::OcTree tree_;
-    octomap::Pointcloud cloud_;
-    octomap::point3d origin_;
-    bool is_lazy_;
 };
 
 class OurFrames final : public FrameTask {
@@ -151,15 +104,9 @@ class FilterFrames final : public FrameTask {
 }  // namespace
 
 std::vector<Row> frame_rows(const RoomFrames& room, const std::string& resolution, unsigned runs,
-                            unsigned runs_octomap, const std::string& suffix) {
+                            const std::string& suffix) {
     const std::string peer = kOctomap + suffix;
     std::vector<Row> rows;
-    for (const OctomapMethod& method : kOctomaps) {
-        rows.push_back(
-            {method.name + suffix, peer, std::min(runs, runs_octomap), [&room, resolution, method] {
-                 return std::make_unique<OctomapFrames>(room, resolution, method.is_lazy);
-             }});
-    }
     for (const OurMethod& method : kOurs) {
         rows.push_back({method.name + suffix, peer, runs, [&room, resolution, method] {
                             return std::make_unique<OurFrames>(room, resolution, method);

@@ -1,4 +1,4 @@
-// Rows of one depth frame a run: OctoMap's integration, each of ours, and the depth filter.
+// Rows of one depth frame a run: each of our ways to integrate it, and the depth filter.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace octoskin::bench {
 
-/// Of OctoMap's runs there are at most `runs_octomap`. Names end in `suffix`. `room` outlives the rows.
+/// Names end in `suffix`. `room` outlives the rows.
 [[nodiscard]] std::vector<Row> frame_rows(const RoomFrames& room, const std::string& resolution,
-                                          unsigned runs, unsigned runs_octomap, const std::string& suffix);
+                                          unsigned runs, const std::string& suffix);
 
 }  // namespace octoskin::bench

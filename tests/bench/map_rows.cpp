@@ -177,11 +177,11 @@ class ExportChanges final : public Task {
     std::size_t next_ = kFramesOfMap;
 };
 
-std::vector<Eigen::Vector3d> points_in_room() {
+std::vector<Eigen::Vector3d> points_in(const Eigen::AlignedBox3d& box) {
     std::mt19937 random(3);
-    std::uniform_real_distribution<double> x(-0.5, 3.2);
-    std::uniform_real_distribution<double> y(-2.6, 2.6);
-    std::uniform_real_distribution<double> z(0.0, 2.6);
+    std::uniform_real_distribution<double> x(box.min().x(), box.max().x());
+    std::uniform_real_distribution<double> y(box.min().y(), box.max().y());
+    std::uniform_real_distribution<double> z(box.min().z(), box.max().z());
     std::vector<Eigen::Vector3d> points(kQueries);
     for (Eigen::Vector3d& point : points) point = {x(random), y(random), z(random)};
     return points;
@@ -304,8 +304,9 @@ void add_files(MapRows& rows, const std::filesystem::path& folder, const std::st
 }
 
 /// Both must find the same states, of which each must occur.
-void add_capsules(MapRows& rows) {
-    const auto postures = std::make_shared<const std::vector<ArmCapsules>>(arm_on_the_table(OCTOSKIN_RIG));
+void add_capsules(MapRows& rows, const RoomFrames& room) {
+    const auto postures =
+        std::make_shared<const std::vector<ArmCapsules>>(postures_of_arm(OCTOSKIN_RIG, room.T_map_arm));
     const auto states = std::make_shared<std::optional<States>>();
     const auto check = [states](const States& found) {
         require(std::ranges::find(found, 0U) == found.end(), "a state of capsules does not occur");
@@ -344,14 +345,14 @@ std::vector<Row> map_rows(const RoomFrames& room, const std::string& resolution,
                              return std::make_unique<ExportChanges>(room, resolution, maps->ours());
                          }});
     add_files(rows, folder, resolution, maps);
-    const auto points = std::make_shared<const std::vector<Eigen::Vector3d>>(points_in_room());
+    const auto points = std::make_shared<const std::vector<Eigen::Vector3d>>(points_in(room.asked));
     rows.add_octomap("octomap_points", [points](const octomap::OcTree& tree) {
         require(occupied_of(tree, *points) > 0, "OctoMap finds nothing");
     });
     rows.add_ours("points", "octomap_points", [points](const FusedMap& map) {
         require(occupied_of(map, *points) > 0, "nothing is found");
     });
-    add_capsules(rows);
+    add_capsules(rows, room);
     const auto map = [maps]() -> const FusedMap& { return maps->ours(); };
     for (Row& row : planner_rows(room, resolution, runs, map)) rows.rows.push_back(std::move(row));
     for (Row& row : reading_rows(std::filesystem::path(OCTOSKIN_RIG).parent_path(), resolution, runs, map))

@@ -25,9 +25,9 @@ void require_that(bool is_so, const char* what) {
 }
 
 /// Where the arm may be.
-FieldExtent about_arm() {
+FieldExtent about_arm(const RoomFrames& room) {
     FieldExtent extent{.region = {}, .reach_m = kFieldReach_m};
-    for (const ArmCapsules& capsules : arm_on_the_table(OCTOSKIN_RIG))
+    for (const ArmCapsules& capsules : postures_of_arm(OCTOSKIN_RIG, room.T_map_arm))
         for (const PosedCapsule& capsule : capsules) extent.region.extend(capsule.p_a).extend(capsule.p_b);
     return extent;
 }
@@ -50,7 +50,8 @@ struct Told {
 
 class Clearances final : public Task {
   public:
-    Clearances(const FusedMap& map, bool has_field) : map_(map), postures_(arm_on_the_table(OCTOSKIN_RIG)) {
+    Clearances(const RoomFrames& room, const FusedMap& map, bool has_field)
+        : map_(map), postures_(postures_of_arm(OCTOSKIN_RIG, room.T_map_arm)) {
         for (const ArmCapsules& capsules : postures_) {
             for (const PosedCapsule& capsule : capsules) {
                 const auto found = clearance(map_, capsule, kReach_m);
@@ -60,7 +61,7 @@ class Clearances final : public Task {
         }
         require_that(wanted_.occupied > postures_.size(), "nothing occupied is near the arm");
         if (!has_field) return;
-        field_.emplace(map.config(), about_arm());
+        field_.emplace(map.config(), about_arm(room));
         (void)field_->update(map);
     }
     void run() override {
@@ -116,12 +117,12 @@ class FieldUpdate final : public Task {
 std::vector<Row> planner_rows(const RoomFrames& room, const std::string& resolution, unsigned runs,
                               std::function<const FusedMap&()> ten_frames) {
     std::vector<Row> rows;
-    rows.push_back(
-        {"clearances", "", runs, [ten_frames] { return std::make_unique<Clearances>(ten_frames(), false); }});
+    rows.push_back({"clearances", "", runs,
+                    [&room, ten_frames] { return std::make_unique<Clearances>(room, ten_frames(), false); }});
     rows.push_back({"field_clearances", "clearances", runs,
-                    [ten_frames] { return std::make_unique<Clearances>(ten_frames(), true); }});
+                    [&room, ten_frames] { return std::make_unique<Clearances>(room, ten_frames(), true); }});
     rows.push_back({"field_update", "", runs, [&room, resolution, ten_frames] {
-                        return std::make_unique<FieldUpdate>(room, resolution, ten_frames(), about_arm());
+                        return std::make_unique<FieldUpdate>(room, resolution, ten_frames(), about_arm(room));
                     }});
     rows.push_back({"field_update_room", "field_update", runs, [&room, resolution, ten_frames] {
                         return std::make_unique<FieldUpdate>(room, resolution, ten_frames(),
