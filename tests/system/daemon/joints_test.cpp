@@ -8,11 +8,13 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <variant>
-#include <vector>
 
 #include "common/wire/codec.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
@@ -152,42 +154,92 @@ TEST(JointsCommand, says_at_the_end_that_there_was_no_bus_whatever_the_rate_of_t
     EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 69);
 }
 
-/// The first joint, in microradians, of each sample that `octoskin joints --can` sends of what this shell
-/// script writes.
-std::vector<std::int32_t> first_joints_of(const std::string& script) {
-    std::array<int, 2> ends{};
-    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()), 0);
-    const std::string command = "(" + script +
-                                ") | " OCTOSKIN_PROGRAM " joints --can fd:" + std::to_string(ends[1]) +
-                                " --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml 2> /dev/null";
-    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
-    socketcan::CanSocket bus("bus", ends[0]);
-    std::vector<std::int32_t> positions;
-    while (true) {
-        const auto received = bus.receive();
-        if (!received || !*received) break;
-        const auto decoded = wire::decode((*received)->entry.frame);
-        const auto* const state = decoded ? std::get_if<wire::JointState>(&decoded->message) : nullptr;
-        const auto* const pair = state != nullptr ? std::get_if<wire::JointPair>(state) : nullptr;
-        if (pair != nullptr && pair->index == 0) positions.push_back(pair->position_urad[0]);
+/// `octoskin joints --can`, whose input the test writes while it reads what the command sends.
+class ForwardedJoints {
+  public:
+    ForwardedJoints() {
+        std::array<int, 2> ends{};
+        EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()), 0);
+        command_end_ = ends[1];
+        bus_.emplace("bus", ends[0]);
+        const std::string command = OCTOSKIN_PROGRAM " joints --can fd:" + std::to_string(command_end_) +
+                                    " --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml 2> /dev/null";
+        input_ = ::popen(command.c_str(), "w");
     }
-    ::close(ends[1]);
-    return positions;
+    ~ForwardedJoints() {
+        (void)end();
+        ::close(command_end_);
+    }
+    ForwardedJoints(const ForwardedJoints&) = delete;
+    ForwardedJoints& operator=(const ForwardedJoints&) = delete;
+
+    /// The command reads `lines`, shorter than a page, in one piece.
+    void write(const std::string& lines) {
+        EXPECT_GE(std::fputs(lines.c_str(), input_), 0);
+        EXPECT_EQ(std::fflush(input_), 0);
+    }
+    /// The first joint, in microradians, of the next sample; none after `patience`.
+    [[nodiscard]] std::optional<std::int32_t> next(std::chrono::milliseconds patience) {
+        const auto end = std::chrono::steady_clock::now() + patience;
+        while (true) {
+            const auto received = bus_->receive();
+            if (!received) return std::nullopt;
+            if (*received) {
+                const auto decoded = wire::decode((*received)->entry.frame);
+                const auto* const state =
+                    decoded ? std::get_if<wire::JointState>(&decoded->message) : nullptr;
+                const auto* const pair = state != nullptr ? std::get_if<wire::JointPair>(state) : nullptr;
+                if (pair != nullptr && pair->index == 0) return pair->position_urad[0];
+                continue;
+            }
+            const auto left =
+                std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+            pollfd readable{bus_->descriptor(), POLLIN, 0};
+            if (left <= 0ms || ::poll(&readable, 1, static_cast<int>(left.count())) <= 0) return std::nullopt;
+        }
+    }
+    /// Ends the input. The command's exit code.
+    int end() { return input_ == nullptr ? -1 : WEXITSTATUS(::pclose(std::exchange(input_, nullptr))); }
+
+  private:
+    int command_end_ = -1;
+    std::optional<socketcan::CanSocket> bus_;
+    std::FILE* input_ = nullptr;
+};
+
+std::string joint_line(double first) {
+    return std::to_string(first) + " 0 0 -1 0 1 0\n";
 }
 
-/// Of lines that were held up the oldest is where the arm was.
+/// Of lines that were held up the oldest is where the arm was. The gap before a block begins when the sample
+/// before it is on the bus, so that a slow command does not shorten it.
 TEST(JointsCommand, sends_of_a_block_of_lines_without_a_time_the_newest_alone) {
-    const std::string rest = " 0 0 -1 0 1 0\\n";
-    const std::string block = "printf '0.1" + rest + "0.2" + rest + "0.3" + rest + "'";
-    const auto sent =
-        first_joints_of("printf '0" + rest + "'; sleep 0.3; " + block + "; sleep 0.3; " + block);
-    ASSERT_FALSE(sent.empty());
-    EXPECT_EQ(sent.back(), 300'000);
-    for (const std::int32_t position : sent) EXPECT_TRUE(position == 0 || position == 300'000) << position;
-    const std::string dated =
-        "python3 -c 'import time; t = time.monotonic(); print(t - 0.05, 0.1, 0, 0, -1, 0, 1, 0); "
-        "print(t, 0.2, 0, 0, -1, 0, 1, 0)'";
-    EXPECT_EQ(first_joints_of(dated), (std::vector<std::int32_t>{100'000, 200'000}));
+    ForwardedJoints joints;
+    joints.write(joint_line(0));
+    ASSERT_EQ(joints.next(20s), 0);
+    for (int block = 0; block < 2; ++block) {
+        std::this_thread::sleep_for(300ms);
+        joints.write(joint_line(0.1) + joint_line(0.2) + joint_line(0.3));
+        ASSERT_EQ(joints.next(20s), 300'000);
+    }
+    EXPECT_EQ(joints.end(), 0);
+    EXPECT_EQ(joints.next(0ms), std::nullopt);
+}
+
+/// The command runs when the times are read: they may be at most a second old.
+TEST(JointsCommand, sends_each_line_of_a_block_that_has_a_time) {
+    ForwardedJoints joints;
+    joints.write(joint_line(0));
+    ASSERT_EQ(joints.next(20s), 0);
+    std::this_thread::sleep_for(200ms);
+    const double now =
+        std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    joints.write(std::to_string(now - 0.05) + " " + joint_line(0.1) + std::to_string(now) + " " +
+                 joint_line(0.2));
+    EXPECT_EQ(joints.next(20s), 100'000);
+    EXPECT_EQ(joints.next(20s), 200'000);
+    EXPECT_EQ(joints.end(), 0);
+    EXPECT_EQ(joints.next(0ms), std::nullopt);
 }
 
 TEST(JointsCommand, refuses_lines_of_another_number_of_joints_wherever_they_go) {
