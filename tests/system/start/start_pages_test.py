@@ -19,7 +19,7 @@ import time
 SOURCES, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 BIN = "build/host-release/bin/"
 RIG = "hw/rigs/bench_one_board.yaml"
-SAMPLES = "for i in $(seq 20); do echo 0 -0.785 0 -2.356 0 1.571 0.785; sleep 0.1; done"  # of a driver
+SAMPLES = "for i in $(seq 30); do echo 0 -0.785 0 -2.356 0 1.571 0.785; sleep 0.1; done"  # of a driver
 
 INSTALLS = BUILDS = HARDWARE = SERVICE = VIEWER = None
 
@@ -90,11 +90,12 @@ PAGES = {
         'sudo adduser "$USER" octoskin': SERVICE,
         "octoskin status": Run("octoskin status --socket control", says="no joint states"),
         "my_arm_driver --print-joints | octoskin joints":
-            Run(f"{SAMPLES} | octoskin joints --socket joints", says="20 lines sent"),
+            Run(f"{SAMPLES} | octoskin joints --socket joints", says="30 lines sent"),
         "octoskin monitor": Run("octoskin monitor --once --socket control", says="joint"),
         "octoskin query --own-space 0.1":
-            Run(f"({SAMPLES} | octoskin joints --socket joints) & sleep 1; "
-                "octoskin query --own-space 0.1 --socket control", says="free"),
+            # A loaded machine starts the commands late: the query waits for the arm's posture.
+            Run(f"({SAMPLES} | octoskin joints --socket joints) & for i in $(seq 8); do "
+                "octoskin query --own-space 0.1 --socket control && exit 0; sleep 0.2; done; exit 1", says="free"),
         "octoskin record /var/lib/octoskin/bench --seconds 60":
             Run("octoskin record $PWD/bench --seconds 1 --socket control"),
     },
