@@ -35,7 +35,7 @@ constexpr std::array kShareBeyond = {0.12, 0.18};
 struct NamedCamera {
     const char* suffix;
     CameraIntrinsics camera;
-    bool stands = false;
+    bool is_stationary = false;
 };
 constexpr CameraIntrinsics kCamera{
     .width = 512, .height = 424, .fx = 365.0, .fy = 365.0, .cx = 256.0, .cy = 212.0};
@@ -43,7 +43,7 @@ constexpr std::array kCameras = {
     NamedCamera{.suffix = "", .camera = kCamera},
     NamedCamera{.suffix = "_640x480",
                 .camera = {.width = 640, .height = 480, .fx = 440.0, .fy = 440.0, .cx = 320.0, .cy = 240.0}},
-    NamedCamera{.suffix = "_stands", .camera = kCamera, .stands = true},
+    NamedCamera{.suffix = "_stands", .camera = kCamera, .is_stationary = true},
 };
 
 /// Removed at the end, with all that is in it.
@@ -109,7 +109,7 @@ std::vector<Row> rows_of(const std::vector<RoomFrames>& rooms, const std::string
         const std::string suffix = kCameras[i].suffix;
         append(peer_rows(rooms[i], resolution, options.runs, octomap_runs, suffix));
         append(whole_rows(rooms[i], resolution, options.runs, suffix));
-        if (!rooms[i].stands) append(frame_rows(rooms[i], resolution, options.runs, suffix));
+        if (!rooms[i].is_stationary) append(frame_rows(rooms[i], resolution, options.runs, suffix));
     }
     append(map_rows(rooms.front(), resolution, options.runs, folder));
     return rows;
@@ -164,8 +164,8 @@ void measure(const std::vector<Row>& rows, const Options& options, std::map<std:
 
 void tell_frames(const RoomFrames& room) {
     fmt::print("{} frames of {} x {}{}: mean depth {:.2f} m, {:.1f} % beyond {} m\n", room.frames.size(),
-               room.camera.width, room.camera.height, room.stands ? " from one place" : "", room.mean_depth_m,
-               100.0 * room.share_beyond, kRangeMax_m);
+               room.camera.width, room.camera.height, room.is_stationary ? " from one place" : "",
+               room.mean_depth_m, 100.0 * room.share_beyond, kRangeMax_m);
 }
 
 /// Says on the error stream if the frames are not what they should be.
@@ -189,7 +189,7 @@ bool check_room(const RoomFrames& room) {
 /// Not 0: an exit code, already told why.
 int render(std::vector<RoomFrames>& rooms) {
     for (const NamedCamera& named : kCameras) {
-        auto room = render_room(OCTOSKIN_ROOM, named.camera, named.stands, kFrames, kRangeMax_m);
+        auto room = render_room(OCTOSKIN_ROOM, named.camera, named.is_stationary, kFrames, kRangeMax_m);
         if (!room) {
             fmt::print(stderr, "{}\n", room.error().message());
             return 1;
@@ -218,7 +218,7 @@ std::vector<RoomFrames> rooms_of(const Options& options) {
     if (!options.frames.empty()) return std::vector<RoomFrames>(1);
     std::vector<RoomFrames> rooms;
     for (const NamedCamera& named : kCameras)
-        rooms.push_back({.camera = named.camera, .frames = {}, .stands = named.stands});
+        rooms.push_back({.camera = named.camera, .frames = {}, .is_stationary = named.is_stationary});
     return rooms;
 }
 

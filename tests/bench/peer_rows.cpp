@@ -70,7 +70,7 @@ std::vector<Row> peer_rows(const RoomFrames& room, const std::string& resolution
                    }};
     };
     std::vector<Row> rows = {octomap(kOctomap, false)};
-    if (room.stands) return rows;
+    if (room.is_stationary) return rows;
     rows.push_back(octomap("octomap_lazy", true));
     rows.push_back({"dense_grid_nearest_pixel" + suffix, peer, runs,
                     [&room, resolution] { return std::make_unique<DenseGridFrames>(room, resolution); }});

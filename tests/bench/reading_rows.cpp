@@ -22,7 +22,7 @@ struct Sensors {
     const char* name;
     const char* rig;
     RangeUpdate update;
-    bool stands;
+    bool is_stationary;
 };
 constexpr std::array kSensors = {
     Sensors{kRays, "experiment_cone.yaml", RangeUpdate::ray, false},
@@ -45,10 +45,10 @@ class Readings final : public Task {
   public:
     Readings(const std::filesystem::path& rig, const std::string& resolution, const Sensors& sensors,
              const FusedMap& map)
-        : builder_(builder_of(rig, resolution, sensors.update)), stands_(sensors.stands) {
+        : builder_(builder_of(rig, resolution, sensors.update)), is_stationary_(sensors.is_stationary) {
         builder_.begin_with(map.copy());
         for (auto& range_m : ranges_m_) range_m = range_m_(random_);
-        // What a sensor that stands has seen for long, all of its zones.
+        // What a stationary sensor has seen for long, all of its zones.
         for (int cycle = 0; cycle < kCyclesBefore; ++cycle) {
             prepare();
             run();
@@ -63,7 +63,7 @@ class Readings final : public Task {
         for (std::uint8_t node = 1; node <= kNodes; ++node) {
             for (std::uint8_t sensor = 0; sensor < kSensorsOfNode; ++sensor) {
                 double& range_m = ranges_m_.at((node - 1U) * kSensorsOfNode + sensor);
-                if (!stands_) range_m = range_m_(random_);
+                if (!is_stationary_) range_m = range_m_(random_);
                 const auto zone = builder_.has({node, sensor, kZones - 1})
                                       ? static_cast<std::uint8_t>(cycle_ % kZones)
                                       : std::uint8_t{0};
@@ -75,7 +75,7 @@ class Readings final : public Task {
         for (const std::int64_t ahead_ns : {-kJointsAhead_ns, kJointsAhead_ns}) {
             const HostTime time{now_.ns + ahead_ns};
             JointMeasurement joints{time, {}};
-            const double seconds = stands_ ? 0.0 : 1e-9 * static_cast<double>(time.ns);
+            const double seconds = is_stationary_ ? 0.0 : 1e-9 * static_cast<double>(time.ns);
             for (std::size_t i = 0; i < kReady.size(); ++i)
                 joints.position_rad.at(i) =
                     kReady.at(i) + kSwing_rad * std::sin(kSwingRate * seconds + static_cast<double>(i));
@@ -115,7 +115,7 @@ class Readings final : public Task {
     }
 
     MapBuilder builder_;
-    bool stands_;
+    bool is_stationary_;
     unsigned cycle_ = 0;
     HostTime now_{kPeriod_ns};
     std::mt19937 random_{5};

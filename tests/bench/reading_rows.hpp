@@ -1,5 +1,5 @@
 // Rows of what a reading costs, from where the robot is to the fused map: a sensor that sees a cone, or zones
-// of one, with an arm that moves or stands, beside single rays.
+// of one, with an arm that moves or is stationary, beside single rays.
 #pragma once
 
 #include <filesystem>

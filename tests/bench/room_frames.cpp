@@ -16,7 +16,7 @@ namespace {
 constexpr double kSigma_m = 0.03;
 constexpr double kFurthest_m = 20.0;
 /// Of the way: what is seen here is as far as on the whole way in the mean.
-constexpr double kStandsAt = 0.3;
+constexpr double kStationaryAt = 0.3;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 const Eigen::Translation3d kOnTheTable(0.6, 0.4, 0.76);
 const Eigen::AlignedBox3d kAsked(Eigen::Vector3d(-0.5, -2.6, 0.0), Eigen::Vector3d(3.2, 2.6, 2.6));
@@ -97,16 +97,17 @@ Eigen::Isometry3d arm_before_camera() {
 }
 
 Result<RoomFrames, Error> render_room(const std::filesystem::path& sdf, const CameraIntrinsics& camera,
-                                      bool stands, unsigned count, double range_max_m) {
+                                      bool is_stationary, unsigned count, double range_max_m) {
     const auto world = sim::World::read(sdf);
     if (!world) return unexpected(world.error());
-    RoomFrames room{.camera = camera, .frames = {}, .stands = stands, .asked = kAsked};
+    RoomFrames room{.camera = camera, .frames = {}, .is_stationary = is_stationary, .asked = kAsked};
     room.T_map_arm = kOnTheTable;
     std::mt19937 random(1);
     std::normal_distribution<double> noise_m(0.0, kSigma_m);
     for (unsigned i = 0; i < count; ++i) {
-        RoomFrame frame{.image = {.width = camera.width, .height = camera.height, .depth_m = {}},
-                        .T_map_camera = pose_at(stands ? kStandsAt : static_cast<double>(i) / count)};
+        RoomFrame frame{
+            .image = {.width = camera.width, .height = camera.height, .depth_m = {}},
+            .T_map_camera = pose_at(is_stationary ? kStationaryAt : static_cast<double>(i) / count)};
         const auto directions = directions_of(camera, frame.T_map_camera);
         std::vector<double> depth_m(directions.size());
         world->cast_fan(frame.T_map_camera.translation(), directions, kFurthest_m, depth_m);

@@ -20,8 +20,8 @@ struct RoomFrame {
 struct RoomFrames {
     CameraIntrinsics camera;
     std::vector<RoomFrame> frames;
-    bool stands = false;  ///< all of them from one place
-    /// Where the arm of the planner's rows stands, z up.
+    bool is_stationary = false;  ///< all of them from one place
+    /// The place of the arm of the planner's rows, z up.
     Eigen::Isometry3d T_map_arm = Eigen::Isometry3d::Identity();
     /// Where the points of row `points` are.
     Eigen::AlignedBox3d asked{Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()};
@@ -33,10 +33,10 @@ struct RoomFrames {
 /// The arm before a camera, in its view: half a metre below the axis and 0.8 m ahead.
 [[nodiscard]] Eigen::Isometry3d arm_before_camera();
 
-/// `count` frames with noise of 3 cm, in millimetres as a camera gives them. `stands`: all from one
+/// `count` frames with noise of 3 cm, in millimetres as a camera gives them. `is_stationary`: all from one
 /// place of the way. About 20 ms a frame.
 [[nodiscard]] Result<RoomFrames, Error> render_room(const std::filesystem::path& sdf,
-                                                    const CameraIntrinsics& camera, bool stands,
+                                                    const CameraIntrinsics& camera, bool is_stationary,
                                                     unsigned count, double range_max_m);
 
 /// At most `count` images of a data set, evenly spread, with its own camera. Reads all images: about 5 ms

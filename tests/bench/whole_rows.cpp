@@ -39,10 +39,10 @@ HostRig rig_of(const RoomFrames& room) {
     return rig;
 }
 
-DepthFrame captured(const RoomFrame& frame, bool stands, HostTime time) {
+DepthFrame captured(const RoomFrame& frame, bool is_stationary, HostTime time) {
     DepthFrame captured{
         .captured = time, .width = frame.image.width, .height = frame.image.height, .depth_mm = {}};
-    if (!stands) captured.T_map_camera = frame.T_map_camera;
+    if (!is_stationary) captured.T_map_camera = frame.T_map_camera;
     for (const float depth_m : frame.image.depth_m) {
         captured.depth_mm.push_back(std::isnan(depth_m)
                                         ? std::uint16_t{0}
@@ -67,7 +67,7 @@ class WholeFrames final : public FrameTask {
         // Of the frame before, so that nothing of the next one is in a cache yet.
         if (frames_ > 0) take_steps();
         const RoomFrame& frame = next();
-        frame_ = captured(frame, room().stands, HostTime{frames_ * kPeriod_ns});
+        frame_ = captured(frame, room().is_stationary, HostTime{frames_ * kPeriod_ns});
         robot_.body_base = arm_camera_[static_cast<std::size_t>(frames_) % arm_camera_.size()];
         for (PosedCapsule& capsule : robot_.body_base) {
             capsule.p_a = frame.T_map_camera * capsule.p_a;

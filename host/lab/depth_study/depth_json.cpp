@@ -71,8 +71,8 @@ Json hand_json(const HandFigures& figures) {
 
 std::string_view name_of(DepthScene scene) {
     switch (scene) {
-        case DepthScene::standing:
-            return "standing";
+        case DepthScene::stationary:
+            return "stationary";
         case DepthScene::moving:
             return "moving";
         case DepthScene::hand:

@@ -95,8 +95,8 @@ Result<CaseFigures, AppError> study_case(const DepthCase& of, const DepthRequest
         if (!hand) return unexpected(hand.error());
         return CaseFigures{{}, std::move(*hand)};
     }
-    auto seen = request.scene == DepthScene::standing
-                    ? study_standing(of, request.times_s)
+    auto seen = request.scene == DepthScene::stationary
+                    ? study_stationary(of, request.times_s)
                     : study_moving(of, *std::ranges::max_element(request.times_s));
     if (!seen) return unexpected(seen.error());
     return CaseFigures{std::move(*seen), {}};

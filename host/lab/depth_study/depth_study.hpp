@@ -14,7 +14,7 @@
 
 namespace octoskin::depth_study {
 
-enum class DepthScene : std::uint8_t { standing, moving, hand };
+enum class DepthScene : std::uint8_t { stationary, moving, hand };
 
 struct DepthRequest {
     std::vector<std::filesystem::path> scenarios;
@@ -24,7 +24,7 @@ struct DepthRequest {
     std::vector<double> sigma_factors{1.0};
     std::vector<std::uint64_t> seeds;
     std::vector<double> times_s;  ///< ascending or not; `moving` takes the last only, `hand` none
-    DepthScene scene = DepthScene::standing;
+    DepthScene scene = DepthScene::stationary;
     unsigned jobs = 1;
     std::function<void(const std::string& warning)> on_world_warning = {};
 };
@@ -33,7 +33,7 @@ struct DepthRequest {
 struct DepthResults {
     std::string program;
     std::string rig;  ///< its name
-    DepthScene scene = DepthScene::standing;
+    DepthScene scene = DepthScene::stationary;
     std::vector<SeenFigures> seen;  ///< empty with `hand`
     std::vector<HandFigures> hand;  ///< with `hand` only
 };

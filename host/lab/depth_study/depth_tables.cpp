@@ -125,7 +125,7 @@ void add_seen_tables(std::string& text, const DepthResults& results, const std::
     auto out = std::back_inserter(text);
     const auto rows = rows_of(results.seen, noise, seen_title);
     fmt::format_to(out, "\nnoise {}, {} camera, {} seeds: means, worst seed in brackets\n", noise,
-                   results.scene == DepthScene::moving ? "moving" : "standing", rows.front().seeds.size());
+                   results.scene == DepthScene::moving ? "moving" : "stationary", rows.front().seeds.size());
     fmt::format_to(out, "{:<14}{:<16}{:>6} {:>14}{:>10}{:>10}{:>10} {:>14}{:>10}{:>10}{:>10}{:>10}\n",
                    "world", "configuration", "time s", "precision", "tolerant", "f1_seen", "occupied", "free",
                    "unknown", "body_2cm", "body_5cm", "available");

@@ -62,8 +62,8 @@ Subject subject_of(const DepthCase& of, const Contender& contender) {
             contender.sigma_factor, contender.label(), of.seed};
 }
 
-Result<std::vector<SeenFigures>, AppError> study_standing(const DepthCase& of,
-                                                          const std::vector<double>& times_s) {
+Result<std::vector<SeenFigures>, AppError> study_stationary(const DepthCase& of,
+                                                            const std::vector<double>& times_s) {
     SeenStudy study(of);
     if (auto seen = study.look_from(of.camera); !seen) return unexpected(seen.error());
     const NoisyCamera camera(of.world, of.camera, of.noise.noise, of.seed);

@@ -44,10 +44,10 @@ struct SeenFigures {
     evaluation::SeenMetrics seen;
 };
 
-/// The camera stands. Figures after the first frame at or after each time, in the order of times.
+/// The camera is stationary. Figures after the first frame at or after each time, in the order of times.
 /// Errors: as DepthMapper::take() and evaluation::seen_truth() (bad_config).
-[[nodiscard]] Result<std::vector<SeenFigures>, AppError> study_standing(const DepthCase& of,
-                                                                        const std::vector<double>& times_s);
+[[nodiscard]] Result<std::vector<SeenFigures>, AppError> study_stationary(const DepthCase& of,
+                                                                          const std::vector<double>& times_s);
 
 /// The camera moves (circling()); each frame has its pose. Figures after the first frame, and after the first
 /// at or after `end_s`, each by what the camera sees from there. Errors: likewise.
