@@ -111,6 +111,17 @@ class WriteResults(unittest.TestCase):
         self.assertEqual(self.run_with(self.file(metrics_json(rig="experiment_zones.yaml")), *MEASURED)[1],
                          "replaced metrics/experiment_zones/fast/fused\n")
 
+    def test_the_page_marks_the_default_and_says_that_no_run_has_it_only_while_none_has(self):
+        figures = self.figures()
+        self.assertNotIn("(default)", self.page())
+        self.assertIn("older than `denoised`, the default", self.page())
+        fast = next(figure for figure in figures if figure["id"] == "metrics/experiment/fast/depth")
+        figures.append({**fast, "id": "metrics/experiment/denoised/depth"})
+        (self.folder / "figures.json").write_text(json.dumps(figures))
+        self.assertEqual(self.run_with()[0], 0)
+        self.assertIn("| `denoised` (default) | depth | 1,970 |", self.page())
+        self.assertNotIn("older than", self.page())
+
     def test_a_bench_replaces_what_it_has(self):
         code, out, error = self.run_with(self.file(bench_json()), *MEASURED, *COMMIT)
         self.assertEqual((code, out, error), (0, "replaced bench/0.04/fast\n", ""))
