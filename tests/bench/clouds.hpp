@@ -4,7 +4,6 @@
 #include <octomap/octomap.h>
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "host/core/depth/pixel_rays.hpp"
@@ -35,20 +34,6 @@ inline octomap::Pointcloud cloud_of(const RoomFrame& frame, const CameraIntrinsi
         cloud.push_back(point.x(), point.y(), point.z());
     }
     return cloud;
-}
-
-inline MappingConfig mapping_with(DepthUpdate update) {
-    switch (update) {
-        case DepthUpdate::paper:
-            return paper_mapping();
-        case DepthUpdate::robust:
-            return robust_mapping();
-        case DepthUpdate::fast:
-            return fast_mapping();
-        case DepthUpdate::denoised:
-            return denoised_mapping();
-    }
-    throw std::logic_error("an unknown depth update");
 }
 
 /// Whatever is hit counts, so that a key's set can be told from its term.

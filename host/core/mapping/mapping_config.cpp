@@ -48,4 +48,18 @@ MappingConfig denoised_mapping() {
     return config;
 }
 
+MappingConfig mapping_with(DepthUpdate update) {
+    switch (update) {
+        case DepthUpdate::paper:
+            return paper_mapping();
+        case DepthUpdate::robust:
+            return robust_mapping();
+        case DepthUpdate::fast:
+            return fast_mapping();
+        case DepthUpdate::denoised:
+            break;
+    }
+    return denoised_mapping();
+}
+
 }  // namespace octoskin

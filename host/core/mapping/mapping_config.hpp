@@ -91,5 +91,7 @@ struct MappingConfig {
 [[nodiscard]] MappingConfig robust_mapping();
 /// Depth filtered, each voxel evaluated by the rays near its centre.
 [[nodiscard]] MappingConfig fast_mapping();
+/// The one of these with this update.
+[[nodiscard]] MappingConfig mapping_with(DepthUpdate update);
 
 }  // namespace octoskin

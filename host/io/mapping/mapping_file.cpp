@@ -19,20 +19,6 @@ namespace {
 
 using rig::Table;
 
-MappingConfig configuration_of(DepthUpdate depth_update) {
-    switch (depth_update) {
-        case DepthUpdate::paper:
-            return paper_mapping();
-        case DepthUpdate::robust:
-            return robust_mapping();
-        case DepthUpdate::fast:
-            return fast_mapping();
-        case DepthUpdate::denoised:
-            break;
-    }
-    return denoised_mapping();
-}
-
 /// Reads one key of `table` over the value that holds without it. A number of a map is stored in single
 /// precision: -0.4 in the file is the float nearest to it.
 void read_key(const Table& table, const MappingKey& key, MappingConfig& config) {
@@ -184,7 +170,7 @@ MappingConfig read_checked(const FilePlace& file) {
     const std::vector<std::string_view> names = names_at_top();
     const Table top(document, "", names, paths_below_top());
     MappingConfig config = denoised_mapping();
-    if (top.find("base") != nullptr) config = configuration_of(top.choice("base", depth_update_words()));
+    if (top.find("base") != nullptr) config = mapping_with(top.choice("base", depth_update_words()));
     for (const std::string_view name : names) {
         const std::vector<std::string_view> keys = names_in(name);
         const rig::Value* value = keys.empty() ? nullptr : top.find(name);
@@ -199,7 +185,7 @@ MappingConfig read_checked(const FilePlace& file) {
 
 Result<MappingConfig, Error> read_mapping(const std::string& name_or_file) {
     for (const auto& [name, depth_update] : depth_update_words()) {
-        if (name_or_file == name) return configuration_of(depth_update);
+        if (name_or_file == name) return mapping_with(depth_update);
     }
     if (name_or_file == "paper_noise_free_robot_seen") {
         MappingConfig mapping = paper_mapping();
