@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "host/core/depth/pixel_rays.hpp"
+#include "common/lens/lens_distortion.hpp"
 #include "host/io/tum/data_set_camera.hpp"
 #include "host/io/tum/data_set_reader.hpp"
 #include "hw/sim/world/world.hpp"
@@ -39,14 +39,10 @@ Eigen::Isometry3d pose_at(double turn) {
 
 std::vector<Eigen::Vector3d> directions_of(const CameraIntrinsics& camera,
                                            const Eigen::Isometry3d& T_map_camera) {
-    const PixelRays rays(camera);
     std::vector<Eigen::Vector3d> directions;
-    for (std::uint32_t v = 0; v < camera.height; ++v) {
-        for (std::uint32_t u = 0; u < camera.width; ++u) {
-            const RaySlope ray = rays.at(u, v);
-            directions.emplace_back(T_map_camera.linear() * Eigen::Vector3d(ray.x, ray.y, 1.0));
-        }
-    }
+    for_each_pixel_ray(camera, [&](std::uint32_t, std::uint32_t, const RaySlope& ray) {
+        directions.emplace_back(T_map_camera.linear() * Eigen::Vector3d(ray.x, ray.y, 1.0));
+    });
     return directions;
 }
 

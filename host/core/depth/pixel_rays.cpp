@@ -1,9 +1,7 @@
 #include "host/core/depth/pixel_rays.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
-#include <optional>
 
 namespace octoskin {
 
@@ -26,16 +24,11 @@ void PixelRays::take_lens_out() {
     std::fill(columns_.begin(), columns_.end(), Extent{kInfinity, -kInfinity});
     std::fill(rows_.begin(), rows_.end(), Extent{kInfinity, -kInfinity});
     rays_.reserve(std::size_t{camera_.width} * camera_.height);
-    const LensInverse inverse(camera_.lens);
-    for (std::uint32_t v = 0; v < camera_.height; ++v) {
-        for (std::uint32_t u = 0; u < camera_.width; ++u) {
-            const std::optional<RaySlope> ray = inverse.ray_of(picture_of(camera_, u, v));
-            assert(ray.has_value());
-            rays_.push_back(*ray);
-            columns_[u] = {std::min(columns_[u].low, ray->x), std::max(columns_[u].high, ray->x)};
-            rows_[v] = {std::min(rows_[v].low, ray->y), std::max(rows_[v].high, ray->y)};
-        }
-    }
+    for_each_pixel_ray(camera_, [&](std::uint32_t u, std::uint32_t v, const RaySlope& ray) {
+        rays_.push_back(ray);
+        columns_[u] = {std::min(columns_[u].low, ray.x), std::max(columns_[u].high, ray.x)};
+        rows_[v] = {std::min(rows_[v].low, ray.y), std::max(rows_[v].high, ray.y)};
+    });
 }
 
 PixelSpan PixelRays::span_of(const std::vector<Extent>& extents, double low, double high) noexcept {

@@ -41,16 +41,10 @@ std::pair<std::uint32_t, std::uint32_t> pixels_of(Span span, double focal_px, do
 }
 
 std::vector<RaySlope> rays_of(const rig::Camera& camera) {
-    const LensInverse inverse(camera.lens);
     std::vector<RaySlope> rays;
     rays.reserve(std::size_t{camera.width} * camera.height);
-    for (std::uint32_t v = 0; v < camera.height; ++v) {
-        for (std::uint32_t u = 0; u < camera.width; ++u) {
-            const auto ray = inverse.ray_of(picture_of(camera, u, v));
-            assert(ray.has_value());  // checked where the rig was read
-            rays.push_back(*ray);
-        }
-    }
+    for_each_pixel_ray(camera,
+                       [&](std::uint32_t, std::uint32_t, const RaySlope& ray) { rays.push_back(ray); });
     return rays;
 }
 

@@ -116,6 +116,25 @@ TEST(LensDistortion, a_pixel_is_where_its_centre_is) {
     EXPECT_DOUBLE_EQ(picture_of(camera, 419, 279).y, 0.09875);
 }
 
+TEST(LensInverse, gives_each_pixel_its_ray_row_by_row) {
+    struct {
+        std::uint32_t width = 5, height = 4;
+        double fx = 5.0, fy = 4.0, cx = 2.5, cy = 2.0;
+        LensDistortion lens;
+    } camera;
+    for (const LensDistortion& lens : {LensDistortion{}, LensDistortion{.k1 = 0.1, .p2 = 0.01}}) {
+        camera.lens = lens;
+        std::uint32_t pixel = 0;
+        for_each_pixel_ray(camera, [&](std::uint32_t u, std::uint32_t v, const RaySlope& ray) {
+            EXPECT_EQ(v * camera.width + u, pixel++);
+            const RaySlope seen = distorted(lens, ray);
+            EXPECT_NEAR(seen.x, picture_of(camera, u, v).x, 1e-12);
+            EXPECT_NEAR(seen.y, picture_of(camera, u, v).y, 1e-12);
+        });
+        EXPECT_EQ(pixel, 20U);
+    }
+}
+
 TEST(LensInverse, of_no_lens_is_the_picture_to_the_last_bit) {
     const LensInverse none(LensDistortion{});
     EXPECT_EQ(none.radius(), 4.0);
