@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "host/lab/evaluation/marked_voxels.hpp"
+
 namespace octoskin::evaluation {
 namespace {
 
@@ -23,9 +25,7 @@ struct SurfaceSums {
     std::uint64_t voxels = 0;
     std::uint64_t known = 0;
     std::uint64_t surface = 0;
-    std::uint64_t marked = 0;  ///< occupied in the map
-    std::uint64_t marked_surface = 0;
-    std::uint64_t marked_near_surface = 0;
+    MarkedVoxels marked;
     std::uint64_t occluded = 0;
     std::uint64_t marked_occluded = 0;
     std::uint64_t object = 0;  ///< occluded, and of a hidden object
@@ -58,9 +58,7 @@ void add_voxel(SurfaceSums& sums, const MapVoxel& voxel, const SurfaceVoxel& tru
     sums.voxels += 1;
     sums.known += voxel.occupancy != Occupancy::unknown ? 1 : 0;
     sums.surface += truth.is_surface ? 1 : 0;
-    sums.marked += is_marked ? 1 : 0;
-    sums.marked_surface += is_marked && truth.is_surface ? 1 : 0;
-    sums.marked_near_surface += is_marked && truth.is_near_surface ? 1 : 0;
+    sums.marked.add(voxel.occupancy, truth);
     sums.occluded += truth.is_occluded ? 1 : 0;
     sums.marked_occluded += is_marked && truth.is_occluded ? 1 : 0;
     sums.object += is_object ? 1 : 0;
@@ -81,12 +79,13 @@ void add_table_one(Metrics& metrics, Occupancy map, Occupancy truth) {
 }
 
 void set_ratios(Metrics& metrics, const SurfaceSums& sums) {
-    const std::uint64_t united = sums.marked + sums.surface - sums.marked_surface;
-    metrics.precision = ratio(sums.marked_surface, sums.marked);
-    metrics.recall = ratio(sums.marked_surface, sums.surface);
-    metrics.f1 = ratio(2 * sums.marked_surface, sums.marked + sums.surface);
-    metrics.iou = ratio(sums.marked_surface, united);
-    metrics.precision_tolerant = ratio(sums.marked_near_surface, sums.marked);
+    const MarkedVoxels& marked = sums.marked;
+    const std::uint64_t united = marked.all + sums.surface - marked.on_surface;
+    metrics.precision = marked.precision();
+    metrics.recall = ratio(marked.on_surface, sums.surface);
+    metrics.f1 = ratio(2 * marked.on_surface, marked.all + sums.surface);
+    metrics.iou = ratio(marked.on_surface, united);
+    metrics.precision_tolerant = marked.precision_tolerant();
     metrics.occluded_recall = ratio(sums.marked_occluded, sums.occluded);
     metrics.object_recall = ratio(sums.marked_object, sums.object);
     metrics.coverage = ratio(sums.known, sums.voxels);

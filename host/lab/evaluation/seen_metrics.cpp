@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/lab/evaluation/marked_voxels.hpp"
 #include "host/lab/evaluation/seen.hpp"
 
 namespace octoskin::evaluation {
@@ -98,20 +99,12 @@ void add_seen_voxels(SeenMetrics& metrics, const States& states, const SeenTruth
     metrics.body_5cm = metrics.all.body_5cm.free_share();
 }
 
-/// As compute_metrics() does.
 void add_precision(SeenMetrics& metrics, const States& states, const SeenTruth& truth) {
-    std::uint64_t marked = 0;
-    std::uint64_t on_surface = 0;
-    std::uint64_t near_surface = 0;
-    for (std::size_t i = 0; i < truth.surface.size(); ++i) {
-        const SurfaceVoxel& voxel = truth.surface[i];
-        if (voxel.is_interior || states.at(truth.region().key_at(i)) != Occupancy::occupied) continue;
-        marked += 1;
-        on_surface += voxel.is_surface ? 1U : 0U;
-        near_surface += voxel.is_near_surface ? 1U : 0U;
-    }
-    metrics.precision = ratio(on_surface, marked);
-    metrics.precision_tolerant = ratio(near_surface, marked);
+    MarkedVoxels marked;
+    for (std::size_t i = 0; i < truth.surface.size(); ++i)
+        marked.add(states.at(truth.region().key_at(i)), truth.surface[i]);
+    metrics.precision = marked.precision();
+    metrics.precision_tolerant = marked.precision_tolerant();
 }
 
 /// 0 if nothing seen is occupied, as the plain F1.
