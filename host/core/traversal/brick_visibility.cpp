@@ -56,31 +56,6 @@ double BrickVisibility::corner_m(Eigen::Index axis, double slope) const {
                      std::abs(R(axis, 2) - slope * R(2, 2)));
 }
 
-std::optional<PixelBox> BrickVisibility::pixels_of_voxel(const Eigen::Vector3d& centre) const {
-    const double nearest_m = centre.z() - view_.half_depth_m - view_.margin_m;
-    if (nearest_m < view_.half_depth_m) {
-        if (is_out_of_sight(centre, 1)) return std::nullopt;
-        return PixelBox{0, camera_.width - 1, 0, camera_.height - 1};
-    }
-    struct Range {
-        int first, last;
-    };
-    const auto range_of = [&](Eigen::Index axis, double focal, double middle, std::uint32_t size) -> Range {
-        const double slope = centre[axis] / centre.z();
-        const double apart = focal * corner_m(axis, slope) / nearest_m + kRounding_px;
-        const double first = focal * slope + middle - apart;
-        const double last = std::min(focal * slope + middle + apart, size - 1.0);
-        if (last < 0.0 || first > last) return {0, -1};
-        const int whole = first > 0.0 ? static_cast<int>(first) : 0;
-        return {whole < first ? whole + 1 : whole, static_cast<int>(last)};
-    };
-    const Range u = range_of(0, camera_.fx, camera_.cx - 0.5, camera_.width);
-    const Range v = range_of(1, camera_.fy, camera_.cy - 0.5, camera_.height);
-    if (u.last < u.first || v.last < v.first) return std::nullopt;
-    return PixelBox{static_cast<std::uint32_t>(u.first), static_cast<std::uint32_t>(u.last),
-                    static_cast<std::uint32_t>(v.first), static_cast<std::uint32_t>(v.last)};
-}
-
 SquareOfPixels BrickVisibility::square_of_voxels(const Eigen::Vector3d& centre, int voxels) const {
     const double half_depth_m = voxels * view_.half_depth_m + view_.margin_m;
     const double nearest_m = centre.z() - half_depth_m;

@@ -24,8 +24,6 @@ class BrickVisibility {
     [[nodiscard]] bool is_out_of_sight(const Eigen::Vector3d& centre, int voxels) const;
     /// The pixels that may see a cube; empty if the cube is too near to the camera for a decision.
     [[nodiscard]] std::optional<PixelBox> pixels_of(const Eigen::Vector3d& centre, int voxels) const;
-    /// The pixels whose rays may pass a voxel, all if it is near to the camera; empty if there is none.
-    [[nodiscard]] std::optional<PixelBox> pixels_of_voxel(const Eigen::Vector3d& centre) const;
     /// A square that, around the pixel of the centre of any voxel of the cube, contains all pixels whose rays
     /// may pass that voxel.
     [[nodiscard]] SquareOfPixels square_of_voxels(const Eigen::Vector3d& centre, int voxels) const;
