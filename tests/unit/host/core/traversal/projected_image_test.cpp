@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "tests/support/cases.hpp"
 #include "tests/unit/host/core/traversal/traversal_scene.hpp"
 
 namespace octoskin {
@@ -23,9 +24,10 @@ TEST(ProjectedImage, is_bit_for_bit_what_eigen_and_octomap_make_of_each_pixel) {
     const PixelRays pixel_rays(kSmallCamera);
     const VoxelLattice lattice(0.04);
     on_each_instruction_set([&](const std::string& name) {
-        for (unsigned seed = 0; seed < 20; ++seed) {
+        for (unsigned seed = 0; seed < testing_support::cases(20); ++seed) {
             property::RandomGeometry random(seed, 0.04);
             const Eigen::Isometry3d T_map_camera = random.camera_pose();
+            const Eigen::Isometry3d T_camera_map = T_map_camera.inverse();
             const DepthImage image = random.depth_image(kSmallCamera.width, kSmallCamera.height);
             const double range_max_m = seed % 2 == 0 ? 0.0 : 1.7;
             ProjectedImage placed;
@@ -42,7 +44,7 @@ TEST(ProjectedImage, is_bit_for_bit_what_eigen_and_octomap_make_of_each_pixel) {
                 const Eigen::Vector3f end = octomaps_end(placed.origin, measured, range_max_m);
                 ASSERT_EQ(Eigen::Vector3f(placed.end_x[i], placed.end_y[i], placed.end_z[i]), end)
                     << name << " seed " << seed << " pixel " << i;
-                const double depth_m = (T_map_camera.inverse() * end.cast<double>()).z();
+                const double depth_m = (T_camera_map * end.cast<double>()).z();
                 ASSERT_NEAR(placed.reach_m[i], depth_m, 2e-6);
                 ASSERT_EQ(placed.range_m[i], end == measured ? p_camera.norm() : -1.0);
             }

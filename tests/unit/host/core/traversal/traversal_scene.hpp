@@ -16,25 +16,19 @@ namespace octoskin {
 inline constexpr CameraIntrinsics kSmallCamera{
     .width = 64, .height = 53, .fx = 45.6, .fy = 45.6, .cx = 32.0, .cy = 26.5};
 
-/// What walk_ray_keys() visits of every ray.
-inline std::set<VoxelKey> walked(const ProjectedImage& image, const VoxelLattice& lattice) {
-    std::set<VoxelKey> voxels;
+/// Calls visit(key) for what walk_ray_keys() visits, ray by ray.
+template <class Visit>
+void walk_all(const ProjectedImage& image, const VoxelLattice& lattice, const Visit& visit) {
     for (std::size_t i = 0; i < image.pixels(); ++i) {
         if (image.reach_m[i] < 0.0F) continue;
         const auto ray = plan_ray(lattice, image.origin, {image.end_x[i], image.end_y[i], image.end_z[i]});
-        walk_ray_keys(*ray, [&](VoxelKey key) { voxels.insert(key); });
+        walk_ray_keys(*ray, visit);
     }
-    return voxels;
 }
 
-/// In which a ray ends in something.
-inline std::set<VoxelKey> hit_by(const ProjectedImage& image, const VoxelLattice& lattice) {
+inline std::set<VoxelKey> walked(const ProjectedImage& image, const VoxelLattice& lattice) {
     std::set<VoxelKey> voxels;
-    for (std::size_t i = 0; i < std::size_t{image.width} * image.height; ++i) {
-        if (image.reach_m[i] < 0.0F || image.range_m[i] < 0.0) continue;
-        voxels.insert(
-            *lattice.key_of(Eigen::Vector3f(image.end_x[i], image.end_y[i], image.end_z[i]).cast<double>()));
-    }
+    walk_all(image, lattice, [&](VoxelKey key) { voxels.insert(key); });
     return voxels;
 }
 

@@ -35,9 +35,12 @@ Truth truth_of(VoxelKey key, const CameraIntrinsics& camera, const VoxelLattice&
     Truth truth;
     if (centre.z() < half_depth_m) return truth;
     for (std::uint32_t pixel = 0; pixel < camera.width * camera.height; ++pixel) {
-        const Eigen::Vector3d ray((pixel % camera.width + 0.5 - camera.cx) / camera.fx,
-                                  (pixel / camera.width + 0.5 - camera.cy) / camera.fy, 1.0);
-        const Eigen::Vector3d at_depth = centre.z() * ray;
+        const double x = (pixel % camera.width + 0.5 - camera.cx) / camera.fx;
+        const double y = (pixel / camera.width + 0.5 - camera.cy) / camera.fy;
+        // Most rays are further aside than any corner of the voxel: they do not count.
+        if (std::abs(centre.z() * x - centre.x()) > kResolution_m) continue;
+        if (std::abs(centre.z() * y - centre.y()) > kResolution_m) continue;
+        const Eigen::Vector3d at_depth = centre.z() * Eigen::Vector3d(x, y, 1.0);
         const double in_voxel_m =
             0.5 * kResolution_m - (T_map_camera * at_depth - centre_map).lpNorm<Eigen::Infinity>();
         const double aside_m = (at_depth - centre).head<2>().lpNorm<Eigen::Infinity>();
