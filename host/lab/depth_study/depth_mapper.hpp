@@ -18,6 +18,7 @@ class DepthMapper {
     DepthMapper(const rig::Camera& camera, const Eigen::Isometry3d& T_map_base, const MappingConfig& mapping);
 
     /// As the pipeline does: evidence of earlier estimates is retracted before the frame's terms are applied.
+    /// Frames in the order of their times. A frame without a pose is from the camera's place in the rig.
     /// Error (bad_data): the stage refuses the frame.
     [[nodiscard]] Status<AppError> take(const DepthFrame& frame);
     [[nodiscard]] const FusedMap& map() const noexcept { return map_; }

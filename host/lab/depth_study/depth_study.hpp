@@ -23,7 +23,7 @@ struct DepthRequest {
     std::vector<std::string> noises;  ///< as named_noise()
     std::vector<double> sigma_factors{1.0};
     std::vector<std::uint64_t> seeds;
-    std::vector<double> times_s;  ///< ascending or not; `moving` takes the last only, `hand` none
+    std::vector<double> times_s;  ///< not empty; `moving` takes the largest only, `hand` none
     DepthScene scene = DepthScene::stationary;
     unsigned jobs = 1;
     std::function<void(const std::string& warning)> on_world_warning = {};
