@@ -38,6 +38,12 @@ Json thickness_json(const SeenMetrics& seen) {
     return classes;
 }
 
+Json free_json(const evaluation::FreeBins& bins) {
+    Json json = Json::array();
+    for (const auto& bin : bins) json.push_back({{"voxels", bin.voxels}, {"surface", bin.surface}});
+    return json;
+}
+
 Json seen_json(const SeenFigures& figures) {
     const SeenMetrics& seen = figures.seen;
     Json json = subject_json(figures.subject);
@@ -54,6 +60,7 @@ Json seen_json(const SeenFigures& figures) {
     json["availability"] = value_json(seen.availability_5cm);
     json["all"] = shares_json(seen.all);
     json["thickness"] = thickness_json(seen);
+    json["free_by_images"] = free_json(figures.free.images);
     return json;
 }
 

@@ -121,6 +121,33 @@ void add_class_row(std::string& text, const SeenRow& row) {
     fmt::format_to(out, "\n");
 }
 
+evaluation::FreeBins pooled_free(const SeenRow& row) {
+    evaluation::FreeCalibration sum;
+    for (const SeenFigures* figures : row.seeds) sum.add(figures->free);
+    return sum.images;
+}
+
+/// One column for each bin in which a row has voxels.
+void add_free_table(std::string& text, const std::vector<SeenRow>& rows) {
+    auto out = std::back_inserter(text);
+    std::vector<std::size_t> bins;
+    for (std::size_t i = 0; i < evaluation::kFreeBins; ++i) {
+        if (std::ranges::any_of(rows, [&](const SeenRow& row) { return pooled_free(row)[i].voxels > 0; }))
+            bins.push_back(i);
+    }
+    fmt::format_to(out, "{:<14}{:<16}{:>6}", "world", "configuration", "time s");
+    for (const std::size_t i : bins)
+        fmt::format_to(out, "{:>17}", i + 1 < evaluation::kFreeBins ? fmt::format("{}", i) : "more");
+    for (const SeenRow& row : rows) {
+        fmt::format_to(out, "\n{}", row.title);
+        const auto free = pooled_free(row);
+        for (const std::size_t i : bins)
+            fmt::format_to(out, "{:>17}",
+                           fmt::format("{} ({})", number(free[i].surface_share(), 4), free[i].voxels));
+    }
+    fmt::format_to(out, "\n");
+}
+
 void add_seen_tables(std::string& text, const DepthResults& results, const std::string& noise) {
     auto out = std::back_inserter(text);
     const auto rows = rows_of(results.seen, noise, seen_title);
@@ -136,6 +163,9 @@ void add_seen_tables(std::string& text, const DepthResults& results, const std::
         fmt::format_to(out, "{:>16}", evaluation::name_of(thickness));
     fmt::format_to(out, "{:>16}\n", "too_coarse");
     for (const SeenRow& row : rows) add_class_row(text, row);
+    fmt::format_to(out, "\nnoise {}: surface share of free voxels (their number) by images behind them\n",
+                   noise);
+    add_free_table(text, rows);
 }
 
 using HandRow = Row<HandFigures>;

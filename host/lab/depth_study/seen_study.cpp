@@ -33,8 +33,11 @@ class SeenStudy {
 
     void judge(std::uint32_t frame) {
         for (std::size_t i = 0; i < mappers_.size(); ++i)
-            figures_.push_back({subject_of(of_, of_.contenders[i]), frame / of_.camera.rate_hz,
-                                evaluation::seen_metrics(mappers_[i].map(), truth_.value())});
+            figures_.push_back(
+                {subject_of(of_, of_.contenders[i]), frame / of_.camera.rate_hz,
+                 evaluation::seen_metrics(mappers_[i].map(), truth_.value()),
+                 evaluation::free_calibration(mappers_[i].map(), miss_units(of_.contenders[i].mapping),
+                                              truth_->surface)});
     }
 
     [[nodiscard]] std::vector<SeenFigures> figures() { return std::move(figures_); }

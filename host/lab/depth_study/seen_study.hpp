@@ -8,6 +8,7 @@
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
 #include "host/lab/depth_study/contender.hpp"
+#include "host/lab/evaluation/free_calibration.hpp"
 #include "host/lab/evaluation/seen.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/sim/scenario/scenario.hpp"
@@ -42,6 +43,7 @@ struct SeenFigures {
     Subject subject;
     double t_s = 0.0;  ///< of the last frame, from the first
     evaluation::SeenMetrics seen;
+    evaluation::FreeCalibration free;  ///< of all surfaces of the region
 };
 
 /// The camera is stationary. Figures after the first frame at or after each time, in the order of times.

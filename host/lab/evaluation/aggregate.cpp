@@ -45,6 +45,7 @@ MapSummary summarise_map(const std::vector<const Run*>& runs) {
     for (const auto* run : runs) {
         summary.seeds.push_back(run->seed);
         add_bins(summary.calibration, run->metrics.calibration);
+        summary.free_calibration.add(run->metrics.free_calibration);
         if (run->metrics.seen) add_seen(summary.seen, *run->metrics.seen);
     }
     for (const auto& field : metric_fields()) {

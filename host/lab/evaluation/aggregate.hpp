@@ -43,7 +43,8 @@ struct MapSummary {
     std::string map;
     std::vector<std::uint64_t> seeds;  ///< ascending; the order of `per_seed`
     MetricSummaries metrics;
-    Calibration calibration;  ///< pooled over the seeds
+    Calibration calibration;                ///< pooled over the seeds
+    FreeCalibration free_calibration = {};  ///< likewise
     /// Seen voxels by thickness, pooled over the seeds; empty without a camera.
     std::optional<SeenPool> seen = std::nullopt;
 

@@ -167,9 +167,10 @@ Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth) {
     return metrics;
 }
 
-Metrics evaluate(const FusedMap& map, const Truth& truth) {
+Metrics evaluate(const FusedMap& map, const Truth& truth, const MissUnits& units) {
     assert(map.resolution_m() == truth.resolution_m);
     Metrics metrics = compute_metrics(sample_map(map, truth.region()), truth);
+    metrics.free_calibration = free_calibration(map, units, truth.surface);
     if (truth.seen) metrics.seen = seen_metrics(map, *truth.seen);
     return metrics;
 }

@@ -8,7 +8,9 @@
 #include <span>
 #include <string_view>
 
+#include "host/core/mapping/free_evidence.hpp"
 #include "host/core/mapping/fused_map.hpp"
+#include "host/lab/evaluation/free_calibration.hpp"
 #include "host/lab/evaluation/seen.hpp"
 #include "host/lab/evaluation/truth.hpp"
 #include "host/lab/evaluation/voxel_grid.hpp"
@@ -58,17 +60,18 @@ struct Metrics {
     std::optional<double> log_loss;            ///< natural logarithm; unknown predicts 0.5
     std::optional<double> brier;
     Calibration calibration;
+    FreeCalibration free_calibration;
 
     std::optional<SeenMetrics> seen = std::nullopt;  ///< of the external camera; empty without one
 };
 
-/// `map` must be over the truth's region (asserted). Without `seen`, which also needs the map round the
-/// region.
+/// `map` must be over the truth's region (asserted). Without `seen` and `free_calibration`, which need more
+/// of the map.
 [[nodiscard]] Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth);
 
 /// Samples the map over the truth's region and computes the metrics. The resolutions must be equal
-/// (asserted).
-[[nodiscard]] Metrics evaluate(const FusedMap& map, const Truth& truth);
+/// (asserted). `units`: of the mapping that made the map.
+[[nodiscard]] Metrics evaluate(const FusedMap& map, const Truth& truth, const MissUnits& units);
 
 /// What scalar metrics compare with: tables have a part for each.
 enum class MetricGroup : std::uint8_t { camera_truth, surfaces, probabilities, seen };

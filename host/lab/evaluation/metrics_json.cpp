@@ -45,6 +45,12 @@ Json calibration_json(const Calibration& calibration) {
     return bins;
 }
 
+Json free_bins_json(const FreeBins& bins) {
+    Json json = Json::array();
+    for (const FreeBin& bin : bins) json.push_back({{"voxels", bin.voxels}, {"surface", bin.surface}});
+    return json;
+}
+
 Json body_json(const BodyTests& tests) {
     return {{"spheres", tests.spheres}, {"free", tests.free}};
 }
@@ -88,6 +94,10 @@ Json run_json(const Results& results) {
     }
     for (const auto& map : results.maps) {
         run["calibration"][map.configuration][map.map] = calibration_json(map.calibration);
+        run["free_calibration"][map.configuration][map.map] = {
+            {"images", free_bins_json(map.free_calibration.images)},
+            {"beams", free_bins_json(map.free_calibration.beams)},
+            {"sum", free_bins_json(map.free_calibration.sum)}};
         if (map.seen) run["thickness"][map.configuration][map.map] = seen_json(*map.seen);
     }
     run["times"] = Json::array();

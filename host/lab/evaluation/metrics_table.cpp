@@ -136,6 +136,39 @@ void add_thickness(std::string& text, const Results& results, std::string_view c
     for (const auto* map : maps) add_shares(text, "too_coarse", map->map, map->seen->too_coarse);
 }
 
+/// One row for each bin in which a map has voxels. `bins_of`: of a map.
+template <class BinsOf>
+void add_free_bins(std::string& text, std::string_view title, const std::vector<const MapSummary*>& maps,
+                   const BinsOf& bins_of) {
+    auto out = std::back_inserter(text);
+    for (std::size_t i = 0; i < kFreeBins; ++i) {
+        const auto bin = [&](const MapSummary* map) { return bins_of(map->free_calibration)[i]; };
+        if (std::ranges::none_of(maps, [&](const auto* map) { return bin(map).voxels > 0; })) continue;
+        fmt::format_to(out, "{:<20}", fmt::format("{} {}{}", title, i, i + 1 < kFreeBins ? "" : "+"));
+        for (const auto* map : maps) {
+            const std::string share = share_text(bin(map).surface_share());
+            fmt::format_to(out, "{:>20}", fmt::format("{} ({})", share, bin(map).voxels));
+        }
+        fmt::format_to(out, "\n");
+    }
+}
+
+/// How often free voxels are a surface, by the evidence behind them, for the maps of one configuration.
+void add_free_calibration(std::string& text, const Results& results, std::string_view configuration) {
+    std::vector<const MapSummary*> maps;
+    fmt::format_to(std::back_inserter(text), "\n{:<20}", "free: surface share");
+    for (const auto& map : results.maps) {
+        if (map.configuration != configuration) continue;
+        maps.push_back(&map);
+        fmt::format_to(std::back_inserter(text), "{:>20}", fmt::format("{} (voxels)", map.map));
+    }
+    text += "\n";
+    add_free_bins(text, "images", maps, [](const FreeCalibration& free) { return free.images; });
+    add_free_bins(text, "beams", maps, [](const FreeCalibration& free) { return free.beams; });
+    add_free_bins(text, "both, at least", maps,
+                  [](const FreeCalibration& free) { return at_least(free.sum); });
+}
+
 /// One table per configuration: its maps, and what fusion adds to the camera, paired.
 void add_configurations(std::string& text, const Results& results) {
     auto out = std::back_inserter(text);
@@ -159,6 +192,7 @@ void add_configurations(std::string& text, const Results& results) {
         fmt::format_to(out, "\n{}, {}", first.configuration, seeds_text(first.seeds.size()));
         add_columns(text, "metric", columns);
         add_thickness(text, results, first.configuration);
+        add_free_calibration(text, results, first.configuration);
     }
 }
 

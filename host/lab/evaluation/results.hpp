@@ -39,13 +39,14 @@ struct Results {
                               std::vector<std::pair<std::string, std::string>> provenance = {});
 
 /// JSON text: configuration -> map -> metric -> {mean, sd, per_seed}, and under the one reserved key "run"
-/// the seeds, paired differences, calibration tables, seen voxels by thickness, times and provenance.
-/// Undefined values are null. No configuration may have this name (asserted). Equal results give equal text.
+/// the seeds, paired differences, calibration tables, free voxels by evidence, seen voxels by thickness,
+/// times and provenance. Undefined values are null. No configuration may have this name (asserted). Equal
+/// results give equal text.
 [[nodiscard]] std::string metrics_json(const Results& results);
 
 /// Text tables for a terminal, about 100 columns: Table I and Lost (beside the paper's figures if the
-/// experiment is the paper's), all metrics as mean +- sd, seen voxels by thickness, the paired differences,
-/// the times.
+/// experiment is the paper's), all metrics as mean +- sd, seen voxels by thickness, free voxels by
+/// evidence, the paired differences, the times.
 [[nodiscard]] std::string metrics_table(const Results& results);
 
 /// Table I of Strong et al. 2021.

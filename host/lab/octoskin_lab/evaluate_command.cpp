@@ -129,7 +129,8 @@ Judged judge_recording(const EvaluateOptions& options) {
     std::vector<evaluation::Run> runs;
     for (const auto& [feed, map] : playback->pipeline.maps()) {
         if (!playback->rig.camera && feed != MapFeed::ranges) continue;
-        runs.push_back({name, std::string(name_of(feed)), seed, evaluation::evaluate(map, truth)});
+        runs.push_back(
+            {name, std::string(name_of(feed)), seed, evaluation::evaluate(map, truth, miss_units(mapping))});
     }
     return {results_of(runs, playback->rig, scene,
                        options.rig.empty() ? recording.rig() : FilePlace(options.rig)),
@@ -221,8 +222,9 @@ Judged judge_map(const EvaluateOptions& options) {
     const rig::Rig rig = rig_of_map(options, *provenance);
     const Scene scene = scene_of_map(options, provenance->recording);
     const evaluation::Truth truth = build(scene, rig, map.resolution_m());
+    // A map file does not contain its mapping, and has no counts.
     const std::vector<evaluation::Run> runs = {
-        {"map", options.input.stem().string(), 0, evaluation::evaluate(map, truth)}};
+        {"map", options.input.stem().string(), 0, evaluation::evaluate(map, truth, MissUnits{})}};
     return {results_of(runs, rig, scene, options.rig)};
 }
 

@@ -21,6 +21,7 @@ std::string report_html(const ReportInput& input) {
     html += unknown_section(input);
     html += metrics_section(input);
     html += thickness_section(input);
+    html += free_section(input);
     html += update_section(input);
     html += calibration_section(input);
     html += inputs_section(input);

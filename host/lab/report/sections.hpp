@@ -15,6 +15,8 @@ namespace octoskin::report {
 [[nodiscard]] std::string metrics_section(const ReportInput& input);
 /// Empty without a camera.
 [[nodiscard]] std::string thickness_section(const ReportInput& input);
+/// Empty if no map has free voxels.
+[[nodiscard]] std::string free_section(const ReportInput& input);
 [[nodiscard]] std::string update_section(const ReportInput& input);
 [[nodiscard]] std::string calibration_section(const ReportInput& input);
 [[nodiscard]] std::string inputs_section(const ReportInput& input);

@@ -152,6 +152,38 @@ spheres of 2 and 5 cm radius, 1 cm deep in a seen surface, whose voxels are all 
 </section>
 )";
 
+/// A row for each bin in which a map has voxels. `bins_of`: of a map.
+template <class BinsOf>
+std::string free_rows(std::string_view title, const std::vector<const MapSummary*>& maps,
+                      const BinsOf& bins_of) {
+    std::string html;
+    for (std::size_t i = 0; i < evaluation::kFreeBins; ++i) {
+        const auto bin = [&](const MapSummary* map) { return bins_of(map->free_calibration)[i]; };
+        if (std::ranges::none_of(maps, [&](const auto* map) { return bin(map).voxels > 0; })) continue;
+        html +=
+            fmt::format("<tr><th>{} {}{}</th>", title, i, i + 1 < evaluation::kFreeBins ? "" : " or more");
+        for (const auto* map : maps) {
+            const auto share = bin(map).surface_share();
+            html += fmt::format("<td>{}</td><td>{}</td>", share ? percent_text(*share) : "",
+                                count_text(static_cast<double>(bin(map).voxels)));
+        }
+        html += "</tr>\n";
+    }
+    return html;
+}
+
+constexpr std::string_view kFreeText =
+    R"(<section id="free">
+<h2>How free is free?</h2>
+<p>Voxels that a map of <code>{}</code> calls free, over all seeds, by the number of images and ranges behind it, rounded
+down: the share that is a surface after all, and the number of voxels.</p>
+<div class="table"><table>
+<thead><tr><th></th>{}</tr></thead>
+<tbody>
+{}</tbody></table></div>
+</section>
+)";
+
 constexpr std::string_view kTableText =
     R"(<section id="paper">
 <h2>{}</h2>
@@ -231,6 +263,23 @@ std::string thickness_section(const ReportInput& input) {
     }
     if (maps.empty()) return "";
     return fmt::format(fmt::runtime(kThicknessText), escaped(input.main_configuration), thickness_rows(maps));
+}
+
+std::string free_section(const ReportInput& input) {
+    std::vector<const MapSummary*> maps;
+    std::string head;
+    for (const auto& map : input.results.maps) {
+        if (map.configuration != input.main_configuration) continue;
+        maps.push_back(&map);
+        head += fmt::format("<th>{}</th><th>voxels</th>", map_title(map.map));
+    }
+    using evaluation::FreeCalibration;
+    const std::string rows =
+        free_rows("images:", maps, [](const FreeCalibration& free) { return free.images; }) +
+        free_rows("beams:", maps, [](const FreeCalibration& free) { return free.beams; }) +
+        free_rows("both, at least", maps, [](const FreeCalibration& free) { return at_least(free.sum); });
+    if (rows.empty()) return "";
+    return fmt::format(fmt::runtime(kFreeText), escaped(input.main_configuration), head, rows);
 }
 
 }  // namespace octoskin::report

@@ -111,14 +111,14 @@ Result<Playback, AppError> play(const SeedRequest& request, const NamedMapping& 
     return playback;
 }
 
-void judge(const Playback& playback, const std::string& configuration, const evaluation::Truth& truth,
+void judge(const Playback& playback, const NamedMapping& configuration, const evaluation::Truth& truth,
            SeedOutcome& outcome) {
     const PartTimer timer("evaluate");
     for (const auto& [feed, map] : playback.pipeline.maps()) {
         // Without a camera there is only the map of the ranges.
         if (!playback.rig.camera && feed != MapFeed::ranges) continue;
-        outcome.runs.push_back(
-            {configuration, std::string(name_of(feed)), outcome.seed, evaluation::evaluate(map, truth)});
+        outcome.runs.push_back({configuration.name, std::string(name_of(feed)), outcome.seed,
+                                evaluation::evaluate(map, truth, miss_units(configuration.mapping))});
     }
     outcome.times.push_back(timer.stop());
 }
@@ -176,7 +176,7 @@ Result<SeedOutcome, AppError> study_seed(const SeedRequest& request, const Study
                 if (!truth) return unexpected(truth.error());
                 outcome.truth = std::move(*truth);
             }
-            judge(*playback, configuration.name, *outcome.truth, outcome);
+            judge(*playback, configuration, *outcome.truth, outcome);
             if (is_main) {
                 playback->pipeline.set_listener(nullptr);
                 outcome.unknown_space = watch->finish(playback->pipeline.maps());

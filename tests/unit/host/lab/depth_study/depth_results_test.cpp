@@ -22,7 +22,7 @@ Subject subject(const std::string& noise, std::uint64_t seed, const std::string&
 }
 
 SeenFigures seen(const Subject& of, double precision, double free) {
-    SeenFigures figures{.subject = of, .t_s = 0.5, .seen = {}};
+    SeenFigures figures{.subject = of, .t_s = 0.5, .seen = {}, .free = {}};
     figures.seen.precision = precision;
     figures.seen.seen_free = free;
     evaluation::SeenShares& boards =
@@ -32,6 +32,7 @@ SeenFigures seen(const Subject& of, double precision, double free) {
     boards.free = 1;
     boards.body_2cm = {.spheres = 40, .free = 3};
     figures.seen.all = boards;
+    figures.free.images[2] = {.voxels = 50, .surface = of.seed};
     return figures;
 }
 
@@ -78,21 +79,29 @@ std::vector<std::vector<std::string>> rows_of(const std::string& tables) {
 
 TEST(DepthTables, have_means_and_the_worst_seed_by_noise) {
     const auto rows = rows_of(depth_tables(seen_results()));
-    ASSERT_EQ(rows.size(), 6U) << "two tables for each noise";
+    ASSERT_EQ(rows.size(), 9U) << "three tables for each noise";
     EXPECT_THAT(rows[0], ElementsAre("plate", "fast", "0.5", "0.850", "(0.800)", "-", "-", "-", "0.200",
                                      "(0.300)", "-", "-", "-", "-"));
     EXPECT_THAT(rows[1], ElementsAre("plate", "fast", "x2", "0.5", "0.700", "(0.700)", "-", "-", "-", "0.000",
                                      "(0.000)", "-", "-", "-", "-"));
-    EXPECT_THAT(rows[4], ElementsAre("plate", "fast", "0.5", "0.500", "(0.500)", "-", "-", "-", "0.250",
+    EXPECT_THAT(rows[6], ElementsAre("plate", "fast", "0.5", "0.500", "(0.500)", "-", "-", "-", "0.250",
                                      "(0.250)", "-", "-", "-", "-"));
 }
 
 // Occupied: 1 and 3 of 10.
 TEST(DepthTables, pool_the_seeds_voxels_of_a_thickness) {
     const auto rows = rows_of(depth_tables(seen_results()));
-    ASSERT_EQ(rows.size(), 6U);
+    ASSERT_EQ(rows.size(), 9U);
     EXPECT_THAT(rows[2], testing::IsSupersetOf({"plate", "fast", "0.5", "0.200", "0.100"}));
     EXPECT_EQ(std::ranges::count(rows[2], "-"), static_cast<std::ptrdiff_t>(evaluation::kThicknessClasses));
+}
+
+// 1 and 3 surface voxels of 50 each.
+TEST(DepthTables, have_the_surface_share_of_free_voxels_by_images) {
+    const auto rows = rows_of(depth_tables(seen_results()));
+    ASSERT_EQ(rows.size(), 9U);
+    EXPECT_THAT(rows[4], ElementsAre("plate", "fast", "0.5", "0.0400", "(100)"));
+    EXPECT_THAT(rows[8], ElementsAre("plate", "fast", "0.5", "0.0200", "(50)"));
 }
 
 TEST(DepthTables, have_a_hands_times_and_that_it_never_left) {

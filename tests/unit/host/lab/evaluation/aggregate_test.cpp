@@ -71,6 +71,17 @@ TEST(Aggregate, pools_the_calibration_of_the_seeds) {
     EXPECT_DOUBLE_EQ(summaries[0].calibration[7].observed_fraction().value(), 0.75);
 }
 
+TEST(Aggregate, pools_the_evidence_behind_free_of_the_seeds) {
+    Runs runs = {judge("robust", "fused", 0, 0, {}), judge("robust", "fused", 1, 0, {})};
+    runs[0].metrics.free_calibration.images[5] = {.voxels = 10, .surface = 1};
+    runs[1].metrics.free_calibration.images[5] = {.voxels = 30, .surface = 5};
+    runs[1].metrics.free_calibration.sum[7] = {.voxels = 2, .surface = 0};
+    const auto summaries = aggregate(runs);
+    EXPECT_DOUBLE_EQ(summaries[0].free_calibration.images[5].surface_share().value(), 0.15);
+    EXPECT_EQ(summaries[0].free_calibration.sum[7].voxels, 2U);
+    EXPECT_EQ(summaries[0].free_calibration.beams[5].voxels, 0U);
+}
+
 TEST(PairedDifference, subtracts_seed_by_seed) {
     // The two maps spread by 100 over the seeds; their difference does not spread at all.
     const Runs runs = {judge("robust", "fused", 0, 100, 0.5), judge("robust", "fused", 1, 200, 0.6),

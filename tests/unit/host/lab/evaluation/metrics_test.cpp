@@ -179,7 +179,7 @@ TEST(Evaluate, judges_a_map_by_its_own_threshold) {
     FusedMap map(config);
     feed(map, std::vector<VoxelUpdate>{{key(0, 0, 0), 0.85F}, {key(1, 0, 0), 0.75F}});
     Truth truth{0.04, VoxelGrid<Occupancy>(row(2), kOccupied), VoxelGrid<SurfaceVoxel>(row(2))};
-    const Metrics metrics = evaluate(map, truth);
+    const Metrics metrics = evaluate(map, truth, MissUnits{});
     EXPECT_EQ(metrics.occupied, 1U);
     EXPECT_EQ(metrics.lost, 1U);
 }

@@ -15,6 +15,7 @@ Run judge(const std::string& configuration, const std::string& map, std::uint64_
     Run judged{configuration, map, seed, {}};
     judged.metrics.missed = missed;
     judged.metrics.f1 = 0.25 + 0.25 * static_cast<double>(seed);
+    judged.metrics.free_calibration.beams[2] = {.voxels = 50, .surface = 2};
     judged.metrics.calibration[6] = {.count = 4, .probability_sum = 2.6, .occupied_count = 3};
     return judged;
 }
@@ -90,6 +91,22 @@ TEST(MetricsJson, tabulates_the_calibration_pooled_over_seeds) {
     EXPECT_NEAR(bins.at(6).at("mean_predicted").get<double>(), 0.65, 1e-12);
     EXPECT_NEAR(bins.at(6).at("observed_fraction").get<double>(), 0.75, 1e-12);
     EXPECT_TRUE(bins.at(0).at("mean_predicted").is_null());
+}
+
+TEST(MetricsJson, tabulates_free_voxels_by_evidence_pooled_over_seeds) {
+    const auto json = nlohmann::json::parse(metrics_json(two_seeds()));
+    const auto& free = json.at("run").at("free_calibration").at("robust").at("depth");
+    ASSERT_EQ(free.at("beams").size(), kFreeBins);
+    EXPECT_EQ(free.at("beams").at(2), (nlohmann::json{{"voxels", 100}, {"surface", 4}}));
+    EXPECT_EQ(free.at("images").at(2).at("voxels"), 0);
+    EXPECT_EQ(free.at("sum").size(), kFreeBins);
+}
+
+TEST(MetricsTable, has_a_row_for_free_voxels_with_evidence_only) {
+    const std::string text = metrics_table(two_seeds());
+    EXPECT_NE(text.find("beams 2"), std::string::npos);
+    EXPECT_NE(text.find("0.040 (100)"), std::string::npos);
+    EXPECT_EQ(text.find("beams 1"), std::string::npos);
 }
 
 /// Two seeds of one map; in each the camera sees ten voxels of a cable and one that is too coarse.

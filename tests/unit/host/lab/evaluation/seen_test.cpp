@@ -351,7 +351,7 @@ TEST_P(RandomMaps, add_up_and_agree_with_other_code) {
     EXPECT_EQ(sum.occupied, metrics.all.occupied);
     EXPECT_EQ(sum.body_5cm.free, metrics.all.body_5cm.free);
 
-    const Metrics plain = evaluate(map, *truth);
+    const Metrics plain = evaluate(map, *truth, MissUnits{});
     EXPECT_EQ(metrics.precision, plain.precision);
     EXPECT_EQ(metrics.precision_tolerant, plain.precision_tolerant);
 

@@ -301,6 +301,16 @@ TEST(Report, of_another_experiment_leaves_the_papers_figures_out) {
     EXPECT_EQ(first_unbalanced_tag(html), "");
 }
 
+TEST(Report, tabulates_free_voxels_by_evidence) {
+    ReportInput input = two_seeds();
+    EXPECT_THAT(report_html(input), Not(HasSubstr("<section id=\"free\"")));
+    for (auto& map : input.results.maps) map.free_calibration.beams[3] = {.voxels = 200, .surface = 3};
+    const std::string html = report_html(input);
+    EXPECT_THAT(html, HasSubstr("<section id=\"free\""));
+    EXPECT_THAT(html, HasSubstr("<tr><th>beams: 3</th><td>1.5\u00a0%</td><td>200</td>"));
+    EXPECT_EQ(first_unbalanced_tag(html), "");
+}
+
 TEST(Report, of_a_rig_without_camera_says_nothing_of_one) {
     ReportInput input = two_seeds();
     const std::vector<evaluation::Run> runs = {judged("robust", "proximity", 0, 1400, 0.10)};
