@@ -42,7 +42,7 @@ struct Daemon::Parts {
           pipeline(std::move(pipeline_in)),
           reserve(bytes_to_save(settings.mapping.map)),
           inputs(request, settings.host.rig, loop, pipeline, recordings),
-          queries(settings.host),
+          queries(settings.host, miss_units(settings.mapping)),
           started(monotonic_now()) {}
 
     int run_loop();

@@ -74,7 +74,7 @@ bool Daemon::Parts::resume_with(Next& next) {
     pipeline = std::move(next.pipeline);
     pipeline.work_beside(&depth_thread);
     inputs.change_rig(settings.host.rig);
-    queries.change_robot(settings.host);
+    queries.change_robot(settings.host, miss_units(settings.mapping));
     reload_error.clear();
     reloaded = monotonic_now();
     spdlog::info("reloaded: rig '{}'; the map is kept; {} waiting inputs were not used",

@@ -29,11 +29,12 @@ std::vector<double> present_joints(const Pipeline& pipeline, std::size_t count, 
 
 }  // namespace
 
-QueryServer::QueryServer(const HostSetup& setup, std::chrono::milliseconds field_idle_max,
-                         std::chrono::milliseconds work_max)
+QueryServer::QueryServer(const HostSetup& setup, const MissUnits& units,
+                         std::chrono::milliseconds field_idle_max, std::chrono::milliseconds work_max)
     : field_idle_max_(field_idle_max),
       work_max_(work_max),
       setup_(std::make_shared<const HostSetup>(setup)),
+      units_(units),
       thread_(start_without_signals([this] { run(); })) {}
 
 QueryServer::~QueryServer() {
@@ -45,8 +46,9 @@ QueryServer::~QueryServer() {
     thread_.join();
 }
 
-void QueryServer::change_robot(const HostSetup& setup) {
+void QueryServer::change_robot(const HostSetup& setup, const MissUnits& units) {
     setup_ = std::make_shared<const HostSetup>(setup);
+    units_ = units;
 }
 
 bool QueryServer::take(const std::string& line, std::uint64_t ticket, uid_t user) {
@@ -84,7 +86,8 @@ QueryServer::Answers QueryServer::serve(const Pipeline& pipeline, const Now& now
     auto answers = std::exchange(answers_, {});
     if (wants_ground_) {
         ground_.emplace(Ground{setup_, pipeline.map().copy(),
-                               present_joints(pipeline, setup_->robot.joint_count(), now.known), now});
+                               present_joints(pipeline, setup_->robot.joint_count(), now.known), now,
+                               units_});
         wants_ground_ = false;
         lock.unlock();
         changed_.notify_all();
@@ -143,7 +146,8 @@ std::string QueryServer::answer(const std::string& question, Ground ground) {
         const auto request = read_query(question);
         json = request ? answer_query(*request,
                                       {&ground.setup->rig, &ground.setup->robot, std::move(ground.map),
-                                       std::move(ground.present), &field_, true, ground.now.wall, work_max_},
+                                       std::move(ground.present), &field_, true, ground.units,
+                                       ground.now.wall, work_max_},
                                       [this] { return is_ending_ || is_forgotten_; })
                        : query_refused(request.error());
     } catch (const std::bad_alloc&) {  // nor for a message

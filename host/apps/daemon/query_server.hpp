@@ -19,6 +19,7 @@
 #include "common/time.hpp"
 #include "host/apps/daemon/wake_event.hpp"
 #include "host/apps/query/kept_field.hpp"
+#include "host/core/mapping/free_evidence.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
@@ -35,15 +36,16 @@ class QueryServer {
     static constexpr std::chrono::milliseconds kFieldIdleMax{10'000};
     static constexpr std::chrono::milliseconds kWorkMax{10'000};
     /// Throws std::system_error if there is no thread or descriptor left.
-    explicit QueryServer(const HostSetup& setup, std::chrono::milliseconds field_idle_max = kFieldIdleMax,
+    explicit QueryServer(const HostSetup& setup, const MissUnits& units = {},
+                         std::chrono::milliseconds field_idle_max = kFieldIdleMax,
                          std::chrono::milliseconds work_max = kWorkMax);
     /// Waits until the posture or row of voxels that is being checked is done.
     ~QueryServer();
     QueryServer(const QueryServer&) = delete;
     QueryServer& operator=(const QueryServer&) = delete;
 
-    /// Later questions use this robot.
-    void change_robot(const HostSetup& setup);
+    /// Later questions use this robot, and the units of this mapping.
+    void change_robot(const HostSetup& setup, const MissUnits& units);
 
     /// False if the line is no query. Throws std::bad_alloc; an accepted question gets an answer even if
     /// there is no memory for one later.
@@ -85,6 +87,7 @@ class QueryServer {
         FusedMap map;
         std::vector<double> present;
         Now now;
+        MissUnits units;
     };
     void run();
     void wait_for_questions(std::unique_lock<std::mutex>& lock);
@@ -95,6 +98,7 @@ class QueryServer {
     const std::chrono::milliseconds work_max_;
     WakeEvent event_;
     std::shared_ptr<const HostSetup> setup_;
+    MissUnits units_;  ///< of the mapping in force
     std::mutex mutex_;
     std::condition_variable changed_;
     Questions waiting_;          ///< in the order of arrival

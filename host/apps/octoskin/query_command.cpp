@@ -345,6 +345,12 @@ void add_posture_options(CLI::App& command, QueryOptions& options) {
                     "if nothing can hide that close")
         ->check(from_to(0.0, 1.0));
     command
+        .add_option("--min-evidence", options.request.min_evidence,
+                    "Free space counts as unknown with less than this many images and ranges behind it; of a "
+                    "camera alone a voxel has 5 at most (with the default mapping)")
+        ->check(from_to(0.0, kMinEvidenceMax))
+        ->capture_default_str();
+    command
         .add_option("--stands", options.stands,
                     "For a map file: the arm's posture, as --joints; without it, the beginning of --path. A "
                     "daemon uses the present posture")

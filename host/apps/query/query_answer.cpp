@@ -12,6 +12,8 @@
 
 #include "common/time.hpp"
 #include "host/apps/command_line/error_json.hpp"
+#include "host/apps/query/query_errors.hpp"
+#include "host/apps/query/query_values.hpp"
 #include "host/core/query/own_space.hpp"
 #include "host/core/query/path_query.hpp"
 #include "host/core/query/pocket_views.hpp"
@@ -26,76 +28,8 @@ using Json = nlohmann::ordered_json;
 /// More postures would block the client, and other clients, for minutes.
 constexpr std::size_t kPosturesMax = 50'000;
 
-Error error_of(const RobotQueryFault& fault, double padding_m) {
-    switch (fault.error) {
-        case RobotQueryError::unknown_link:
-            return {.code = ErrorCode::unknown_name,
-                    .what = "expected a link of the robot",
-                    .value = "'" + fault.element + "'",
-                    .key = "links_ignored"};
-        case RobotQueryError::bad_padding:
-            return {.code = ErrorCode::out_of_range,
-                    .what = "expected 0 to 1 m",
-                    .value = fmt::format("{}", padding_m),
-                    .key = "padding_m"};
-        case RobotQueryError::no_body:
-            return {ErrorCode::no_content,
-                    "the query is empty: no moving link that is not ignored has a <collision>"};
-    }
-    return {};
-}
-
-std::string listed(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
-
-/// `of`: the posture, such as "configuration 2".
-Error error_of(const PostureFault& fault, const HostRig& rig, const RobotModel& robot,
-               std::span<const double> position, const std::string& of) {
-    const auto of_joint = [&](ErrorCode code, const std::string& expected) {
-        return Error{.code = code,
-                     .what = expected,
-                     .value = fmt::format("{:.6g}", position[fault.joint]),
-                     .key = of + ": " + rig.joints.joints.at(fault.joint)};
-    };
-    switch (fault.error) {
-        case PostureError::wrong_count:
-            return {.code = ErrorCode::mismatch,
-                    .what = fmt::format("expected the positions of {} joints: {}", robot.joint_count(),
-                                        listed(rig.joints.joints)),
-                    .value = fmt::format("{} positions", position.size()),
-                    .key = of};
-        case PostureError::not_finite:
-            return of_joint(ErrorCode::bad_value, "expected a finite number");
-        case PostureError::outside_limits:
-            return of_joint(ErrorCode::out_of_range,
-                            fmt::format("expected a value within the joint's limits, {:.6g} to {:.6g}",
-                                        robot.limits()[fault.joint].min, robot.limits()[fault.joint].max));
-        case PostureError::too_far:
-            return {.code = ErrorCode::out_of_range,
-                    .what = "the robot would be further than 1000 km from the map's origin",
-                    .key = of};
-    }
-    return {};
-}
-
 std::string configuration_text(std::size_t index) {
     return fmt::format("configuration {}", index + 1);
-}
-
-/// Rounded to a micrometre, with as many digits as that needs.
-Json rounded(const std::optional<double>& metres) {
-    constexpr double kPerMetre = 1e6;
-    return metres ? Json(std::round(*metres * kPerMetre) / kPerMetre + 0.0) : Json(nullptr);  // avoids "-0.0"
-}
-/// Rounded to a millisecond.
-Json seconds_json(const std::optional<WallTime>& time) {
-    return time ? Json(std::round(1e-6 * static_cast<double>(time->ns)) / 1e3) : Json(nullptr);
-}
-Json point_json(const Eigen::Vector3d& point) {
-    return {rounded(point.x()), rounded(point.y()), rounded(point.z())};
 }
 
 /// Processor time of this thread: the load of other programs does not count against a query.
@@ -240,7 +174,8 @@ class Asking {
         // The whole arm, without the padding of the query.
         const auto around = own_capsules(stands, false);
         const auto certain = own_capsules(stands, true);
-        if (octoskin::free_own_space(ground_.map, {around, certain}, *request_.own_space_m, is_ending_))
+        if (octoskin::free_own_space(ground_.map, {around, certain}, *request_.own_space_m, is_ending_,
+                                     demand()))
             return Done{};
         if (is_ending_()) return ended("the arm's own space was known");
         return fail(ExitCode::usage,
@@ -256,7 +191,10 @@ class Asking {
         Json legs = Json::array();
         PostureState worst = PostureState::free;
         std::size_t postures = 0;
-        const LegConfig config{request_.reach_m, field_for_path(), is_ending_};
+        const LegConfig config{.reach_m = request_.reach_m,
+                               .field = field_for_path(),
+                               .demand = demand(),
+                               .is_ending = is_ending_};
         for (std::size_t i = 0; i < legs_.size(); ++i) {
             const auto answer = ask(*robot_, ground_.map, legs_[i], config);
             if (is_ending_()) return ended("the path was evaluated");
@@ -266,13 +204,14 @@ class Asking {
             }
             worst = std::max(worst, answer->worst.state);
             postures += answer->postures;
-            legs.push_back(leg_json(*answer));
+            legs.push_back(leg_json(*answer, ground_.map, *ground_.robot));
         }
         return Json{{"ok", true},
                     {"state", name(worst)},
                     {"postures", postures},
                     {"resolution_m", ground_.map.resolution_m()},
                     {"own_space_m", own_space_json()},
+                    {"min_evidence", request_.min_evidence},
                     {"distances", request_.reach_m > 0.0 ? Json(config.field != nullptr ? "field" : "search")
                                                          : Json(nullptr)},
                     {"links", names_of(robot_->links())},
@@ -281,6 +220,8 @@ class Asking {
                     {"links_with_borrowed_body", links_with_borrowed_body()},
                     {"legs", std::move(legs)}};
     }
+
+    [[nodiscard]] FreeDemand demand() const { return {request_.min_evidence, ground_.units}; }
 
     /// Null: no space was treated as the arm's own.
     [[nodiscard]] Json own_space_json() const {
@@ -303,33 +244,6 @@ class Asking {
         Json names = Json::array();
         for (const LinkWithoutBody& link : ground_.rig->links_without_body) names.push_back(link.link);
         return names;
-    }
-
-    [[nodiscard]] Json link_json(const std::optional<LinkId>& link) const {
-        return link ? Json(ground_.robot->link_names()[*link]) : Json(nullptr);
-    }
-
-    [[nodiscard]] Json evidence_json(const std::optional<PostureEvidence>& evidence) const {
-        if (!evidence) return nullptr;
-        const auto& confirmation = evidence->weakest.confirmation;
-        return {{"age_s", confirmation ? Json(confirmation->age_s) : Json(nullptr)},
-                {"kind", confirmation ? Json(name(confirmation->kind)) : Json(nullptr)},
-                {"is_stale", evidence->weakest.is_stale},
-                {"link", link_json(evidence->link)},
-                {"voxel_m", point_json(ground_.map.centre_of(evidence->weakest.voxel))}};
-    }
-
-    [[nodiscard]] Json leg_json(const LegAnswer& answer) const {
-        const auto& voxel = answer.worst.voxel;
-        return {{"state", name(answer.worst.state)},
-                {"share", answer.share},
-                {"link", link_json(answer.worst.link)},
-                {"voxel_m", voxel ? point_json(ground_.map.centre_of(*voxel)) : Json(nullptr)},
-                {"occupied_m", rounded(answer.clearance.occupied_m)},
-                {"occupied_link", link_json(answer.clearance.occupied_link)},
-                {"not_free_m", rounded(answer.clearance.not_free_m)},
-                {"not_free_link", link_json(answer.clearance.not_free_link)},
-                {"evidence", evidence_json(answer.evidence)}};
     }
 
     Result<Json, AppError> ask_pockets() {
@@ -360,7 +274,8 @@ class Asking {
                          .remedy = "give a smaller radius",
                          .key = "radius_m"});
         }
-        const PocketViewConfig config{.postures = request_.views_tried, .pockets = request_.pockets_max};
+        const PocketViewConfig config{
+            .postures = request_.views_tried, .pockets = request_.pockets_max, .demand = demand()};
         std::vector<std::optional<PocketView>> views;
         const Json why_no_views = why_not_tried();
         if (why_no_views.is_null())
@@ -374,6 +289,7 @@ class Asking {
         return Json{{"ok", true},
                     {"resolution_m", ground_.map.resolution_m()},
                     {"own_space_m", own_space_json()},
+                    {"min_evidence", request_.min_evidence},
                     {"region_m3", rounded(static_cast<double>(found->region_voxels()) * voxel_m3)},
                     {"unknown_m3", rounded(static_cast<double>(found->unknown_voxels()) * voxel_m3)},
                     {"pockets_found", found->pockets().size()},
@@ -407,16 +323,22 @@ class Asking {
         if (!view) return json;
         const Leg way(*robot_, ground_.map, request_.path.front(), view->position, request_.step);
         Json state = nullptr;  // a joint without limits may give a way without end
+        Json free = nullptr;
         if (way.postures() <= kPosturesMax) {
             const auto answer =
-                ask(*robot_, ground_.map, way, {.reach_m = 0.0, .field = nullptr, .is_ending = is_ending_});
-            if (answer) state = name(answer->worst.state);
+                ask(*robot_, ground_.map, way,
+                    {.reach_m = 0.0, .field = nullptr, .demand = demand(), .is_ending = is_ending_});
+            if (answer) {
+                state = name(answer->worst.state);
+                free = free_json(answer->free, ground_.map, *ground_.robot);
+            }
         }
         json["view"] = {{"joints", view->position},
                         {"state", name(view->state)},
                         {"sensor", view->sensor},
                         {"range_m", rounded(view->range_m)},
-                        {"way", state}};
+                        {"way", state},
+                        {"free_evidence", free}};
         return json;
     }
 

@@ -12,6 +12,7 @@
 #include "host/apps/query/kept_field.hpp"
 #include "host/apps/query/query_request.hpp"
 #include "host/core/kinematics/robot_model.hpp"
+#include "host/core/mapping/free_evidence.hpp"
 #include "host/core/mapping/fused_map.hpp"
 #include "host/core/rig/host_rig.hpp"
 
@@ -31,6 +32,8 @@ struct QueryGround {
     /// to free it is refused. False: the path's beginning serves as the arm's posture if `present` is empty.
     /// For a single posture, the answer then includes the space that this posture frees.
     bool is_live = false;
+    /// Of the mapping that makes the map. A file does not contain it, nor counts of ranges.
+    MissUnits units = {};
     /// Wall time of the map's state; empty for a file, which does not contain it.
     std::optional<WallTime> map_time = std::nullopt;
     /// The largest processor time of one query, because others wait. Empty: no limit.

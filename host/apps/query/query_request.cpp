@@ -19,9 +19,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kWord = "query";
 constexpr const char* kExpectedLine = "expected: query {\"path\": [[JOINTS], ...], ...}";
 constexpr std::string_view kKeys =
-    "path, padding_m, reach_m, step, links_ignored, asks_unmoved_links, own_space_m, pockets, and with "
-    "pockets "
-    "radius_m, z_min_m, pocket_min_m3, pockets_max, views_tried";
+    "path, padding_m, reach_m, step, links_ignored, asks_unmoved_links, own_space_m, min_evidence, pockets, "
+    "and with pockets radius_m, z_min_m, pocket_min_m3, pockets_max, views_tried";
 constexpr double kPaddingMax_m = 1.0;
 constexpr std::size_t kKeyShown = 40;
 
@@ -165,6 +164,7 @@ QueryRequest from_json(Json& json) {
     take(json, "links_ignored", request.links_ignored);
     take(json, "asks_unmoved_links", request.asks_unmoved_links);
     take(json, "own_space_m", request.own_space_m);
+    take(json, "min_evidence", request.min_evidence);
     take(json, "radius_m", request.radius_m);
     take(json, "z_min_m", request.z_min_m);
     take(json, "pocket_min_m3", request.pocket_min_m3);
@@ -185,6 +185,7 @@ std::string to_line(const QueryRequest& request) {
                  {"asks_unmoved_links", request.asks_unmoved_links}};
     if (!request.path.empty()) json["path"] = request.path;
     if (request.own_space_m) json["own_space_m"] = *request.own_space_m;
+    if (request.min_evidence > 0.0) json["min_evidence"] = request.min_evidence;
     json["step"] = request.step;
     if (request.kind == QueryKind::postures) {
         json["reach_m"] = request.reach_m;
@@ -254,6 +255,8 @@ std::optional<Error> fault_of(const QueryRequest& request) {
     if (!is_within(request.step, kStepMin, 10.0)) return not_within("step", request.step, kStepMin, 10.0);
     if (request.own_space_m && !is_within(*request.own_space_m, 0.0, kPaddingMax_m))
         return not_within("own_space_m", *request.own_space_m, 0.0, kPaddingMax_m);
+    if (!is_within(request.min_evidence, 0.0, kMinEvidenceMax))
+        return not_within("min_evidence", request.min_evidence, 0.0, kMinEvidenceMax);
     if (!is_within(request.radius_m, 0.05, kRadiusMax_m))
         return not_within("radius_m", request.radius_m, 0.05, kRadiusMax_m);
     if (request.z_min_m && !is_within(*request.z_min_m, -1e3, 1e3))

@@ -30,6 +30,8 @@ struct QueryRequest {
     /// Within the arm's present body, and where unknown within this distance of it, space counts as free;
     /// empty: it does not.
     std::optional<double> own_space_m;
+    /// Free space with less evidence, in images and ranges, counts as unknown; 0: none does.
+    double min_evidence = 0.0;
 
     double radius_m = 1.0;  ///< radius of the ball about the robot's base in which pockets are searched
     std::optional<double> z_min_m;  ///< and their minimum height in the map; empty: the base's height
@@ -40,6 +42,7 @@ struct QueryRequest {
 
 inline constexpr std::size_t kConfigurationsMax = 1000;
 inline constexpr double kReachMax_m = 5.0;
+inline constexpr double kMinEvidenceMax = 1000.0;
 inline constexpr double kStepMin = 5e-3;
 inline constexpr std::size_t kViewsTriedMax = 20'000;
 inline constexpr double kRadiusMax_m = 5.0;

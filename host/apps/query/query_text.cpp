@@ -70,6 +70,15 @@ std::string evidence(const Json& leg) {
         point(evidence.at("voxel_m")), evidence.at("is_stale").get<bool>() ? ": stale" : "");
 }
 
+/// Empty if nothing free is touched.
+std::string free_evidence(const Json& way, std::string_view indent) {
+    const Json& free = way.at("free_evidence");
+    if (free.is_null()) return {};
+    return fmt::format("{}free by at least: {:.1f} images and {:.1f} beams, at {}\n", indent,
+                       free.at("images").get<double>(), free.at("beams").get<double>(),
+                       point(free.at("voxel_m")));
+}
+
 std::string leg_text(const Json& answer, std::size_t index) {
     const Json& leg = answer.at("legs").at(index);
     const Json& unknown_links = answer.at("links_unknown");
@@ -85,7 +94,7 @@ std::string leg_text(const Json& answer, std::size_t index) {
     if (is_link_unknown) text += " has no body";
     if (!leg.at("voxel_m").is_null()) text += " at " + point(leg.at("voxel_m"));
     return text + "\n" + clearance(leg, "occupied", "occupied", bound) +
-           clearance(leg, "not_free", "not free", bound) + evidence(leg);
+           clearance(leg, "not_free", "not free", bound) + evidence(leg) + free_evidence(leg, "  ");
 }
 
 std::string postures_text(const Json& answer) {
@@ -105,10 +114,11 @@ std::string view_text(const Json& view) {
     std::string joints;
     for (const Json& joint : view.at("joints"))
         joints += fmt::format("{}{:.3f}", joints.empty() ? "" : ",", joint.get<double>());
-    return fmt::format("       {} sees it from {:.2f} m at {}, which is {}; the straight way there is {}\n",
+    return fmt::format("       {} sees it from {:.2f} m at {}, which is {}; the straight way there is {}\n{}",
                        view.at("sensor").get<std::string>(), view.at("range_m").get<double>(), joints,
                        view.at("state").get<std::string>(),
-                       view.at("way").is_null() ? "not known" : view.at("way").get<std::string>());
+                       view.at("way").is_null() ? "not known" : view.at("way").get<std::string>(),
+                       free_evidence(view, "       "));
 }
 
 /// In a unit in which the amount is not zero.

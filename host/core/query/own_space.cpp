@@ -34,12 +34,15 @@ struct Region {
     std::span<const PosedCapsule> capsules;
     double margin_m = 0.0;
     /// Called for a voxel whose centre is within `margin_m` of the capsule.
-    bool (*is_freed)(const FusedMap& map, const VoxelKey& key, const PosedCapsule& capsule);
+    std::function<bool(const FusedMap& map, const VoxelKey& key, const PosedCapsule& capsule)> is_freed;
 };
 
-bool is_unknown_or_stale(const FusedMap& map, const VoxelKey& key, const PosedCapsule&) {
+/// Unknown, stale, or free with too little evidence.
+bool is_doubtful(const FusedMap& map, const VoxelKey& key, const FreeDemand& demand) {
     const Occupancy state = map.occupancy(key);
-    return state == Occupancy::unknown || (state == Occupancy::free && map.is_stale(key));
+    if (state != Occupancy::free) return state == Occupancy::unknown;
+    return map.is_stale(key) || (demand.sum_min > 0.0 && !demand.is_met_by(free_evidence(
+                                                             voxel_state(map.layers(), key), demand.units)));
 }
 
 /// A capsule is convex, so it contains a cube if it contains the corners.
@@ -113,8 +116,11 @@ std::uint64_t voxels_of(const FusedMap& map, const Region& region) {
 }  // namespace
 
 std::optional<std::size_t> free_own_space(FusedMap& map, const OwnBody& body, double margin_m,
-                                          const std::function<bool()>& is_ending) {
-    const Region about{body.around, margin_m, is_unknown_or_stale};
+                                          const std::function<bool()>& is_ending, const FreeDemand& demand) {
+    const Region about{body.around, margin_m,
+                       [&demand](const FusedMap& in, const VoxelKey& key, const PosedCapsule&) {
+                           return is_doubtful(in, key, demand);
+                       }};
     const Region within{body.certain, 0.0, is_occupied_within};
     if (voxels_of(map, about) + voxels_of(map, within) > kOwnSpaceVoxelsMax) return std::nullopt;
     const auto unknown = free_region(map, about, is_ending);

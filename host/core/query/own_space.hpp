@@ -9,6 +9,7 @@
 
 #include "host/core/kinematics/capsule.hpp"
 #include "host/core/mapping/fused_map.hpp"
+#include "host/core/query/weakest_free.hpp"
 
 namespace octoskin {
 
@@ -24,9 +25,9 @@ struct OwnBody {
 };
 
 /// Frees each unknown voxel whose centre is within `margin_m` of the surface of `body.around`, and confirms
-/// each stale free one. Frees each occupied voxel that lies completely within one capsule of `body.certain`,
-/// and no other: an obstacle may be where a capsule is wider than the link, or in the part of a voxel outside
-/// the capsule. Returns the number of these voxels.
+/// each free one that is stale or does not meet the demand. Frees each occupied voxel that lies completely
+/// within one capsule of `body.certain`, and no other: an obstacle may be where a capsule is wider than the
+/// link, or in the part of a voxel outside the capsule. Returns the number of these voxels.
 ///
 /// `map` is a copy for queries, not the map that is being built. Voxels for which there is no room stay
 /// unknown. With a margin the caller states that nothing is hidden within it; a capsule wider than its link
@@ -37,6 +38,6 @@ struct OwnBody {
 /// std::bad_alloc.
 std::optional<std::size_t> free_own_space(
     FusedMap& map, const OwnBody& body, double margin_m,
-    const std::function<bool()>& is_ending = [] { return false; });
+    const std::function<bool()>& is_ending = [] { return false; }, const FreeDemand& demand = {});
 
 }  // namespace octoskin

@@ -84,13 +84,14 @@ bool is_blocked(const LegAnswer& answer, double reach_m) {
 /// Returns false if a capsule is refused.
 bool take_posture(const RobotQuery& robot, const FusedMap& map, std::span<const PosedCapsule> capsules,
                   double share, const LegConfig& config, LegAnswer& answer) {
-    const auto worst = worst_of(robot, map, capsules);
+    const auto worst = worst_of(robot, map, capsules, config.demand);
     if (!worst) return false;
     if (worst->state > answer.worst.state) {
         answer.worst = *worst;
         answer.share = share;
     }
     answer.evidence = weakest_of(map, capsules, answer.evidence);
+    answer.free = weakest_free_of(map, config.demand.units, capsules, answer.free);
     ++answer.postures;
     if (!(config.reach_m > 0.0)) return true;
     const auto clearance = config.field != nullptr

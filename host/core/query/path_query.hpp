@@ -16,6 +16,7 @@ struct LegConfig {
     /// The field of the same map: distances come from it and are the same. Null: they are searched for in the
     /// map.
     const DistanceField* field = nullptr;
+    FreeDemand demand = {};
     /// Called before each posture; true skips the remaining ones. Empty: no early end.
     std::function<bool()> is_ending = {};
 };
@@ -62,6 +63,8 @@ struct LegAnswer {
     PostureClearance clearance;
     /// The weakest evidence of all postures; empty if the map has no ages.
     std::optional<PostureEvidence> evidence;
+    /// The free voxel with the least evidence of all postures; empty if they touch none.
+    std::optional<PostureFree> free;
     std::size_t postures = 0;  ///< postures tested: a blocked way is not followed further
 };
 

@@ -83,10 +83,11 @@ class Postures {
     std::size_t count_ = 0;
 };
 
-PostureState state_of(const RobotQuery& robot, const FusedMap& map, std::span<const double> position) {
+PostureState state_of(const RobotQuery& robot, const FusedMap& map, std::span<const double> position,
+                      const FreeDemand& demand) {
     const auto capsules = robot.pose(position);
     if (!capsules) return PostureState::occupied;
-    const auto answer = worst_of(robot, map, *capsules);
+    const auto answer = worst_of(robot, map, *capsules, demand);
     return answer ? answer->state : PostureState::occupied;
 }
 
@@ -126,7 +127,7 @@ std::vector<std::optional<PocketView>> find_views(const HostRig& rig, const Robo
             if (!sight || sight->pocket >= views.size()) continue;
             auto& view = views[sight->pocket];
             if (!is_better(state.value_or(PostureState::free), change, view)) continue;
-            if (!state) state = state_of(robot, map, position);
+            if (!state) state = state_of(robot, map, position, config.demand);
             if (*state == PostureState::occupied) break;
             if (is_better(*state, change, view))
                 view = PocketView{position, *state, eye.sensor->name, sight->range_m, change};

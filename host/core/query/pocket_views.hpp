@@ -28,7 +28,8 @@ struct PocketViewConfig {
     std::size_t postures = 3000;  ///< number of postures tried
     std::size_t pockets = 10;     ///< number of the largest pockets that are searched for
     std::uint32_t seed = 1;       ///< the same seed gives the same postures, on this machine
-    double near_spread = 0.4;     ///< standard deviation of half of the postures about `from`, rad or m
+    FreeDemand demand = {};
+    double near_spread = 0.4;  ///< standard deviation of half of the postures about `from`, rad or m
 };
 
 /// Searches a view for each of the largest pockets. A view is a posture in which the axis of a sensor, or of

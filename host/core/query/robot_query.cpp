@@ -175,7 +175,8 @@ double RobotQuery::lever_m(std::span<const double> farthest) const {
 }
 
 Result<PostureAnswer, RefusedCapsule> worst_of(const RobotQuery& robot, const FusedMap& map,
-                                               std::span<const PosedCapsule> capsules) noexcept {
+                                               std::span<const PosedCapsule> capsules,
+                                               const FreeDemand& demand) noexcept {
     PostureAnswer worst;
     double deepest_m = 0.0;
     for (std::size_t i = 0; i < capsules.size(); ++i) {
@@ -191,10 +192,26 @@ Result<PostureAnswer, RefusedCapsule> worst_of(const RobotQuery& robot, const Fu
     if (worst.state != PostureState::free) return worst;
     if (!robot.unknown_links().empty())
         return PostureAnswer{PostureState::unknown, robot.unknown_links().front(), std::nullopt};
+    if (demand.sum_min > 0.0) {
+        const auto free = weakest_free_of(map, demand.units, capsules);
+        if (free && !demand.is_met_by(free->weakest.evidence))
+            return PostureAnswer{PostureState::unknown, free->link, free->weakest.voxel};
+    }
     const auto evidence = weakest_of(map, capsules);
     if (evidence && evidence->weakest.is_stale)
         worst = {PostureState::stale, evidence->link, evidence->weakest.voxel};
     return worst;
+}
+
+std::optional<PostureFree> weakest_free_of(const FusedMap& map, const MissUnits& units,
+                                           std::span<const PosedCapsule> capsules,
+                                           std::optional<PostureFree> than) noexcept {
+    for (const PosedCapsule& capsule : capsules) {
+        const auto before = than ? std::optional(than->weakest) : std::nullopt;
+        const auto found = weakest_free_in(map, units, capsule, before);
+        if (found && (!before || found->voxel != before->voxel)) than = PostureFree{*found, capsule.link};
+    }
+    return than;
 }
 
 std::optional<PostureEvidence> weakest_of(const FusedMap& map, std::span<const PosedCapsule> capsules,

@@ -55,7 +55,22 @@ class QueryCommandTest : public ProgramTest {
 TEST_F(QueryCommandTest, of_a_free_posture_ends_with_0) {
     const Said said = query(free_map() + " --joints " + kReady);
     EXPECT_EQ(said.exit_code, 0) << said.output;
-    EXPECT_EQ(said.output, "free\n");
+    EXPECT_THAT(said.output, testing::StartsWith("free\n"));
+}
+
+TEST_F(QueryCommandTest, with_a_minimum_of_evidence_ends_with_2_where_there_is_less) {
+    const std::string posture = free_map() + " --joints " + kReady + " --json";  // log-odds -1: 2.5 images
+    const Said enough = query(posture + " --min-evidence 2.5");
+    ASSERT_EQ(enough.exit_code, 0) << enough.output;
+    const Json free = Json::parse(enough.output)["legs"][0]["free_evidence"];
+    EXPECT_EQ(free["images"], 2.5);
+    EXPECT_EQ(free["beams"], 0.0);
+    EXPECT_THAT(free["link"].get<std::string>(), HasSubstr("panda_link"));
+    const Said less = query(posture + " --min-evidence 3");
+    EXPECT_EQ(less.exit_code, 2) << less.output;
+    EXPECT_EQ(Json::parse(less.output)["state"], "unknown");
+    EXPECT_EQ(Json::parse(less.output)["min_evidence"], 3.0);
+    EXPECT_EQ(query(posture + " --min-evidence -1").exit_code, 64);
 }
 
 TEST_F(QueryCommandTest, whose_answer_cannot_be_written_ends_with_74_whatever_it_is) {

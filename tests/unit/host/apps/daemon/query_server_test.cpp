@@ -129,7 +129,7 @@ TEST_F(QueryServerTest, a_map_grows_older_while_the_time_is_in_doubt) {
 }
 
 TEST_F(QueryServerTest, lets_go_of_the_field_when_nobody_asks) {
-    QueryServer hasty(setup_, std::chrono::milliseconds(1));
+    QueryServer hasty(setup_, {}, std::chrono::milliseconds(1));
     ask(hasty, path({{0.0}, {3.0}}), 1);
     EXPECT_EQ(answers(hasty, 1)[1].at("distances"), "field");
     std::string of_a_posture = "field";
@@ -213,7 +213,7 @@ TEST_F(QueryServerTest, answers_the_second_question_of_one_user_though_others_as
 }
 
 TEST_F(QueryServerTest, ends_a_question_that_takes_too_long) {
-    QueryServer hasty(setup_, QueryServer::kFieldIdleMax, std::chrono::milliseconds(1));
+    QueryServer hasty(setup_, {}, QueryServer::kFieldIdleMax, std::chrono::milliseconds(1));
     ask(hasty, long_one(), 1);
     const Json path_answer = answers(hasty, 1)[1];
     EXPECT_FALSE(path_answer.at("ok").get<bool>());

@@ -19,6 +19,7 @@ TEST(QueryRequest, of_a_path_comes_back_as_it_was_sent) {
     sent.links_ignored = {"gripper \"left\""};
     sent.asks_unmoved_links = true;
     sent.own_space_m = 0.05;
+    sent.min_evidence = 2.5;
     const std::string line = to_line(sent);
     EXPECT_TRUE(is_query(line));
     EXPECT_EQ(line.find('\n'), std::string::npos);
@@ -32,6 +33,7 @@ TEST(QueryRequest, of_a_path_comes_back_as_it_was_sent) {
     EXPECT_EQ(read->links_ignored, sent.links_ignored);
     EXPECT_TRUE(read->asks_unmoved_links);
     EXPECT_EQ(read->own_space_m, 0.05);
+    EXPECT_EQ(read->min_evidence, 2.5);
 }
 
 TEST(QueryRequest, for_pockets_comes_back_as_it_was_sent) {
@@ -43,6 +45,7 @@ TEST(QueryRequest, for_pockets_comes_back_as_it_was_sent) {
     sent.pockets_max = 3;
     sent.views_tried = 100;
     sent.step = 0.02;  // of the way to a view
+    sent.min_evidence = 3.0;
     const auto read = read_query(to_line(sent));
     ASSERT_TRUE(read) << read.error().message();
     EXPECT_EQ(read->kind, QueryKind::pockets);
@@ -51,6 +54,7 @@ TEST(QueryRequest, for_pockets_comes_back_as_it_was_sent) {
     EXPECT_EQ(read->pocket_min_m3, 0.002);
     EXPECT_EQ(read->pockets_max, 3U);
     EXPECT_EQ(read->views_tried, 100U);
+    EXPECT_EQ(read->min_evidence, 3.0);
     EXPECT_EQ(read->step, 0.02);
 }
 
@@ -99,6 +103,8 @@ TEST(QueryRequest, is_refused_by_name_of_what_is_wrong_with_it) {
         EXPECT_EQ(error.key, "pockets_max");
         EXPECT_THAT(error.what, HasSubstr("whole number, 0 or more"));
     }
+    expect("query {\"min_evidence\": -1}", ErrorCode::out_of_range, "min_evidence", "-1");
+    expect("query {\"min_evidence\": true}", ErrorCode::wrong_type, "min_evidence", "true");
     expect("query {\"own_space_m\": 2}", ErrorCode::out_of_range, "own_space_m", "2");
     expect("query {\"pockets\": true, \"radius_m\": 50}", ErrorCode::out_of_range, "radius_m", "50");
     expect("query {\"pockets\": true, \"views_tried\": 1000000}", ErrorCode::out_of_range, "views_tried",
