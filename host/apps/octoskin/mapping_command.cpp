@@ -2,15 +2,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <regex>
 #include <string>
+#include <vector>
 
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/profile/named_mapping.hpp"
+#include "host/apps/recording/given_rig.hpp"
+#include "host/core/mapping/thin_objects.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/mapping/mapping_keys.hpp"
 
@@ -33,19 +38,78 @@ std::string keys_text() {
     return text;
 }
 
+/// Depths between the camera's limits, in steps of half a metre or more, and the limits themselves.
+std::vector<double> depths_of(const rig::Camera& camera) {
+    constexpr double kStep_m = 0.5;
+    constexpr double kRowsMax = 10.0;
+    const double range_m = camera.depth_max_m - camera.depth_min_m;
+    const double step_m = kStep_m * std::max(1.0, std::ceil(range_m / (kStep_m * kRowsMax)));
+    std::vector<double> depths{camera.depth_min_m};
+    for (double depth_m = step_m; depth_m < camera.depth_max_m; depth_m += step_m)
+        if (depth_m > camera.depth_min_m) depths.push_back(depth_m);
+    depths.push_back(camera.depth_max_m);
+    return depths;
+}
+
+std::string millimetres(const std::optional<double>& metres) {
+    return metres ? fmt::format("{:.1f}", 1000.0 * *metres) : "none";
+}
+
+/// As comments of a YAML file, as all that follows.
+std::string thin_table(const ThinView& view, const rig::Camera& camera) {
+    const double in_a_second = std::max(1.0, std::round(camera.rate_hz));
+    std::string text = fmt::format(
+        "# The thinnest object that is kept, at most of a voxel's width ({:.1f} mm), after one image and "
+        "after "
+        "{:.0f},\n# and how far it must be before the surface behind it; in mm, at depths in m\n"
+        "# {:>6}{:>10}{:>10}{:>12}{:>12}{:>12}{:>12}\n",
+        1000.0 * view.voxel_m, in_a_second, "depth", "pixel", "noise", "thinnest 1",
+        fmt::format("thinnest {:.0f}", in_a_second), "before 1", fmt::format("before {:.0f}", in_a_second));
+    for (const double depth_m : depths_of(camera)) {
+        text += fmt::format(
+            "# {:>6.2f}{:>10}{:>10}{:>12}{:>12}{:>12}{:>12}\n", depth_m, millimetres(depth_m / view.focal_px),
+            millimetres(view.denoiser.noise.sigma_m(depth_m)),
+            millimetres(thinnest_kept_m(view, depth_m, 1.0)),
+            millimetres(thinnest_kept_m(view, depth_m, in_a_second)),
+            millimetres(standoff_m(view, depth_m, 1.0)), millimetres(standoff_m(view, depth_m, in_a_second)));
+    }
+    return text;
+}
+
+std::string thin_text(const MappingConfig& mapping, const rig::Rig& rig) {
+    if (!rig.camera) return fmt::format("# rig {}: no camera, so no thinnest object\n", rig.name);
+    if (mapping.depth_update != DepthUpdate::denoised)
+        return "# thinnest objects: known for depth_update denoised only\n";
+    return thin_table({.focal_px = std::min(rig.camera->fx, rig.camera->fy),
+                       .denoiser = mapping.depth_denoiser,
+                       .voxel_m = mapping.map.resolution_m},
+                      *rig.camera);
+}
+
 }  // namespace
 
 void add_mapping_command(CLI::App& app) {
     auto name = std::make_shared<std::string>(kDefaultMapping);
     auto lists_keys = std::make_shared<bool>(false);
+    auto rig_file = std::make_shared<std::string>();
     CLI::App* command = app.add_subcommand("mapping", "Check a mapping configuration and print it in full");
     command->add_option("configuration", *name, configuration_help("One of"))->capture_default_str();
-    command->add_flag("--keys", *lists_keys, "List each key with its unit, range, default and meaning");
-    command->callback([name, lists_keys] {
+    CLI::Option* const keys =
+        command->add_flag("--keys", *lists_keys, "List each key with its unit, range, default and meaning");
+    command
+        ->add_option("--rig", *rig_file,
+                     "Print also the thinnest object that this rig's camera keeps in the map, by depth")
+        ->type_name("FILE")
+        ->check(existing_file())
+        ->excludes(keys);
+    command->callback([name, lists_keys, rig_file] {
         if (*lists_keys) return print_text(keys_text());
         const auto configuration = named_mapping(*name);
         if (!configuration) throw CommandFailure(configuration.error());
-        print_text(mapping_text(configuration->mapping));
+        std::string text = mapping_text(configuration->mapping);
+        if (!rig_file->empty())
+            text += "\n" + thin_text(configuration->mapping, value_or_fail(read_given_rig(*rig_file)));
+        print_text(text);
     });
 }
 
