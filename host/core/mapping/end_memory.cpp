@@ -13,10 +13,6 @@ MortonCode code_of(const EndMemory::End& end) {
                       static_cast<std::uint16_t>(end.key_z)});
 }
 
-bool has_voxel(const EndMemory::End& end) {
-    return end.key_z != ProjectedImage::kNoKey;
-}
-
 }  // namespace
 
 void EndMemory::find(const ProjectedImage& image, std::span<const std::uint8_t> restarted,
@@ -25,9 +21,11 @@ void EndMemory::find(const ProjectedImage& image, std::span<const std::uint8_t> 
     retracted.clear();
     retracted.rule = EvidenceRule::retract;
     retracted.sensor = SensorKind::camera;
-    find_left(image, restarted);
+    const Changed changed = find_changed(image, restarted);
+    take_codes(changed.left, left_);
     if (!left_.empty()) {
-        keep_held(image);
+        take_codes(changed.held, held_);
+        std::erase_if(left_, [&](MortonCode code) { return std::ranges::binary_search(held_, code); });
         keep_hit(terms);
     }
     for (const MortonCode code : left_)
@@ -42,28 +40,34 @@ void EndMemory::keep(const ProjectedImage& image) {
     }
 }
 
-void EndMemory::find_left(const ProjectedImage& image, std::span<const std::uint8_t> restarted) {
-    left_.clear();
+/// Most pixels are neither, and which ones are is not predictable: so there is no branch.
+EndMemory::Changed EndMemory::find_changed(const ProjectedImage& image,
+                                           std::span<const std::uint8_t> restarted) {
+    left_pixels_.resize(ends_.size() + 1);
+    held_pixels_.resize(ends_.size() + 1);
+    std::size_t left = 0;
+    std::size_t held = 0;
     for (std::size_t i = 0; i < ends_.size(); ++i) {
         const End& last = ends_[i];
-        const bool is_elsewhere = image.key_z[i] != last.key_z || image.key_xy[i] != last.key_xy;
-        if (!is_elsewhere || image.key_z[i] == ProjectedImage::kNoKey || !has_voxel(last)) continue;
-        const bool is_hidden = restarted[i] != 0 && image.reach_m[i] < last.depth_m;
-        if (!is_hidden) left_.push_back(code_of(last));
+        const auto had_end = static_cast<unsigned>(last.key_z != ProjectedImage::kNoKey);
+        const auto has_end = static_cast<unsigned>(image.key_z[i] != ProjectedImage::kNoKey);
+        const auto is_elsewhere = static_cast<unsigned>(image.key_z[i] != last.key_z) |
+                                  static_cast<unsigned>(image.key_xy[i] != last.key_xy);
+        const auto is_hidden =
+            static_cast<unsigned>(restarted[i] != 0) & static_cast<unsigned>(image.reach_m[i] < last.depth_m);
+        left_pixels_[left] = static_cast<std::uint32_t>(i);
+        left += had_end & has_end & is_elsewhere & (is_hidden ^ 1U);
+        held_pixels_[held] = static_cast<std::uint32_t>(i);
+        held += had_end & (has_end ^ 1U);
     }
-    std::ranges::sort(left_);
-    left_.erase(std::unique(left_.begin(), left_.end()), left_.end());
+    return {{left_pixels_.data(), left}, {held_pixels_.data(), held}};
 }
 
-/// Pixels without a value now still state what they did.
-void EndMemory::keep_held(const ProjectedImage& image) {
-    std::vector<MortonCode> held;
-    for (std::size_t i = 0; i < ends_.size(); ++i) {
-        if (image.key_z[i] == ProjectedImage::kNoKey && has_voxel(ends_[i]))
-            held.push_back(code_of(ends_[i]));
-    }
-    std::ranges::sort(held);
-    std::erase_if(left_, [&](MortonCode code) { return std::ranges::binary_search(held, code); });
+void EndMemory::take_codes(std::span<const std::uint32_t> pixels, std::vector<MortonCode>& codes) const {
+    codes.clear();
+    for (const std::uint32_t pixel : pixels) codes.push_back(code_of(ends_[pixel]));
+    std::ranges::sort(codes);
+    codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
 }
 
 void EndMemory::keep_hit(const Evidence& terms) {

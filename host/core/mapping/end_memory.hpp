@@ -41,12 +41,21 @@ class EndMemory {
     void resume_with(std::vector<End> ends) noexcept { ends_ = std::move(ends); }
 
   private:
-    void find_left(const ProjectedImage& image, std::span<const std::uint8_t> restarted);
-    void keep_held(const ProjectedImage& image);
+    /// Pixels; valid until the next image.
+    struct Changed {
+        std::span<const std::uint32_t> left;  ///< have left their voxel and state that its surface has gone
+        std::span<const std::uint32_t> held;  ///< have no value now: they still state what they did
+    };
+    [[nodiscard]] Changed find_changed(const ProjectedImage& image, std::span<const std::uint8_t> restarted);
+    /// The voxels of the last ends of `pixels`, in Morton order, each once.
+    void take_codes(std::span<const std::uint32_t> pixels, std::vector<MortonCode>& codes) const;
     void keep_hit(const Evidence& terms);
 
     std::vector<End> ends_;
-    std::vector<MortonCode> left_;  ///< voxels that a pixel left, in Morton order
+    std::vector<std::uint32_t> left_pixels_;
+    std::vector<std::uint32_t> held_pixels_;
+    std::vector<MortonCode> left_;
+    std::vector<MortonCode> held_;
 };
 
 }  // namespace octoskin
