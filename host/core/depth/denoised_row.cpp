@@ -139,26 +139,6 @@ void take_row(const DenoiserRule& rule, float* depth_m, const PooledRows& pooled
     }
 }
 
-/// A pixel and the window around it.
-struct Window {
-    const PosteriorRows& rows;
-    std::size_t u = 0;
-    HWY_INLINE Float at(const float* const (&values)[kDenoiserSide], std::size_t place) const {
-        return hn::LoadU(Floats(), values[place / kDenoiserSide] + u + place % kDenoiserSide);
-    }
-};
-
-/// Number of pixels between a place of the window and its centre, along rows and columns.
-constexpr float steps_from_centre(std::size_t place) {
-    const auto distance = [](std::size_t a) {
-        return a > kDenoiserHalf ? a - kDenoiserHalf : kDenoiserHalf - a;
-    };
-    return static_cast<float>(distance(place / kDenoiserSide) + distance(place % kDenoiserSide));
-}
-
-constexpr std::size_t kPlaces = kDenoiserSide * kDenoiserSide;
-constexpr std::size_t kCentre = kPlaces / 2;
-
 /// True if the inverse depths of two pixels differ by no more than noise and a slope can explain; false for a
 /// pixel without a value. `slope`: for both pixels' distance.
 HWY_INLINE Mask is_one_surface(Float difference, Float slope, Float variance, Float sigmas_squared) {
@@ -167,68 +147,124 @@ HWY_INLINE Mask is_one_surface(Float difference, Float slope, Float variance, Fl
     return hn::Or(hn::Le(size, slope), is_near);
 }
 
-/// Neighbours that may be of the centre's surface.
-HWY_INLINE Float neighbours_of(const DenoiserRule& rule, const Window& window, Float centre,
-                               Float centre_variance) {
+/// One pixel of each lane.
+struct Posterior {
+    Float inverse;
+    Float variance;
+    Float weight;
+};
+HWY_INLINE Posterior posterior_at(const PosteriorRow& row, std::size_t u) {
+    const Floats f;
+    return {hn::LoadU(f, row.inverse + u), hn::LoadU(f, row.variance + u), hn::LoadU(f, row.weight + u)};
+}
+
+/// A pixel and what is averaged with it.
+class Average {
+  public:
+    HWY_INLINE Average(const DenoiserRule& rule, const Posterior& centre, std::size_t step)
+        : centre_(centre),
+          sigmas_squared_(constant(rule.pair_sigmas * rule.pair_sigmas)),
+          four_variances_(hn::Mul(constant(4.0F), centre.variance)),
+          slope_(hn::Mul(centre.inverse, constant(rule.slope * static_cast<float>(2 * step)))),
+          weights(centre.weight),
+          sum(hn::Mul(centre.weight, centre.inverse)),
+          agreed(hn::Zero(Floats())) {}
+
+    /// Two pixels opposite each other, `sides` steps along rows and columns from the centre.
+    HWY_INLINE void add(const Posterior& first, const Posterior& second, float sides) {
+        const Float variance = hn::Add(first.variance, second.variance);
+        const Float both = hn::Add(first.inverse, second.inverse);
+        const Float bend = hn::Sub(both, hn::Add(centre_.inverse, centre_.inverse));
+        const Mask is_straight =
+            hn::Le(squared(bend), hn::Mul(sigmas_squared_, hn::Add(variance, four_variances_)));
+        const Float slope = hn::Mul(slope_, constant(sides));
+        const Mask is_pair = hn::And(is_straight, is_one_surface(hn::Sub(first.inverse, second.inverse),
+                                                                 slope, variance, sigmas_squared_));
+        // At most the reciprocal of the variance of the pair's mean, and equal to it for equal variances.
+        const Float less = hn::Min(first.weight, second.weight);
+        weights = hn::Add(weights, hn::IfThenElseZero(is_pair, hn::Add(less, less)));
+        sum = hn::Add(sum, hn::IfThenElseZero(is_pair, hn::Mul(less, both)));
+        agreed = hn::Add(agreed, hn::IfThenElseZero(is_pair, constant(2.0F)));
+    }
+
+  private:
+    const Posterior& centre_;
+    Float sigmas_squared_;
+    Float four_variances_;
+    Float slope_;
+
+  public:
+    Float weights;
+    Float sum;
+    Float agreed;
+};
+
+void average_row(const DenoiserRule& rule, const AveragedRows& rows, std::size_t step, std::size_t width,
+                 const PosteriorRow& averaged, float* agreed) {
+    const Floats f;
+    for (std::size_t u = 0; u < width; u += hn::Lanes(f)) {
+        const Posterior centre = posterior_at(rows.centre, u);
+        Average average(rule, centre, step);
+        average.add(posterior_at(rows.centre, u - step), posterior_at(rows.centre, u + step), 1.0F);
+        average.add(posterior_at(rows.above, u), posterior_at(rows.below, u), 1.0F);
+        average.add(posterior_at(rows.above, u - step), posterior_at(rows.below, u + step), 2.0F);
+        average.add(posterior_at(rows.above, u + step), posterior_at(rows.below, u - step), 2.0F);
+        hn::StoreU(hn::Div(average.sum, average.weights), f, averaged.inverse + u);
+        hn::StoreU(hn::Div(constant(1.0F), average.weights), f, averaged.variance + u);
+        hn::StoreU(average.weights, f, averaged.weight + u);
+        if (agreed != nullptr) hn::StoreU(average.agreed, f, agreed + u);
+    }
+}
+
+/// Pixels of the window that may be of the centre's surface.
+HWY_INLINE Float neighbours_of(const DenoiserRule& rule, const WindowRows& rows, std::size_t u) {
+    const Floats f;
     const Float sigmas_squared = constant(rule.pair_sigmas * rule.pair_sigmas);
-    const Float slope = hn::Mul(centre, constant(rule.member_slope));
-    Float neighbours = hn::Zero(Floats());
-    for (std::size_t place = 0; place < kPlaces; ++place) {
-        if (place == kCentre) continue;
-        const Float value = window.at(window.rows.inverse, place);
-        const Float variance = hn::Add(window.at(window.rows.variance, place), centre_variance);
-        const Float slopes = hn::Mul(slope, constant(steps_from_centre(place)));
-        const Mask is_near = is_one_surface(hn::Sub(value, centre), slopes, variance, sigmas_squared);
-        neighbours = hn::Add(neighbours, hn::IfThenElseZero(is_near, constant(1.0F)));
+    const Float centre = hn::LoadU(f, rows.inverse[kDenoiserHalf] + u);
+    const Float centre_variance = hn::LoadU(f, rows.variance[kDenoiserHalf] + u);
+    const Float slope = hn::Mul(centre, constant(rule.slope));
+    const auto distance = [](std::size_t a) {
+        return a > kDenoiserHalf ? a - kDenoiserHalf : kDenoiserHalf - a;
+    };
+    Float neighbours = hn::Zero(f);
+    for (std::size_t row = 0; row < kDenoiserSide; ++row) {
+        for (std::size_t column = 0; column < kDenoiserSide; ++column) {
+            const std::size_t steps = distance(row) + distance(column);
+            if (steps == 0) continue;
+            const std::size_t at = u + column - kDenoiserHalf;
+            const Float value = hn::LoadU(f, rows.inverse[row] + at);
+            const Float variance = hn::Add(hn::LoadU(f, rows.variance[row] + at), centre_variance);
+            const Float slopes = hn::Mul(slope, constant(static_cast<float>(steps)));
+            const Mask is_near = is_one_surface(hn::Sub(value, centre), slopes, variance, sigmas_squared);
+            neighbours = hn::Add(neighbours, hn::IfThenElseZero(is_near, constant(1.0F)));
+        }
     }
     return neighbours;
 }
 
-void denoise_row(const DenoiserRule& rule, const PosteriorRows& rows, const float* count, std::size_t width,
-                 float* depth_m) {
+void drop_unsupported(const DenoiserRule& rule, const WindowRows& rows, const float* agreed,
+                      const float* count, std::size_t width, float* depth_m) {
+    const Floats f;
+    const Float support_min = constant(rule.support_min);
+    for (std::size_t u = 0; u < width; u += hn::Lanes(f)) {
+        const Float depth = hn::LoadU(f, depth_m + u);
+        const Mask has_none = hn::Not(hn::Gt(depth, hn::Zero(f)));
+        const Float further = hn::Sub(hn::Abs(hn::LoadU(f, count + u)), constant(1.0F));
+        Mask is_sure = hn::Ge(hn::Add(further, hn::LoadU(f, agreed + u)), support_min);
+        if (!hn::AllTrue(f, hn::Or(has_none, is_sure)))
+            is_sure = hn::Or(is_sure, hn::Ge(hn::Add(further, neighbours_of(rule, rows, u)), support_min));
+        const Float none = constant(std::numeric_limits<float>::quiet_NaN());
+        hn::StoreU(hn::IfThenElse(is_sure, depth, none), f, depth_m + u);
+    }
+}
+
+void replace_depths(const float* inverse, std::size_t width, float* depth_m) {
     const Floats f;
     const Float none = constant(std::numeric_limits<float>::quiet_NaN());
-    const Float sigmas_squared = constant(rule.pair_sigmas * rule.pair_sigmas);
     for (std::size_t u = 0; u < width; u += hn::Lanes(f)) {
-        const Window window{rows, u};
-        const Float centre = window.at(rows.inverse, kCentre);
         const Mask has_value = hn::Gt(hn::LoadU(f, depth_m + u), hn::Zero(f));
-        if (hn::AllFalse(f, has_value)) {
-            hn::StoreU(none, f, depth_m + u);
-            continue;
-        }
-        const Float centre_variance = window.at(rows.variance, kCentre);
-        const Float four_variances = hn::Mul(constant(4.0F), centre_variance);
-        const Float slope = hn::Mul(centre, constant(rule.pair_slope));
-        Float weights = window.at(rows.weight, kCentre);
-        Float sum = hn::Mul(weights, centre);
-        Float support = hn::Sub(hn::Abs(hn::LoadU(f, count + u)), constant(1.0F));
-        for (std::size_t place = 0; place < kCentre; ++place) {
-            const std::size_t opposite = kPlaces - 1 - place;
-            const Float first = window.at(rows.inverse, place);
-            const Float second = window.at(rows.inverse, opposite);
-            const Float variance =
-                hn::Add(window.at(rows.variance, place), window.at(rows.variance, opposite));
-            const Float both = hn::Add(first, second);
-            const Float bend = hn::Sub(both, hn::Add(centre, centre));
-            const Float slopes = hn::Mul(slope, constant(2.0F * steps_from_centre(place)));
-            const Mask is_straight =
-                hn::Le(squared(bend), hn::Mul(sigmas_squared, hn::Add(variance, four_variances)));
-            const Mask is_pair = hn::And(
-                is_straight, is_one_surface(hn::Sub(first, second), slopes, variance, sigmas_squared));
-            // At most the reciprocal of the variance of the pair's mean, and equal to it for equal variances.
-            const Float less = hn::Min(window.at(rows.weight, place), window.at(rows.weight, opposite));
-            const Float weight = hn::IfThenElseZero(is_pair, hn::Add(less, less));
-            weights = hn::Add(weights, weight);
-            sum = hn::Add(sum, hn::IfThenElseZero(is_pair, hn::Mul(less, both)));
-            support = hn::Add(support, hn::IfThenElseZero(is_pair, constant(2.0F)));
-        }
-        const Float support_min = constant(rule.support_min);
-        if (!hn::AllTrue(f, hn::Or(hn::Ge(support, support_min), hn::Not(has_value))))
-            support = hn::Max(support, hn::Add(hn::Sub(hn::Abs(hn::LoadU(f, count + u)), constant(1.0F)),
-                                               neighbours_of(rule, window, centre, centre_variance)));
-        const Mask is_sure = hn::And(has_value, hn::Ge(support, support_min));
-        hn::StoreU(hn::IfThenElse(is_sure, hn::Div(weights, sum), none), f, depth_m + u);
+        const Float depth = hn::Div(constant(1.0F), hn::LoadU(f, inverse + u));
+        hn::StoreU(hn::IfThenElse(has_value, depth, none), f, depth_m + u);
     }
 }
 
@@ -242,7 +278,9 @@ namespace {
 HWY_EXPORT(find_innovations);
 HWY_EXPORT(sum_fives);
 HWY_EXPORT(take_row);
-HWY_EXPORT(denoise_row);
+HWY_EXPORT(average_row);
+HWY_EXPORT(drop_unsupported);
+HWY_EXPORT(replace_depths);
 
 }  // namespace
 
@@ -261,9 +299,18 @@ void take_row(const DenoiserRule& rule, float* depth_m, const PooledRows& pooled
     HWY_DYNAMIC_DISPATCH(take_row)(rule, depth_m, pooled, memory, next, posterior, width, restarted);
 }
 
-void denoise_row(const DenoiserRule& rule, const PosteriorRows& rows, const float* count, std::size_t width,
-                 float* depth_m) {
-    HWY_DYNAMIC_DISPATCH(denoise_row)(rule, rows, count, width, depth_m);
+void average_row(const DenoiserRule& rule, const AveragedRows& rows, std::size_t step, std::size_t width,
+                 const PosteriorRow& averaged, float* agreed) {
+    HWY_DYNAMIC_DISPATCH(average_row)(rule, rows, step, width, averaged, agreed);
+}
+
+void drop_unsupported(const DenoiserRule& rule, const WindowRows& rows, const float* agreed,
+                      const float* count, std::size_t width, float* depth_m) {
+    HWY_DYNAMIC_DISPATCH(drop_unsupported)(rule, rows, agreed, count, width, depth_m);
+}
+
+void replace_depths(const float* inverse, std::size_t width, float* depth_m) {
+    HWY_DYNAMIC_DISPATCH(replace_depths)(inverse, width, depth_m);
 }
 
 }  // namespace octoskin

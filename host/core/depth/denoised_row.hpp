@@ -1,6 +1,7 @@
 // The arithmetic of DepthDenoiser for one row of an image.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -17,15 +18,19 @@ struct DenoiserRule {
     float drift_memory = 0.0F;
     float count_max = 0.0F;
     float pair_sigmas = 0.0F;
-    float pair_slope = 0.0F;    ///< largest change of depth from pixel to pixel, as a share of the depth
-    float member_slope = 0.0F;  ///< the same for a single neighbour
+    float slope = 0.0F;  ///< largest change of depth from pixel to pixel, as a share of the depth
     float support_min = 0.0F;
 };
 
-/// Pixels on each side of a window's centre.
+/// Pixels on each side of the centre of the window that is pooled and that supports a value.
 inline constexpr std::size_t kDenoiserHalf = 2;
 inline constexpr std::size_t kDenoiserSide = 2 * kDenoiserHalf + 1;
-/// Upper limit of the values read or written behind a row's last pixel.
+/// Distances in pixels of the eight neighbours that are averaged, one after the other: each time the values
+/// to be averaged are means of other pixels, and so independent.
+inline constexpr std::array<std::size_t, 3> kAveragedSteps{1, 3, 9};
+/// Values without a pixel on each side of a row.
+inline constexpr std::size_t kDenoiserMargin = kAveragedSteps.back();
+/// Upper limit of the values read or written behind a row's last pixel and the margin.
 inline constexpr std::size_t kDenoiserLanesMax = 64;
 
 /// What is remembered of the pixels of a row. A count of 0: no value yet. A negative count: the pixel's last
@@ -66,17 +71,31 @@ void take_row(const DenoiserRule& rule, float* depth_m, const PooledRows& pooled
               const PixelMemoryRow& memory, const PixelMemoryRow& next, const PosteriorRow& posterior,
               std::size_t width, std::uint8_t* restarted);
 
-/// The five rows around a row, each beginning two values before its first pixel.
-struct PosteriorRows {
-    const float* inverse[kDenoiserSide] = {};
-    const float* variance[kDenoiserSide] = {};
-    const float* weight[kDenoiserSide] = {};
+/// A row and those a step above and below it.
+struct AveragedRows {
+    PosteriorRow above;
+    PosteriorRow centre;
+    PosteriorRow below;
 };
 
-/// Replaces the depth of each pixel that has one, metres: the weighted mean of its inverse depth and of those
-/// of the pairs of opposite pixels that agree with it. `count`: of the pixel's values, after take_row(). NaN
-/// without enough support. About 5 us for 512 pixels.
-void denoise_row(const DenoiserRule& rule, const PosteriorRows& rows, const float* count, std::size_t width,
-                 float* depth_m);
+/// The weighted mean of each pixel and of those opposite pairs of its eight neighbours at the distance `step`
+/// that agree with it, with its variance. A pixel without a value stays so. `agreed`: how many neighbours do;
+/// may be null. About 2 us for 512 pixels.
+void average_row(const DenoiserRule& rule, const AveragedRows& rows, std::size_t step, std::size_t width,
+                 const PosteriorRow& averaged, float* agreed);
+
+/// The rows around a row.
+struct WindowRows {
+    const float* inverse[kDenoiserSide] = {};
+    const float* variance[kDenoiserSide] = {};
+};
+
+/// Makes NaN of each depth, metres, without enough support. `agreed`: of average_row() with a step of 1.
+/// `count`: of the pixel's values, after take_row().
+void drop_unsupported(const DenoiserRule& rule, const WindowRows& rows, const float* agreed,
+                      const float* count, std::size_t width, float* depth_m);
+
+/// Replaces each depth above 0 by the reciprocal of `inverse`, any other by NaN.
+void replace_depths(const float* inverse, std::size_t width, float* depth_m);
 
 }  // namespace octoskin

@@ -7,10 +7,8 @@
 namespace octoskin {
 namespace {
 
-/// Steepest surface whose pixels are averaged, seen 80 degrees off its normal; a single neighbour counts as
-/// support up to 63 degrees.
-constexpr double kPairTangent = 5.7;
-constexpr double kMemberTangent = 2.0;
+/// Steepest surface whose pixels are averaged however small the noise, seen 63 degrees off its normal.
+constexpr double kSlopeTangent = 2.0;
 
 DenoiserRule rule_of(const DepthDenoiserConfig& config, const CameraIntrinsics& camera) {
     const auto single = [](double value) { return static_cast<float>(value); };
@@ -24,105 +22,141 @@ DenoiserRule rule_of(const DepthDenoiserConfig& config, const CameraIntrinsics& 
             .drift_memory = single(config.drift_memory),
             .count_max = static_cast<float>(config.count_max),
             .pair_sigmas = single(config.pair_sigmas),
-            .pair_slope = single(kPairTangent * pixel),
-            .member_slope = single(kMemberTangent * pixel),
+            .slope = single(kSlopeTangent * pixel),
             .support_min = static_cast<float>(config.support_min)};
 }
 
+// How many rows later than `pool` each part comes, which needs rows below its own.
+constexpr std::ptrdiff_t kTaken = kDenoiserHalf;
+constexpr std::ptrdiff_t kSupported = kTaken + kDenoiserHalf;
+constexpr std::ptrdiff_t kWritten = kSupported + kAveragedSteps[1] + kAveragedSteps[2];
+/// At least the rows of anything that are needed at once.
+constexpr std::size_t kRows = 24;
+static_assert(kRows > 2 * kAveragedSteps.back() && kRows > kWritten);
+
 }  // namespace
+
+DepthDenoiser::Rows::Rows(std::size_t rows, std::size_t width, float outside)
+    : rows_(rows),
+      width_(width),
+      stride_(width + 2 * kDenoiserMargin + kDenoiserLanesMax),
+      outside_(outside),
+      values_(rows * stride_, outside) {}
+
+void DepthDenoiser::Rows::limit(Row v) noexcept {
+    std::fill_n(at(v) + width_, kDenoiserMargin, outside_);
+}
+
+DepthDenoiser::PosteriorRows::PosteriorRows(std::size_t rows, std::size_t width)
+    : inverse(rows, width, std::numeric_limits<float>::quiet_NaN()),
+      variance(rows, width, 0.0F),
+      weight(rows, width, 0.0F) {}
 
 DepthDenoiser::DepthDenoiser(const DepthDenoiserConfig& config, const CameraIntrinsics& camera)
     : rule_(rule_of(config, camera)),
       width_(camera.width),
       height_(camera.height),
-      stride_(camera.width + 2 * kDenoiserHalf + kDenoiserLanesMax) {
+      stride_(camera.width + kDenoiserLanesMax),
+      nothing_(stride_, 0.0F),
+      depth_m_(kRows, width_, 0.0F),
+      innovations_(1, width_, 0.0F),
+      known_(1, width_, 0.0F),
+      pooled_(kRows, width_, 0.0F),
+      pooled_known_(kRows, width_, 0.0F),
+      agreed_(1, width_, 0.0F),
+      posteriors_(kAveragedSteps.size() + 1, PosteriorRows(kRows, width_)),
+      outside_(1, width_),
+      restarted_row_(stride_, 0),
+      restarted_(std::size_t{width_} * height_, 0) {
     assert(config.noise.constant_m >= 1e-4 && config.noise.quadratic_per_m >= 0.0);
     assert(config.count_max > 0);
     assert(std::min({config.gate_sigmas, config.step_sigmas, config.drift_sigmas, config.pair_sigmas}) > 0.0);
-    const std::size_t size = stride_ * height_;
     for (PixelMemory* const memory : {&memory_, &next_}) {
-        memory->mean_m.assign(size, 0.0F);
-        memory->count.assign(size, 0.0F);
-        memory->drift.assign(size, 0.0F);
+        memory->mean_m.assign(stride_ * height_, 0.0F);
+        memory->count.assign(stride_ * height_, 0.0F);
+        memory->drift.assign(stride_ * height_, 0.0F);
     }
-    nothing_.assign(stride_, 0.0F);
-    depth_m_.assign(size, 0.0F);
-    innovations_.assign(stride_, 0.0F);
-    known_.assign(stride_, 0.0F);
-    pooled_.assign(size, 0.0F);
-    pooled_known_.assign(size, 0.0F);
-    const std::size_t padded_size = stride_ * (height_ + 2 * kDenoiserHalf);
-    inverse_.assign(padded_size, std::numeric_limits<float>::quiet_NaN());
-    variance_.assign(padded_size, 0.0F);
-    weight_.assign(padded_size, 0.0F);
-    restarted_row_.assign(stride_, 0);
-    restarted_.assign(std::size_t{width_} * height_, 0);
 }
 
 PixelMemoryRow DepthDenoiser::row_of(PixelMemory& memory, std::size_t begin) noexcept {
     return {memory.mean_m.data() + begin, memory.count.data() + begin, memory.drift.data() + begin};
 }
 
-PixelMemoryRow DepthDenoiser::remembered(Memory memory, std::size_t begin) noexcept {
-    if (memory == Memory::used) return row_of(memory_, begin);
+PixelMemoryRow DepthDenoiser::remembered(Memory memory, Row v) noexcept {
+    if (memory == Memory::used) return row_of(memory_, begin_of(static_cast<std::size_t>(v)));
     return {nothing_.data(), nothing_.data(), nothing_.data()};
 }
 
+/// Each row goes through all parts as soon as the rows that they need are there, while these are in the
+/// cache.
 void DepthDenoiser::denoise(DepthImage& image, Memory memory) {
     assert(image.width == width_ && image.height == height_);
     assert(image.depth_m.size() == std::size_t{width_} * height_);
-    frame(image);
-    pool(memory);
-    take(memory);
-    for (std::size_t v = 0; v < height_; ++v) {
-        PosteriorRows rows;
-        for (std::size_t i = 0; i < kDenoiserSide; ++i) {
-            const std::size_t begin = (v + i) * stride_;
-            rows.inverse[i] = inverse_.data() + begin;
-            rows.variance[i] = variance_.data() + begin;
-            rows.weight[i] = weight_.data() + begin;
+    for (Row v = 0; v < static_cast<Row>(height_) + kWritten; ++v) {
+        pool(v, image, memory);
+        take(v - kTaken, memory);
+        Row averaged = v - kSupported;
+        for (std::size_t level = 0; level < kAveragedSteps.size(); ++level) {
+            if (level > 0) averaged -= static_cast<Row>(kAveragedSteps[level]);
+            average(level, averaged);
+            if (level == 0) support(averaged);
         }
-        float* const depth_m = depth_m_.data() + begin_of(v);
-        denoise_row(rule_, rows, next_.count.data() + begin_of(v), width_, depth_m);
-        std::copy_n(depth_m, width_, image.depth_m.data() + v * width_);
+        write(averaged, image);
     }
 }
 
-void DepthDenoiser::frame(const DepthImage& image) {
-    for (std::size_t v = 0; v < height_; ++v)
-        std::copy_n(image.depth_m.data() + v * width_, width_, depth_m_.data() + begin_of(v));
+void DepthDenoiser::pool(Row v, const DepthImage& image, Memory memory) {
+    if (!has(v)) return;
+    std::copy_n(image.depth_m.data() + static_cast<std::size_t>(v) * width_, width_, depth_m_.at(v));
+    if (memory == Memory::of_other_place) return;  // there is nothing to compare the image with
+    find_innovations(rule_, depth_m_.at(v), remembered(memory, v), width_, innovations_.at(0), known_.at(0));
+    innovations_.limit(0);
+    known_.limit(0);
+    sum_fives(innovations_.at(0) - kDenoiserHalf, width_, pooled_.at(v));
+    sum_fives(known_.at(0) - kDenoiserHalf, width_, pooled_known_.at(v));
 }
 
-void DepthDenoiser::pool(Memory memory) {
-    for (std::size_t v = 0; v < height_; ++v) {
-        const std::size_t begin = begin_of(v);
-        find_innovations(rule_, depth_m_.data() + begin, remembered(memory, begin), width_,
-                         innovations_.data() + kDenoiserHalf, known_.data() + kDenoiserHalf);
-        // What was computed behind the last pixel is of no pixel.
-        std::fill_n(innovations_.data() + kDenoiserHalf + width_, kDenoiserHalf, 0.0F);
-        std::fill_n(known_.data() + kDenoiserHalf + width_, kDenoiserHalf, 0.0F);
-        sum_fives(innovations_.data(), width_, pooled_.data() + begin);
-        sum_fives(known_.data(), width_, pooled_known_.data() + begin);
+void DepthDenoiser::take(Row v, Memory memory) {
+    if (!has(v)) return;
+    PooledRows pooled;
+    for (std::size_t i = 0; i < kDenoiserSide; ++i) {
+        const Row row = v + static_cast<Row>(i) - static_cast<Row>(kDenoiserHalf);
+        if (!has(row) || memory == Memory::of_other_place) continue;
+        pooled.innovations[i] = pooled_.at(row);
+        pooled.known[i] = pooled_known_.at(row);
     }
+    take_row(rule_, depth_m_.at(v), pooled, remembered(memory, v),
+             row_of(next_, begin_of(static_cast<std::size_t>(v))), posteriors_.front().at(v), width_,
+             restarted_row_.data());
+    posteriors_.front().inverse.limit(v);
+    std::copy_n(restarted_row_.data(), width_, restarted_.data() + static_cast<std::size_t>(v) * width_);
 }
 
-void DepthDenoiser::take(Memory memory) {
-    for (std::size_t v = 0; v < height_; ++v) {
-        PooledRows pooled;
-        for (std::size_t i = 0; i < kDenoiserSide; ++i) {
-            if (v + i < kDenoiserHalf || v + i >= height_ + kDenoiserHalf) continue;
-            pooled.innovations[i] = pooled_.data() + begin_of(v + i - kDenoiserHalf);
-            pooled.known[i] = pooled_known_.data() + begin_of(v + i - kDenoiserHalf);
-        }
-        const std::size_t begin = begin_of(v);
-        const std::size_t framed = (v + kDenoiserHalf) * stride_ + kDenoiserHalf;
-        take_row(rule_, depth_m_.data() + begin, pooled, remembered(memory, begin), row_of(next_, begin),
-                 {inverse_.data() + framed, variance_.data() + framed, weight_.data() + framed}, width_,
-                 restarted_row_.data());
-        std::fill_n(inverse_.data() + framed + width_, kDenoiserHalf,
-                    std::numeric_limits<float>::quiet_NaN());
-        std::copy_n(restarted_row_.data(), width_, restarted_.data() + v * width_);
+void DepthDenoiser::average(std::size_t level, Row v) {
+    if (!has(v)) return;
+    const auto step = static_cast<Row>(kAveragedSteps[level]);
+    average_row(rule_, {averaged_at(level, v - step), averaged_at(level, v), averaged_at(level, v + step)},
+                kAveragedSteps[level], width_, posteriors_[level + 1].at(v),
+                level == 0 ? agreed_.at(0) : nullptr);
+    posteriors_[level + 1].inverse.limit(v);
+}
+
+void DepthDenoiser::support(Row v) {
+    if (!has(v)) return;
+    WindowRows rows;
+    for (std::size_t i = 0; i < kDenoiserSide; ++i) {
+        const PosteriorRow row = averaged_at(0, v + static_cast<Row>(i) - static_cast<Row>(kDenoiserHalf));
+        rows.inverse[i] = row.inverse;
+        rows.variance[i] = row.variance;
     }
+    drop_unsupported(rule_, rows, agreed_.at(0), next_.count.data() + begin_of(static_cast<std::size_t>(v)),
+                     width_, depth_m_.at(v));
+}
+
+void DepthDenoiser::write(Row v, DepthImage& image) {
+    if (!has(v)) return;
+    replace_depths(posteriors_.back().inverse.at(v), width_, depth_m_.at(v));
+    std::copy_n(depth_m_.at(v), width_, image.depth_m.data() + static_cast<std::size_t>(v) * width_);
 }
 
 DepthDenoiser::Pixel DepthDenoiser::pixel(std::uint32_t u, std::uint32_t v) const noexcept {

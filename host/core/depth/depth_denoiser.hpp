@@ -19,10 +19,13 @@ namespace octoskin {
 /// their differences in sigmas, divided by the root of their number, beyond `step_sigmas`; or its running
 /// mean, which keeps `drift_memory` of itself, beyond `drift_sigmas`.
 ///
-/// Over space: pairs of opposite pixels of the 5 x 5 window whose mean inverse depth agrees with the
-/// centre's within `pair_sigmas`. The mean of a pair on a plane is the centre's value, whatever the slope: so
-/// slopes are kept, and pixels beyond an edge do not agree. A pixel is dropped if its further values and the
-/// pixels that agree with it are fewer than `support_min`: a value at an edge, between two surfaces.
+/// Over space: pairs of opposite neighbours of a pixel whose mean inverse depth agrees with its own within
+/// `pair_sigmas`. The mean of a pair on a plane is the centre's value, whatever the slope: so slopes are
+/// kept, and pixels beyond an edge do not agree. First the neighbours are averaged that touch the pixel, then
+/// those 3 and 9 pixels away, whose values are such averages already: so a plane is averaged over 27 x 27
+/// pixels, and each time the deviation that decides what agrees is a third of the one before. A pixel is
+/// dropped if its further values and the pixels of the 5 x 5 around it that agree with it are fewer than
+/// `support_min`: a value at an edge, between two surfaces.
 struct DepthDenoiserConfig {
     DepthNoiseLaw noise;
     double gate_sigmas = 3.5;
@@ -73,14 +76,47 @@ class DepthDenoiser {
     [[nodiscard]] std::uint32_t height() const noexcept { return height_; }
 
   private:
-    [[nodiscard]] std::size_t begin_of(std::size_t row) const noexcept {
-        return row * stride_ + kDenoiserHalf;
-    }
+    using Row = std::ptrdiff_t;  ///< of the image, also one outside it
+    [[nodiscard]] bool has(Row v) const noexcept { return v >= 0 && v < static_cast<Row>(height_); }
     [[nodiscard]] static PixelMemoryRow row_of(PixelMemory& memory, std::size_t begin) noexcept;
-    void frame(const DepthImage& image);
-    void pool(Memory memory);
-    void take(Memory memory);
-    [[nodiscard]] PixelMemoryRow remembered(Memory memory, std::size_t begin) noexcept;
+    [[nodiscard]] std::size_t begin_of(std::size_t v) const noexcept { return v * stride_; }
+    [[nodiscard]] PixelMemoryRow remembered(Memory memory, Row v) noexcept;
+    // Each does its part for one row, and nothing for a row outside the image.
+    void pool(Row v, const DepthImage& image, Memory memory);
+    void take(Row v, Memory memory);
+    void average(std::size_t level, Row v);
+    void support(Row v);
+    void write(Row v, DepthImage& image);
+
+    /// The newest rows of something. Rows have margins that only the constructor and `limit` write.
+    class Rows {
+      public:
+        Rows(std::size_t rows, std::size_t width, float outside);
+        [[nodiscard]] float* at(Row v) noexcept {
+            return values_.data() + static_cast<std::size_t>(v) % rows_ * stride_ + kDenoiserMargin;
+        }
+        /// What was computed behind the last pixel of the row is of no pixel.
+        void limit(Row v) noexcept;
+
+      private:
+        std::size_t rows_;
+        std::size_t width_;
+        std::size_t stride_;
+        float outside_;
+        std::vector<float> values_;
+    };
+    struct PosteriorRows {
+        PosteriorRows(std::size_t rows, std::size_t width);
+        [[nodiscard]] PosteriorRow at(Row v) noexcept {
+            return {inverse.at(v), variance.at(v), weight.at(v)};
+        }
+        Rows inverse;
+        Rows variance;
+        Rows weight;
+    };
+    [[nodiscard]] PosteriorRow averaged_at(std::size_t level, Row v) noexcept {
+        return has(v) ? posteriors_[level].at(v) : outside_.at(0);
+    }
 
     DenoiserRule rule_;
     std::uint32_t width_;
@@ -89,14 +125,14 @@ class DepthDenoiser {
     PixelMemory memory_;
     PixelMemory next_;
     std::vector<float> nothing_;  ///< a row of zeros
-    std::vector<float> depth_m_;
-    std::vector<float> innovations_;  ///< one row
-    std::vector<float> known_;        ///< one row
-    std::vector<float> pooled_;       ///< sums of fives of `innovations_`
-    std::vector<float> pooled_known_;
-    std::vector<float> inverse_;  ///< with an empty row before and behind the image, likewise the next two
-    std::vector<float> variance_;
-    std::vector<float> weight_;
+    Rows depth_m_;
+    Rows innovations_;
+    Rows known_;
+    Rows pooled_;  ///< sums of fives of `innovations_`
+    Rows pooled_known_;
+    Rows agreed_;
+    std::vector<PosteriorRows> posteriors_;  ///< of single pixels, then after each step of kAveragedSteps
+    PosteriorRows outside_;                  ///< a row without values
     std::vector<std::uint8_t> restarted_row_;
     std::vector<std::uint8_t> restarted_;
 };

@@ -206,7 +206,7 @@ constexpr std::array kMappingKeys = {
                "sigmas",
                {0.1, 100},
                at<&MappingConfig::depth_denoiser, &DepthDenoiserConfig::pair_sigmas>,
-               "opposite pixels of the 5 x 5 around a pixel that agree with it within this are averaged"},
+               "opposite neighbours of a pixel that agree with it within this are averaged"},
     MappingKey{"depth_denoiser.min_support",
                "pixels",
                {0, 24},

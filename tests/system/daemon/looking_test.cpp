@@ -97,8 +97,9 @@ class DaemonOnFrames {
 
 /// What the camera sees in a part of its image: a wall that jumps.
 struct Wall {
-    int images = 4;        ///< from one jump to the next
-    double sigma_m = 0.0;  ///< of the camera; 0: each pixel varies by up to 6 cm, always in the same way
+    int images = 4;         ///< from one jump to the next
+    unsigned columns = 40;  ///< of the image that it fills
+    double sigma_m = 0.0;   ///< of the camera; 0: each pixel varies by up to 6 cm, always in the same way
 };
 
 DepthFrame image_at(HostTime captured, int number, const Wall& wall) {
@@ -116,7 +117,8 @@ DepthFrame image_at(HostTime captured, int number, const Wall& wall) {
     frame.depth_mm.assign(frame.width * frame.height, 0);
     const long wall_mm = number / wall.images % 2 == 0 ? 3'000 : 2'500;
     for (std::size_t i = 0; i < frame.depth_mm.size(); ++i)
-        if (i % frame.width < 40) frame.depth_mm[i] = static_cast<std::uint16_t>(wall_mm + varied_mm(i));
+        if (i % frame.width < wall.columns)
+            frame.depth_mm[i] = static_cast<std::uint16_t>(wall_mm + varied_mm(i));
     return frame;
 }
 
@@ -209,7 +211,7 @@ TEST_P(Looking, changes_nothing_and_the_replay_gives_the_same_bytes) {
     }
 }
 
-constexpr Wall kNoisyWall{.images = 16, .sigma_m = 0.03};
+constexpr Wall kNoisyWall{.images = 16, .columns = 160, .sigma_m = 0.03};
 
 // With ages, the map forgets within the log what no sensor confirms. With noise, the recording begins while
 // the camera's means still move, and the voxels that they leave are retracted.
