@@ -113,6 +113,12 @@ const Summary& MapSummary::at(std::string_view metric) const {
     return found->second;
 }
 
+bool has_group(const MetricSummaries& metrics, MetricGroup group) {
+    return std::ranges::any_of(metric_fields(), [&](const MetricField& field) {
+        return field.group == group && metrics.find(field.name)->second.mean;
+    });
+}
+
 std::vector<MapSummary> aggregate(std::span<const Run> runs) {
     std::vector<MapSummary> summaries;
     for (const auto& run : runs) {

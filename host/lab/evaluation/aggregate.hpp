@@ -30,6 +30,8 @@ struct Summary {
 [[nodiscard]] Summary summarise(std::vector<std::optional<double>> per_seed);
 
 using MetricSummaries = std::map<std::string, Summary, std::less<>>;
+/// Whether a metric of the group has a mean: none has of what a camera sees if there is no camera.
+[[nodiscard]] bool has_group(const MetricSummaries& metrics, MetricGroup group);
 
 /// Seen voxels of several seeds.
 struct SeenPool {

@@ -104,7 +104,13 @@ std::optional<double> seen(const Metrics& metrics) {
     return metrics.seen ? (*metrics.seen).*kFigure : std::nullopt;
 }
 
-constexpr std::array<MetricField, 23> kFields{{
+/// A figure of the comparison with the camera's map; empty without one.
+template <std::optional<double> BesideCamera::*kFigure>
+std::optional<double> beside_camera(const Metrics& metrics) {
+    return metrics.beside_camera ? (*metrics.beside_camera).*kFigure : std::nullopt;
+}
+
+constexpr std::array<MetricField, 26> kFields{{
     {"occupied", MetricGroup::camera_truth, true, true,
      [](const Metrics& m) { return as_double(m.occupied); }},
     {"free", MetricGroup::camera_truth, true, true, [](const Metrics& m) { return as_double(m.free); }},
@@ -132,6 +138,14 @@ constexpr std::array<MetricField, 23> kFields{{
     {"body_2cm", MetricGroup::seen, false, false, seen<&SeenMetrics::body_2cm>},
     {"body_5cm", MetricGroup::seen, false, false, seen<&SeenMetrics::body_5cm>},
     {"availability", MetricGroup::seen, false, true, seen<&SeenMetrics::availability_5cm>},
+    {"lost_beyond_camera", MetricGroup::beside_camera, true, false,
+     [](const Metrics& m) {
+         return m.beside_camera ? as_double(m.beside_camera->lost_beyond_camera) : std::nullopt;
+     }},
+    {"freed_occupied", MetricGroup::beside_camera, false, false,
+     beside_camera<&BesideCamera::freed_occupied>},
+    {"freed_seen_unknown", MetricGroup::beside_camera, false, false,
+     beside_camera<&BesideCamera::freed_seen_unknown>},
 }};
 
 }  // namespace
@@ -167,11 +181,44 @@ Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth) {
     return metrics;
 }
 
-Metrics evaluate(const FusedMap& map, const Truth& truth, const MissUnits& units) {
+BesideCamera compare(const VoxelGrid<MapVoxel>& map, const VoxelGrid<MapVoxel>& camera_map,
+                     const Truth& truth) {
+    assert(map.box() == truth.region() && camera_map.box() == truth.region());
+    BesideCamera result;
+    std::uint64_t occupied = 0;
+    std::uint64_t freed_occupied = 0;
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        const bool is_free = map[i].occupancy == Occupancy::free;
+        const Occupancy of_camera = camera_map[i].occupancy;
+        if (truth.camera[i] == Occupancy::occupied && of_camera == Occupancy::unknown)
+            result.lost_beyond_camera += is_free ? 1 : 0;
+        if (truth.surface[i].is_surface && of_camera == Occupancy::occupied) {
+            occupied += 1;
+            freed_occupied += is_free ? 1 : 0;
+        }
+    }
+    result.freed_occupied = ratio(freed_occupied, occupied);
+    if (!truth.seen) return result;
+    std::uint64_t unknown = 0;
+    std::uint64_t freed_unknown = 0;
+    for (const SeenVoxel& voxel : truth.seen->voxels) {
+        if (camera_map.at(voxel.key).occupancy != Occupancy::unknown) continue;
+        unknown += 1U;
+        freed_unknown += map.at(voxel.key).occupancy == Occupancy::free ? 1U : 0U;
+    }
+    result.freed_seen_unknown = ratio(freed_unknown, unknown);
+    return result;
+}
+
+Metrics evaluate(const FusedMap& map, const Truth& truth, const MissUnits& units,
+                 const FusedMap* camera_map) {
     assert(map.resolution_m() == truth.resolution_m);
-    Metrics metrics = compute_metrics(sample_map(map, truth.region()), truth);
+    const VoxelGrid<MapVoxel> samples = sample_map(map, truth.region());
+    Metrics metrics = compute_metrics(samples, truth);
     metrics.free_calibration = free_calibration(map, units, truth.surface);
     if (truth.seen) metrics.seen = seen_metrics(map, *truth.seen);
+    if (camera_map != nullptr)
+        metrics.beside_camera = compare(samples, sample_map(*camera_map, truth.region()), truth);
     return metrics;
 }
 
@@ -184,9 +231,11 @@ std::string_view title_of(MetricGroup group) noexcept {
         case MetricGroup::probabilities:
             return "probabilities";
         case MetricGroup::seen:
+            return "seen by the camera";
+        case MetricGroup::beside_camera:
             break;
     }
-    return "seen by the camera";
+    return "beside the camera's map";
 }
 
 std::span<const MetricField> metric_fields() noexcept {

@@ -38,6 +38,17 @@ struct CalibrationBin {
 inline constexpr std::size_t kCalibrationBins = 10;
 using Calibration = std::array<CalibrationBin, kCalibrationBins>;
 
+/// What ranges have changed, in a map that also has the camera's images. Ratios are empty where the
+/// denominator is 0.
+struct BesideCamera {
+    /// Occupied in the camera truth and free in the map: of these, unknown in the camera's own map.
+    std::uint64_t lost_beyond_camera = 0;
+    /// Of surface voxels that the camera's map has as occupied, the share that is free in this map.
+    std::optional<double> freed_occupied;
+    /// Of seen voxels that the camera's map has as unknown, the share that is free in this map.
+    std::optional<double> freed_seen_unknown;
+};
+
 struct Metrics {
     // Against the camera truth, voxels of the region (Strong et al. 2021, Table I, and the column it leaves
     // out).
@@ -62,19 +73,27 @@ struct Metrics {
     Calibration calibration;
     FreeCalibration free_calibration;
 
-    std::optional<SeenMetrics> seen = std::nullopt;  ///< of the external camera; empty without one
+    std::optional<SeenMetrics> seen = std::nullopt;            ///< of the external camera; empty without one
+    std::optional<BesideCamera> beside_camera = std::nullopt;  ///< empty without the camera's map
 };
 
 /// `map` must be over the truth's region (asserted). Without `seen` and `free_calibration`, which need more
 /// of the map.
 [[nodiscard]] Metrics compute_metrics(const VoxelGrid<MapVoxel>& map, const Truth& truth);
 
-/// Samples the map over the truth's region and computes the metrics. The resolutions must be equal
-/// (asserted). `units`: of the mapping that made the map.
-[[nodiscard]] Metrics evaluate(const FusedMap& map, const Truth& truth, const MissUnits& units);
+/// `map` and `camera_map` are of one recording, the second of its images alone. Both must be over the truth's
+/// region (asserted).
+[[nodiscard]] BesideCamera compare(const VoxelGrid<MapVoxel>& map, const VoxelGrid<MapVoxel>& camera_map,
+                                   const Truth& truth);
+
+/// Samples the map over the truth's region and computes the metrics. `units`: of the mapping that made the
+/// map. `camera_map`: null, or the map of the images alone, which `map` is compared with. The resolutions
+/// must be equal (asserted).
+[[nodiscard]] Metrics evaluate(const FusedMap& map, const Truth& truth, const MissUnits& units,
+                               const FusedMap* camera_map = nullptr);
 
 /// What scalar metrics compare with: tables have a part for each.
-enum class MetricGroup : std::uint8_t { camera_truth, surfaces, probabilities, seen };
+enum class MetricGroup : std::uint8_t { camera_truth, surfaces, probabilities, seen, beside_camera };
 /// "camera truth", "seen by the camera".
 [[nodiscard]] std::string_view title_of(MetricGroup group) noexcept;
 

@@ -75,16 +75,6 @@ std::string seeds_text(std::size_t seeds) {
     return seeds == 1 ? "one seed" : fmt::format("mean ± sd of {} seeds", seeds);
 }
 
-/// Without a camera the figures of a group are all undefined.
-bool has_group(const std::vector<Column>& columns, MetricGroup group) {
-    const auto has = [&](const Column& column) {
-        return std::ranges::any_of(metric_fields(), [&](const MetricField& field) {
-            return field.group == group && column.metrics->find(field.name)->second.mean;
-        });
-    };
-    return group != MetricGroup::seen || std::ranges::any_of(columns, has);
-}
-
 void add_columns(std::string& text, std::string_view heading, const std::vector<Column>& columns) {
     auto out = std::back_inserter(text);
     fmt::format_to(out, "\n{:<20}", heading);
@@ -94,7 +84,8 @@ void add_columns(std::string& text, std::string_view heading, const std::vector<
     fmt::format_to(out, "\n");
     std::optional<MetricGroup> group;
     for (const auto& field : metric_fields()) {
-        if (!has_group(columns, field.group)) continue;
+        const auto has = [&](const Column& column) { return has_group(*column.metrics, field.group); };
+        if (std::ranges::none_of(columns, has)) continue;
         if (group != field.group) fmt::format_to(out, "  [{}]\n", title_of(field.group));
         group = field.group;
         fmt::format_to(out, "{:<20}", field.name);

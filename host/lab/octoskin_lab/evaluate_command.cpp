@@ -24,6 +24,7 @@
 #include "host/lab/octoskin_lab/commands.hpp"
 #include "host/lab/octoskin_lab/model_path.hpp"
 #include "host/lab/octoskin_lab/recorded_scene.hpp"
+#include "host/lab/study/judged_maps.hpp"
 #include "host/lab/study/study.hpp"
 #include "hw/rigfile/rig.hpp"
 
@@ -124,14 +125,8 @@ Judged judge_recording(const EvaluateOptions& options) {
     for (const std::string& warning : playback->warnings) spdlog::warn("{}", warning);
     if (const auto failure = failure_of(*playback)) throw CommandFailure(*failure);
     const evaluation::Truth truth = build(scene, playback->rig, mapping.map.resolution_m);
-    const std::string& name = configuration->name;
-    const std::uint64_t seed = meta->seed.value_or(0);
-    std::vector<evaluation::Run> runs;
-    for (const auto& [feed, map] : playback->pipeline.maps()) {
-        if (!playback->rig.camera && feed != MapFeed::ranges) continue;
-        runs.push_back(
-            {name, std::string(name_of(feed)), seed, evaluation::evaluate(map, truth, miss_units(mapping))});
-    }
+    const std::vector<evaluation::Run> runs =
+        judge_maps(*playback, *configuration, meta->seed.value_or(0), truth);
     return {results_of(runs, playback->rig, scene,
                        options.rig.empty() ? recording.rig() : FilePlace(options.rig)),
             loss_of(*playback)};

@@ -60,17 +60,13 @@ std::vector<std::string> configurations_of(const ReportInput& input) {
     return names;
 }
 
-/// Whether one of the maps was judged beside a camera.
-bool has_seen(const std::vector<const MapSummary*>& maps) {
-    return std::ranges::any_of(maps, [](const MapSummary* map) { return map->seen.has_value(); });
-}
-
 std::string metric_rows(const std::vector<const MapSummary*>& maps,
                         const std::optional<evaluation::PairedDifference>& difference) {
     std::string html;
     std::optional<evaluation::MetricGroup> group;
     for (const auto& field : evaluation::metric_fields()) {
-        if (field.group == evaluation::MetricGroup::seen && !has_seen(maps)) continue;
+        const auto has = [&](const MapSummary* map) { return has_group(map->metrics, field.group); };
+        if (std::ranges::none_of(maps, has)) continue;
         if (group != field.group)
             html += fmt::format("<tr class=\"group\"><th colspan=\"{}\">{}</th></tr>\n",
                                 maps.size() + (difference ? 2 : 1), title_of(field.group));

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/reading.hpp"
+#include "host/lab/study/judged_maps.hpp"
 #include "host/lab/study/part_timer.hpp"
 #include "host/lab/study/results_folder.hpp"
 
@@ -114,12 +116,8 @@ Result<Playback, AppError> play(const SeedRequest& request, const NamedMapping& 
 void judge(const Playback& playback, const NamedMapping& configuration, const evaluation::Truth& truth,
            SeedOutcome& outcome) {
     const PartTimer timer("evaluate");
-    for (const auto& [feed, map] : playback.pipeline.maps()) {
-        // Without a camera there is only the map of the ranges.
-        if (!playback.rig.camera && feed != MapFeed::ranges) continue;
-        outcome.runs.push_back({configuration.name, std::string(name_of(feed)), outcome.seed,
-                                evaluation::evaluate(map, truth, miss_units(configuration.mapping))});
-    }
+    std::ranges::move(judge_maps(playback, configuration, outcome.seed, truth),
+                      std::back_inserter(outcome.runs));
     outcome.times.push_back(timer.stop());
 }
 

@@ -189,13 +189,32 @@ TEST(MetricFields, name_every_scalar_once) {
     for (const auto& field : metric_fields()) {
         names.push_back(field.name);
     }
-    EXPECT_EQ(names,
-              (std::vector<std::string_view>{
-                  "occupied",        "free",          "missed",       "incorrect", "lost",
-                  "precision",       "recall",        "f1",           "iou",       "precision_tolerant",
-                  "occluded_recall", "object_recall", "coverage",     "log_loss",  "brier",
-                  "seen_occupied",   "seen_free",     "seen_unknown", "f1_seen",   "f1_noise_free",
-                  "body_2cm",        "body_5cm",      "availability"}));
+    EXPECT_EQ(names, (std::vector<std::string_view>{"occupied",
+                                                    "free",
+                                                    "missed",
+                                                    "incorrect",
+                                                    "lost",
+                                                    "precision",
+                                                    "recall",
+                                                    "f1",
+                                                    "iou",
+                                                    "precision_tolerant",
+                                                    "occluded_recall",
+                                                    "object_recall",
+                                                    "coverage",
+                                                    "log_loss",
+                                                    "brier",
+                                                    "seen_occupied",
+                                                    "seen_free",
+                                                    "seen_unknown",
+                                                    "f1_seen",
+                                                    "f1_noise_free",
+                                                    "body_2cm",
+                                                    "body_5cm",
+                                                    "availability",
+                                                    "lost_beyond_camera",
+                                                    "freed_occupied",
+                                                    "freed_seen_unknown"}));
 }
 
 TEST(MetricFields, each_reads_the_figure_of_its_name) {
@@ -224,11 +243,13 @@ TEST(MetricFields, each_reads_the_figure_of_its_name) {
     metrics.seen->body_2cm = 21;
     metrics.seen->body_5cm = 22;
     metrics.seen->availability_5cm = 23;
+    metrics.beside_camera = {.lost_beyond_camera = 24, .freed_occupied = 25, .freed_seen_unknown = 26};
     double expected = 1.0;
     for (const auto& field : metric_fields()) {
         EXPECT_EQ(field.value(metrics).value(), expected) << field.name;
-        EXPECT_EQ(field.is_count, expected <= 5.0) << field.name;
-        EXPECT_EQ(field.group == MetricGroup::seen, expected > 15.0) << field.name;
+        EXPECT_EQ(field.is_count, expected <= 5.0 || expected == 24.0) << field.name;
+        EXPECT_EQ(field.group == MetricGroup::seen, expected > 15.0 && expected < 24.0) << field.name;
+        EXPECT_EQ(field.group == MetricGroup::beside_camera, expected > 23.0) << field.name;
         expected += 1.0;
     }
 }
@@ -236,8 +257,43 @@ TEST(MetricFields, each_reads_the_figure_of_its_name) {
 TEST(MetricFields, of_what_is_seen_are_empty_without_a_camera) {
     const Metrics metrics = metrics_of(kCases);
     for (const auto& field : metric_fields()) {
-        EXPECT_EQ(field.value(metrics).has_value(), field.group != MetricGroup::seen) << field.name;
+        EXPECT_EQ(field.value(metrics).has_value(), field.group < MetricGroup::seen) << field.name;
     }
+}
+
+/// Surface voxels but for the last, all occupied in the camera truth.
+TEST(BesideCamera, counts_what_only_the_map_with_ranges_has_as_free) {
+    struct States {
+        Occupancy camera;
+        Occupancy both;
+    };
+    constexpr std::array<States, 8> kVoxels{{{kOccupied, kFree},
+                                             {kOccupied, kOccupied},
+                                             {kOccupied, kUnknown},
+                                             {kOccupied, kOccupied},
+                                             {kUnknown, kFree},
+                                             {kUnknown, kOccupied},
+                                             {kFree, kFree},
+                                             {kOccupied, kFree}}};
+    const KeyBox box = row(kVoxels.size());
+    Truth truth{0.04, VoxelGrid<Occupancy>(box, kOccupied), VoxelGrid<SurfaceVoxel>(box)};
+    VoxelGrid<MapVoxel> camera(box);
+    VoxelGrid<MapVoxel> both(box);
+    for (std::size_t i = 0; i < kVoxels.size(); ++i) {
+        camera[i].occupancy = kVoxels[i].camera;
+        both[i].occupancy = kVoxels[i].both;
+        truth.surface[i].is_surface = i + 1 < kVoxels.size();
+    }
+    const BesideCamera without_camera = compare(both, camera, truth);
+    EXPECT_EQ(without_camera.lost_beyond_camera, 1U);
+    EXPECT_EQ(without_camera.freed_occupied, 0.25);
+    EXPECT_EQ(without_camera.freed_seen_unknown, std::nullopt);
+
+    truth.seen = SeenTruth{0.04, truth.surface, {}, {}, std::nullopt};
+    for (const std::size_t seen : {0U, 4U, 5U}) truth.seen->voxels.push_back({.key = box.key_at(seen)});
+    EXPECT_EQ(compare(both, camera, truth).freed_seen_unknown, 0.5);
+    truth.camera[4] = kFree;
+    EXPECT_EQ(compare(both, camera, truth).lost_beyond_camera, 0U);
 }
 
 TEST(MetricFields, come_group_by_group) {
