@@ -72,10 +72,10 @@ void DepthSteps::take(const DepthFrame& frame, const RobotPose& robot) {
     if (denoiser_) {
         time("ends", [&] {
             if (is_same_place)
-                ends_.find(integrator_.rays(), denoiser_->restarted(), updates.terms, updates.retracted);
+                ends_.find(integrator_.rays(), denoiser_->changes(), updates.terms, updates.retracted);
             else
                 ends_.forget();
-            ends_.keep(integrator_.rays());
+            ends_.keep(integrator_.rays(), denoiser_->changes());
             denoiser_->keep();
         });
     }

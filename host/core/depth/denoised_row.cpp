@@ -88,7 +88,7 @@ HWY_INLINE void store_posterior(const DenoiserRule& rule, Float mean_m, Float co
 
 void take_row(const DenoiserRule& rule, float* depth_m, const PooledRows& pooled,
               const PixelMemoryRow& memory, const PixelMemoryRow& next, const PosteriorRow& posterior,
-              std::size_t width, std::uint8_t* restarted) {
+              std::size_t width, std::uint8_t* changes) {
     const Floats f;
     const Float zero = hn::Zero(f);
     const Float one = constant(1.0F);
@@ -133,9 +133,12 @@ void take_row(const DenoiserRule& rule, float* depth_m, const PooledRows& pooled
         const Float values = hn::Abs(next_count);
         const Mask has_posterior = hn::Or(is_used, hn::Gt(values, one));  // one value alone may be wrong
         store_posterior(rule, next_mean, values, has_posterior, posterior, u);
-        const auto bytes = hn::IfThenElseZero(restarts, one);
-        hn::StoreU(hn::DemoteTo(Bytes(), hn::ConvertTo(hn::RebindToSigned<Floats>(), bytes)), Bytes(),
-                   restarted + u);
+        const Mask is_confirmed = hn::And(agrees, hn::Eq(count, one));
+        const Float change =
+            hn::IfThenElse(restarts, constant(static_cast<float>(kChangeFound)),
+                           hn::IfThenElseZero(is_confirmed, constant(static_cast<float>(kChangeConfirmed))));
+        hn::StoreU(hn::DemoteTo(Bytes(), hn::ConvertTo(hn::RebindToSigned<Floats>(), change)), Bytes(),
+                   changes + u);
     }
 }
 
@@ -295,8 +298,8 @@ void sum_fives(const float* values, std::size_t width, float* sums) {
 
 void take_row(const DenoiserRule& rule, float* depth_m, const PooledRows& pooled,
               const PixelMemoryRow& memory, const PixelMemoryRow& next, const PosteriorRow& posterior,
-              std::size_t width, std::uint8_t* restarted) {
-    HWY_DYNAMIC_DISPATCH(take_row)(rule, depth_m, pooled, memory, next, posterior, width, restarted);
+              std::size_t width, std::uint8_t* changes) {
+    HWY_DYNAMIC_DISPATCH(take_row)(rule, depth_m, pooled, memory, next, posterior, width, changes);
 }
 
 void average_row(const DenoiserRule& rule, const AveragedRows& rows, std::size_t step, std::size_t width,

@@ -33,6 +33,11 @@ inline constexpr std::size_t kDenoiserMargin = kAveragedSteps.back();
 /// Upper limit of the values read or written behind a row's last pixel and the margin.
 inline constexpr std::size_t kDenoiserLanesMax = 64;
 
+/// The surface that a pixel saw has changed: its earlier values are dropped, the new one may yet be wrong.
+inline constexpr std::uint8_t kChangeFound = 1;
+/// A second value agrees with the first one of a mean.
+inline constexpr std::uint8_t kChangeConfirmed = 2;
+
 /// What is remembered of the pixels of a row. A count of 0: no value yet. A negative count: the pixel's last
 /// value was outside the gate and is held back; the number of values is the absolute value.
 struct PixelMemoryRow {
@@ -65,11 +70,11 @@ struct PosteriorRow {
 };
 
 /// Takes the new values into the memory, and writes the pixels' posterior, also of pixels without a new
-/// value. A value that is held back becomes 0 in `depth_m`. `restarted` is 1 for a pixel whose earlier values
-/// were dropped, else 0. `next` is other memory.
+/// value. A value that is held back becomes 0 in `depth_m`. `changes`: of each pixel kChangeFound,
+/// kChangeConfirmed or 0. `next` is other memory.
 void take_row(const DenoiserRule& rule, float* depth_m, const PooledRows& pooled,
               const PixelMemoryRow& memory, const PixelMemoryRow& next, const PosteriorRow& posterior,
-              std::size_t width, std::uint8_t* restarted);
+              std::size_t width, std::uint8_t* changes);
 
 /// A row and those a step above and below it.
 struct AveragedRows {

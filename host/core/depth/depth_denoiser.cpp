@@ -66,8 +66,8 @@ DepthDenoiser::DepthDenoiser(const DepthDenoiserConfig& config, const CameraIntr
       agreed_(1, width_, 0.0F),
       posteriors_(kAveragedSteps.size() + 1, PosteriorRows(kRows, width_)),
       outside_(1, width_),
-      restarted_row_(stride_, 0),
-      restarted_(std::size_t{width_} * height_, 0) {
+      changes_row_(stride_, 0),
+      changes_(std::size_t{width_} * height_, 0) {
     assert(config.noise.constant_m >= 1e-4 && config.noise.quadratic_per_m >= 0.0);
     assert(config.count_max > 0);
     assert(std::min({config.gate_sigmas, config.step_sigmas, config.drift_sigmas, config.pair_sigmas}) > 0.0);
@@ -127,9 +127,9 @@ void DepthDenoiser::take(Row v, Memory memory) {
     }
     take_row(rule_, depth_m_.at(v), pooled, remembered(memory, v),
              row_of(next_, begin_of(static_cast<std::size_t>(v))), posteriors_.front().at(v), width_,
-             restarted_row_.data());
+             changes_row_.data());
     posteriors_.front().inverse.limit(v);
-    std::copy_n(restarted_row_.data(), width_, restarted_.data() + static_cast<std::size_t>(v) * width_);
+    std::copy_n(changes_row_.data(), width_, changes_.data() + static_cast<std::size_t>(v) * width_);
 }
 
 void DepthDenoiser::average(std::size_t level, Row v) {

@@ -59,9 +59,8 @@ class DepthDenoiser {
     /// The last image becomes part of the memory, or replaces one of another place.
     void keep() noexcept { std::swap(memory_, next_); }
 
-    /// Row-major; 1 for each pixel of the last image whose earlier values were dropped because its surface
-    /// has changed, else 0.
-    [[nodiscard]] std::span<const std::uint8_t> restarted() const noexcept { return restarted_; }
+    /// Row-major; of each pixel of the last image kChangeFound, kChangeConfirmed or 0.
+    [[nodiscard]] std::span<const std::uint8_t> changes() const noexcept { return changes_; }
 
     /// What is remembered of a pixel (PixelMemoryRow).
     struct Pixel {
@@ -133,8 +132,8 @@ class DepthDenoiser {
     Rows agreed_;
     std::vector<PosteriorRows> posteriors_;  ///< of single pixels, then after each step of kAveragedSteps
     PosteriorRows outside_;                  ///< a row without values
-    std::vector<std::uint8_t> restarted_row_;
-    std::vector<std::uint8_t> restarted_;
+    std::vector<std::uint8_t> changes_row_;
+    std::vector<std::uint8_t> changes_;
 };
 
 }  // namespace octoskin

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "host/core/depth/denoised_row.hpp"
 #include "host/core/voxels/morton.hpp"
 
 namespace octoskin {
@@ -15,13 +16,13 @@ MortonCode code_of(const EndMemory::End& end) {
 
 }  // namespace
 
-void EndMemory::find(const ProjectedImage& image, std::span<const std::uint8_t> restarted,
+void EndMemory::find(const ProjectedImage& image, std::span<const std::uint8_t> changes,
                      const Evidence& terms, Evidence& retracted) {
-    assert(restarted.size() == image.pixels());
+    assert(changes.size() == image.pixels());
     retracted.clear();
     retracted.rule = EvidenceRule::retract;
     retracted.sensor = SensorKind::camera;
-    const Changed changed = find_changed(image, restarted);
+    const Changed changed = find_changed(image, changes);
     take_codes(changed.left, left_);
     if (!left_.empty()) {
         take_codes(changed.held, held_);
@@ -32,17 +33,19 @@ void EndMemory::find(const ProjectedImage& image, std::span<const std::uint8_t> 
         put_in(retracted.last(code - code % kBrickVoxels).voxels, code % kBrickVoxels);
 }
 
-void EndMemory::keep(const ProjectedImage& image) {
+void EndMemory::keep(const ProjectedImage& image, std::span<const std::uint8_t> changes) {
+    assert(changes.size() == image.pixels());
     ends_.resize(image.pixels());
     for (std::size_t i = 0; i < ends_.size(); ++i) {
-        if (image.key_z[i] != ProjectedImage::kNoKey)
+        const bool is_doubtful = changes[i] == kChangeFound && ends_[i] != End{};
+        if (image.key_z[i] != ProjectedImage::kNoKey && !is_doubtful)
             ends_[i] = {image.key_xy[i], image.key_z[i], image.reach_m[i]};
     }
 }
 
 /// Most pixels are neither, and which ones are is not predictable: so there is no branch.
 EndMemory::Changed EndMemory::find_changed(const ProjectedImage& image,
-                                           std::span<const std::uint8_t> restarted) {
+                                           std::span<const std::uint8_t> changes) {
     left_pixels_.resize(ends_.size() + 1);
     held_pixels_.resize(ends_.size() + 1);
     std::size_t left = 0;
@@ -53,12 +56,13 @@ EndMemory::Changed EndMemory::find_changed(const ProjectedImage& image,
         const auto has_end = static_cast<unsigned>(image.key_z[i] != ProjectedImage::kNoKey);
         const auto is_elsewhere = static_cast<unsigned>(image.key_z[i] != last.key_z) |
                                   static_cast<unsigned>(image.key_xy[i] != last.key_xy);
-        const auto is_hidden =
-            static_cast<unsigned>(restarted[i] != 0) & static_cast<unsigned>(image.reach_m[i] < last.depth_m);
+        const auto is_found = static_cast<unsigned>(changes[i] == kChangeFound);
+        const auto is_hidden = static_cast<unsigned>(changes[i] == kChangeConfirmed) &
+                               static_cast<unsigned>(image.reach_m[i] < last.depth_m);
         left_pixels_[left] = static_cast<std::uint32_t>(i);
-        left += had_end & has_end & is_elsewhere & (is_hidden ^ 1U);
+        left += had_end & has_end & is_elsewhere & ((is_found | is_hidden) ^ 1U);
         held_pixels_[held] = static_cast<std::uint32_t>(i);
-        held += had_end & (has_end ^ 1U);
+        held += had_end & ((has_end ^ 1U) | is_found);
     }
     return {{left_pixels_.data(), left}, {held_pixels_.data(), held}};
 }

@@ -15,9 +15,14 @@ namespace octoskin {
 /// The images of a denoised camera are not independent: each pixel's depth is an estimate from all images so
 /// far, and a new estimate replaces the last one. So a voxel is retracted if a pixel ended in it and now ends
 /// elsewhere, unless another pixel ends there now, or ended there when it last had a value. If the pixel's
-/// surface has changed and the new one is nearer, it hides the voxel and states nothing about it.
+/// surface has changed, the image after the one that found it decides: one wrong image takes nothing. If the
+/// new surface is nearer, it hides the voxel and states nothing about it.
 class EndMemory {
   public:
+    EndMemory() = default;
+    /// `keep` needs no further memory for images of so many pixels.
+    explicit EndMemory(std::size_t pixels) { ends_.reserve(pixels); }
+
     /// Last end of a pixel: its voxel as in ProjectedImage, and its depth, metres.
     struct End {
         std::uint32_t key_xy = 0;
@@ -27,12 +32,14 @@ class EndMemory {
     };
 
     /// Replaces `retracted` with EvidenceRule::retract for the voxels that an image from the same place as
-    /// the remembered ones retracts. `terms`: the image's evidence. `restarted`: as of DepthDenoiser, one
-    /// entry for each pixel (asserted). About 0.3 ms for 512 x 424. Throws std::bad_alloc.
-    void find(const ProjectedImage& image, std::span<const std::uint8_t> restarted, const Evidence& terms,
+    /// the remembered ones retracts. `terms`: the image's evidence. `changes`: as of DepthDenoiser, one
+    /// entry for each pixel (asserted), likewise for `keep`. About 0.3 ms for 512 x 424. Throws
+    /// std::bad_alloc.
+    void find(const ProjectedImage& image, std::span<const std::uint8_t> changes, const Evidence& terms,
               Evidence& retracted);
-    /// Remembers the ends of an image. Throws std::bad_alloc the first time.
-    void keep(const ProjectedImage& image);
+    /// Remembers the ends of an image, but for those that are in doubt. Throws std::bad_alloc if it has no
+    /// room yet.
+    void keep(const ProjectedImage& image, std::span<const std::uint8_t> changes);
     /// The camera has moved.
     void forget() noexcept { ends_.clear(); }
 
@@ -44,9 +51,9 @@ class EndMemory {
     /// Pixels; valid until the next image.
     struct Changed {
         std::span<const std::uint32_t> left;  ///< have left their voxel and state that its surface has gone
-        std::span<const std::uint32_t> held;  ///< have no value now: they still state what they did
+        std::span<const std::uint32_t> held;  ///< still state what they did: without a value now, or in doubt
     };
-    [[nodiscard]] Changed find_changed(const ProjectedImage& image, std::span<const std::uint8_t> restarted);
+    [[nodiscard]] Changed find_changed(const ProjectedImage& image, std::span<const std::uint8_t> changes);
     /// The voxels of the last ends of `pixels`, in Morton order, each once.
     void take_codes(std::span<const std::uint32_t> pixels, std::vector<MortonCode>& codes) const;
     void keep_hit(const Evidence& terms);

@@ -1,5 +1,6 @@
 #include "host/core/pipeline/depth_stage.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -26,6 +27,16 @@ DepthReason reason_of(DepthRejection rejection) {
     return DepthReason::outside_map;
 }
 
+/// The filter of the mapping; with `denoised`, which has none, that of the images for the cross-check.
+DepthFilterConfig filter_of(const MappingConfig& config) {
+    if (config.depth_update != DepthUpdate::denoised) return config.depth_filter;
+    DepthFilterConfig filter{.is_enabled = true};
+    const double sigma_max_m =
+        DepthFilterConfig::kGateMax_m / std::max(filter.gate_sigmas, filter.mean_sigmas);
+    filter.sigma_m = std::min(config.camera_sigma_m(), sigma_max_m);
+    return filter;
+}
+
 }  // namespace
 
 DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads, bool finds_certain)
@@ -34,10 +45,12 @@ DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned
       self_margin_m_(rig.depth_self_margin_m),
       T_map_base_(rig.T_map_base),
       T_map_camera_(rig.T_map_base * camera_.T_base_camera),
-      filter_(config.depth_filter),
+      filter_(filter_of(config)),
       integrator_(config, camera_.intrinsics, threads) {
-    if (config.depth_update == DepthUpdate::denoised)
+    if (config.depth_update == DepthUpdate::denoised) {
         denoiser_.emplace(config.depth_denoiser, camera_.intrinsics);
+        ends_ = EndMemory(std::size_t{camera_.intrinsics.width} * camera_.intrinsics.height);
+    }
     if (finds_certain)
         certain_.emplace(camera_.intrinsics, CertaintyConfig{.camera_sigma_m = config.camera_sigma_m(),
                                                              .is_filtered = config.removes_camera_noise()});
@@ -66,18 +79,18 @@ std::uint64_t DepthStage::denoise(DepthImage& image, const DepthFrame& frame, co
         is_from_same_place(frame) ? DepthDenoiser::Memory::used : DepthDenoiser::Memory::of_other_place;
     const std::uint64_t robot_pixels =
         needs_robot() ? take_robot_out(image, *robot, T_base_camera_of(frame)) : 0;
-    if (!certain_) {
-        denoiser_->denoise(image, memory);
-        return robot_pixels;
-    }
-    std::vector<float>& everything_m = seen_.everything.depth_m;
-    seen_.everything = raw_;
-    for (std::size_t i = 0; i < everything_m.size(); ++i)
-        if (!std::isnan(image.depth_m[i])) everything_m[i] = kNone;
+    if (certain_) filter_for_cross_check(image);
     denoiser_->denoise(image, memory);
-    for (std::size_t i = 0; i < everything_m.size(); ++i)
-        if (std::isnan(everything_m[i])) everything_m[i] = image.depth_m[i];
     return robot_pixels;
+}
+
+/// The cross-check judges single images: a mean over time has another noise, and holds back what differs.
+void DepthStage::filter_for_cross_check(const DepthImage& without_robot) {
+    seen_.everything = raw_;
+    filter_.filter(seen_.everything);
+    seen_.world = seen_.everything;
+    for (std::size_t i = 0; i < seen_.world.depth_m.size(); ++i)
+        if (std::isnan(without_robot.depth_m[i])) seen_.world.depth_m[i] = kNone;
 }
 
 bool DepthStage::is_from_same_place(const DepthFrame& frame) const {
@@ -87,7 +100,7 @@ bool DepthStage::is_from_same_place(const DepthFrame& frame) const {
 void DepthStage::keep(const DepthFrame& frame) {
     if (!denoiser_) return;
     if (!is_from_same_place(frame)) ends_.forget();
-    ends_.keep(integrator_.rays());
+    ends_.keep(integrator_.rays(), denoiser_->changes());
     denoiser_->keep();
     T_map_camera_before_ = T_map_camera_of(frame);
 }
@@ -146,10 +159,10 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
         return unexpected(reason_of(updates.error()));
     }
     if (denoiser_ && is_from_same_place(frame))
-        ends_.find(integrator_.rays(), denoiser_->restarted(), updates->terms, updates->retracted);
+        ends_.find(integrator_.rays(), denoiser_->changes(), updates->terms, updates->retracted);
     if (certain_) {
         certain_->find(raw_, seen_.everything, seen_.certainty);
-        seen_.world = std::move(image);
+        if (!denoiser_) seen_.world = std::move(image);
     }
     robot_pixels_ += robot_pixels;
     pixels_ += updates->pixels;

@@ -71,6 +71,7 @@ class DepthStage {
     /// Each of the two removes noise and the robot; returns the number of the robot's pixels.
     [[nodiscard]] std::uint64_t filter(DepthImage& image, const DepthFrame& frame, const RobotPose* robot);
     [[nodiscard]] std::uint64_t denoise(DepthImage& image, const DepthFrame& frame, const RobotPose* robot);
+    void filter_for_cross_check(const DepthImage& without_robot);
     [[nodiscard]] bool is_from_same_place(const DepthFrame& frame) const;
     [[nodiscard]] Eigen::Isometry3d T_base_camera_of(const DepthFrame& frame) const {
         return frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_base_camera;

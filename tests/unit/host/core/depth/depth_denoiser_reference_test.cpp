@@ -44,7 +44,7 @@ class PlainDenoiser {
           // A surface whose normal is 63 degrees off the ray: its tangent.
           slope_(static_cast<float>(2.0 * (2.0 / (camera.fx + camera.fy)))),
           kept(camera.width * camera.height),
-          restarted(camera.width * camera.height) {}
+          changes(camera.width * camera.height) {}
 
     std::vector<float> denoise(const std::vector<float>& depth_m, Memory memory) {
         if (memory == Memory::of_other_place) {
@@ -96,12 +96,12 @@ class PlainDenoiser {
         const float value = depth_m[i];
         const Pixel before = before_[i];
         Pixel& next = next_[i] = before;
-        restarted[i] = 0;
+        changes[i] = 0;
         if (value > 0.0F && before.count == 0.0F) {
             next = {value, 1.0F, 0.0F};
             used_[i] = true;
         } else if (value > 0.0F) {
-            used_[i] = compare(value, step_at(depth_m, u, v), before, next, restarted[i]);
+            used_[i] = compare(value, step_at(depth_m, u, v), before, next, changes[i]);
         }
         const float count = std::fabs(next.count);
         if (!used_[i] && count <= 1.0F) return;
@@ -112,7 +112,7 @@ class PlainDenoiser {
     }
     /// A value of a pixel that has a mean. True if it is used, false if it is held back.
     [[nodiscard]] bool compare(float value, float step, const Pixel& before, Pixel& next,
-                               std::uint8_t& restarts) const {
+                               std::uint8_t& change) const {
         const auto share = static_cast<float>(config_.drift_memory);
         const float drift = share * before.drift + (1.0F - share) * step;
         const bool has_moved = std::fabs(step) > static_cast<float>(config_.step_sigmas) ||
@@ -122,7 +122,7 @@ class PlainDenoiser {
         const bool is_second = before.count < 0.0F && !is_inside_gate;
         if (has_moved || is_second) {
             next = {value, 1.0F, 0.0F};
-            restarts = 1;
+            change = 1;
             return true;
         }
         const float count = std::fabs(before.count);
@@ -130,6 +130,7 @@ class PlainDenoiser {
             next = {before.mean_m, -count, drift};
             return false;
         }
+        change = count == 1.0F ? 2 : 0;
         const float more = std::min(count + 1.0F, static_cast<float>(config_.count_max));
         next = {before.mean_m + (value - before.mean_m) / more, more, drift};
         return true;
@@ -216,7 +217,7 @@ class PlainDenoiser {
 
   public:
     std::vector<Pixel> kept;
-    std::vector<std::uint8_t> restarted;
+    std::vector<std::uint8_t> changes;
 };
 
 /// Steps and a slope that move at times, with noise, holes, single wrong values and values between surfaces.
@@ -312,8 +313,8 @@ void compare(const DepthDenoiserConfig& config, unsigned seed, std::uint32_t wid
         const std::vector<float> expected = plain.denoise(image.depth_m, memory);
         denoiser.denoise(image, memory);
         ASSERT_NO_FATAL_FAILURE(expect_equal_bits(image.depth_m, expected));
-        const auto restarted = denoiser.restarted();
-        ASSERT_TRUE(std::ranges::equal(restarted, plain.restarted));
+        const auto changes = denoiser.changes();
+        ASSERT_TRUE(std::ranges::equal(changes, plain.changes));
         if (scene.below(4) != 0) {
             denoiser.keep();
             plain.keep();
@@ -357,7 +358,7 @@ TEST(DepthDenoiserReference, continues_with_pixels_that_are_set) {
     first.denoise(one, Memory::used);
     second.denoise(other, Memory::used);
     expect_equal_bits(one.depth_m, other.depth_m);
-    EXPECT_TRUE(std::ranges::equal(first.restarted(), second.restarted()));
+    EXPECT_TRUE(std::ranges::equal(first.changes(), second.changes()));
 }
 
 }  // namespace

@@ -179,15 +179,15 @@ TEST(DepthDenoiser, holds_one_wrong_value_back_and_begins_anew_with_the_second) 
     DepthImage first = stream.next(wrong);
     EXPECT_TRUE(std::isnan(at(first, 20, 10)));
     EXPECT_EQ(at(first, 21, 10), 2.0F) << "nor do its neighbours have any of it";
-    EXPECT_EQ(std::ranges::count(stream.denoiser.restarted(), 1), 0);
+    EXPECT_EQ(std::ranges::count(stream.denoiser.changes(), 1), 0);
     EXPECT_EQ(stream.denoiser.pixel(20, 10).mean_m, 2.0F);
     EXPECT_EQ(stream.denoiser.pixel(20, 10).count, -10.0F);
 
     at(wrong, 20, 10) = 0.5F;
     (void)stream.next(wrong);
     EXPECT_EQ(stream.denoiser.pixel(20, 10), (Pixel{.mean_m = 0.5F, .count = 1.0F, .drift = 0.0F}));
-    EXPECT_EQ(std::ranges::count(stream.denoiser.restarted(), 1), 1);
-    EXPECT_EQ(stream.denoiser.restarted()[10 * kWidth + 20], 1);
+    EXPECT_EQ(std::ranges::count(stream.denoiser.changes(), 1), 1);
+    EXPECT_EQ(stream.denoiser.changes()[10 * kWidth + 20], 1);
 }
 
 TEST(DepthDenoiser, goes_on_with_the_mean_after_a_wrong_value_or_none) {
@@ -225,7 +225,7 @@ TEST(DepthDenoiser, begins_anew_at_once_where_a_surface_has_moved) {
                 const bool has_moved = u >= kWidth / 2;
                 // Those within two pixels of the edge have both in their window.
                 if (u + 3 >= kWidth / 2 && u < kWidth / 2 + 3) continue;
-                ASSERT_EQ(stream.denoiser.restarted()[v * kWidth + u], has_moved ? 1 : 0) << u;
+                ASSERT_EQ(stream.denoiser.changes()[v * kWidth + u], has_moved ? 1 : 0) << u;
                 ASSERT_EQ(stream.denoiser.pixel(u, v).count, has_moved ? 1.0F : 11.0F) << u;
             }
         }
@@ -295,7 +295,7 @@ TEST(DepthDenoiser, knows_nothing_of_an_image_that_is_not_kept) {
         ASSERT_TRUE(std::ranges::equal(one.depth_m, same.depth_m, [](float a, float b) {
             return a == b || (std::isnan(a) && std::isnan(b));
         })) << i;
-        ASSERT_TRUE(std::ranges::equal(with.denoiser.restarted(), without.denoiser.restarted())) << i;
+        ASSERT_TRUE(std::ranges::equal(with.denoiser.changes(), without.denoiser.changes())) << i;
     }
 }
 
@@ -307,7 +307,7 @@ TEST(DepthDenoiser, compares_an_image_from_another_place_with_nothing_and_replac
     DepthImage denoised = image;
     stream.denoiser.denoise(denoised, Memory::of_other_place);
     EXPECT_NEAR(at(denoised, 50, 10), 2.02F, 1e-6F) << "no mean with the 2 m before";
-    EXPECT_EQ(std::ranges::count(stream.denoiser.restarted(), 1), 0);
+    EXPECT_EQ(std::ranges::count(stream.denoiser.changes(), 1), 0);
     EXPECT_EQ(stream.denoiser.pixel(50, 10).count, 10.0F) << "not kept yet";
     stream.denoiser.keep();
     EXPECT_EQ(stream.denoiser.pixel(50, 10), (Pixel{.mean_m = 2.02F, .count = 1.0F, .drift = 0.0F}));

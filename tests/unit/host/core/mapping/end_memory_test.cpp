@@ -8,6 +8,8 @@
 #include <set>
 #include <vector>
 
+#include "host/core/depth/denoised_row.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -54,12 +56,12 @@ Evidence terms_of(const Places& places, const std::vector<VoxelKey>& passed = {}
 }
 
 std::vector<MortonCode> found_by(EndMemory& memory, const Places& now,
-                                 const std::vector<std::uint8_t>& restarted,
+                                 const std::vector<std::uint8_t>& changes,
                                  const std::vector<VoxelKey>& passed = {}) {
     Evidence retracted;
     retracted.rule = EvidenceRule::terms;
     retracted.bricks.resize(3);  // is replaced
-    memory.find(image_of(now), restarted, terms_of(now, passed), retracted);
+    memory.find(image_of(now), changes, terms_of(now, passed), retracted);
     EXPECT_EQ(retracted.rule, EvidenceRule::retract);
     EXPECT_EQ(retracted.sensor, SensorKind::camera);
     EXPECT_TRUE(retracted.cells.empty());
@@ -72,6 +74,11 @@ std::vector<MortonCode> found_by(EndMemory& memory, const Places& now,
     return codes;
 }
 
+void keep(EndMemory& memory, const Places& now, std::vector<std::uint8_t> changes = {}) {
+    changes.resize(now.size(), 0);
+    memory.keep(image_of(now), changes);
+}
+
 /// With no surface that has changed.
 std::vector<MortonCode> found_by(EndMemory& memory, const Places& now) {
     return found_by(memory, now, std::vector<std::uint8_t>(now.size(), 0));
@@ -81,7 +88,7 @@ using Codes = std::vector<MortonCode>;
 
 TEST(EndMemory, retracts_the_voxel_that_a_pixel_leaves_for_another) {
     EndMemory memory;
-    memory.keep(image_of({at(20), at(21)}));
+    keep(memory, {at(20), at(21)});
     EXPECT_EQ(found_by(memory, {at(20), at(21)}), Codes{});
     EXPECT_EQ(found_by(memory, {at(19), at(21)}), Codes{code_at(20)}) << "nearer";
     EXPECT_EQ(found_by(memory, {at(23), at(21)}), Codes{code_at(20)}) << "farther";
@@ -91,7 +98,7 @@ TEST(EndMemory, retracts_the_voxel_that_a_pixel_leaves_for_another) {
 TEST(EndMemory, retracts_nothing_without_a_memory) {
     EndMemory memory;
     EXPECT_EQ(found_by(memory, {at(20)}), Codes{});
-    memory.keep(image_of({at(21)}));
+    keep(memory, {at(21)});
     memory.forget();
     EXPECT_TRUE(memory.ends().empty());
     EXPECT_EQ(found_by(memory, {at(20)}), Codes{});
@@ -99,7 +106,7 @@ TEST(EndMemory, retracts_nothing_without_a_memory) {
 
 TEST(EndMemory, spares_a_voxel_in_which_another_pixel_ends_now) {
     EndMemory memory;
-    memory.keep(image_of({at(20), at(22)}));
+    keep(memory, {at(20), at(22)});
     EXPECT_EQ(found_by(memory, {at(21), at(20)}), Codes{code_at(22)});
     EXPECT_EQ(found_by(memory, {at(22), at(20)}), Codes{}) << "they change places";
 }
@@ -107,41 +114,74 @@ TEST(EndMemory, spares_a_voxel_in_which_another_pixel_ends_now) {
 // It has been passed, too: a miss is no reason to spare it.
 TEST(EndMemory, retracts_a_voxel_that_rays_pass_now) {
     EndMemory memory;
-    memory.keep(image_of({at(20)}));
+    keep(memory, {at(20)});
     EXPECT_EQ(found_by(memory, {at(24)}, {0}, {at(19)->key, at(20)->key, at(21)->key}), Codes{code_at(20)});
 }
 
 TEST(EndMemory, spares_a_voxel_of_a_pixel_that_has_no_value_now) {
     EndMemory memory;
-    memory.keep(image_of({at(20), at(20)}));
+    keep(memory, {at(20), at(20)});
     EXPECT_EQ(found_by(memory, {at(21), std::nullopt}), Codes{});
     EXPECT_EQ(found_by(memory, {std::nullopt, std::nullopt}), Codes{});
     // It still states what it did while others come and go.
-    memory.keep(image_of({at(21), std::nullopt}));
+    keep(memory, {at(21), std::nullopt});
     EXPECT_EQ(found_by(memory, {at(22), std::nullopt}), Codes{code_at(21)});
-    memory.keep(image_of({at(20), std::nullopt}));
+    keep(memory, {at(20), std::nullopt});
     EXPECT_EQ(found_by(memory, {at(22), std::nullopt}), Codes{});
     EXPECT_EQ(found_by(memory, {at(22), at(23)}), Codes{code_at(20)});
 }
 
 TEST(EndMemory, says_nothing_of_a_voxel_that_a_new_nearer_surface_hides) {
     EndMemory memory;
-    memory.keep(image_of({at(20), at(30)}));
-    EXPECT_EQ(found_by(memory, {at(10), at(30)}, {1, 0}), Codes{}) << "hidden";
-    EXPECT_EQ(found_by(memory, {at(10), at(30)}, {0, 1}), Codes{code_at(20)}) << "no change of its surface";
-    EXPECT_EQ(found_by(memory, {at(25), at(30)}, {1, 0}), Codes{code_at(20)}) << "seen through";
-    EXPECT_EQ(found_by(memory, {std::nullopt, at(30)}, {1, 0}), Codes{});
+    keep(memory, {at(20), at(30)});
+    EXPECT_EQ(found_by(memory, {at(10), at(30)}, {kChangeConfirmed, 0}), Codes{}) << "hidden";
+    EXPECT_EQ(found_by(memory, {at(10), at(30)}, {0, kChangeConfirmed}), Codes{code_at(20)})
+        << "no change of its surface";
+    EXPECT_EQ(found_by(memory, {at(25), at(30)}, {kChangeConfirmed, 0}), Codes{code_at(20)})
+        << "seen through";
+    EXPECT_EQ(found_by(memory, {std::nullopt, at(30)}, {kChangeConfirmed, 0}), Codes{});
 }
 
 TEST(EndMemory, does_not_spare_for_a_hidden_pixel_what_another_leaves) {
     EndMemory memory;
-    memory.keep(image_of({at(20), at(20)}));
-    EXPECT_EQ(found_by(memory, {at(10), at(21)}, {1, 0}), Codes{code_at(20)});
+    keep(memory, {at(20), at(20)});
+    EXPECT_EQ(found_by(memory, {at(10), at(21)}, {kChangeConfirmed, 0}), Codes{code_at(20)});
+}
+
+TEST(EndMemory, takes_nothing_for_one_wrong_image) {
+    EndMemory memory;
+    keep(memory, {at(20), at(20), at(22)});
+    for (const auto& wrong : {at(30), at(10)}) {
+        const std::vector<std::uint8_t> changes{kChangeFound, 0, 0};
+        EXPECT_EQ(found_by(memory, {wrong, at(20), at(22)}, changes), Codes{});
+        EXPECT_EQ(found_by(memory, {wrong, at(21), at(22)}, changes), Codes{})
+            << "it still states what it did";
+        keep(memory, {wrong, at(20), at(22)}, changes);
+        EXPECT_EQ(found_by(memory, {at(20), at(20), at(22)}, changes), Codes{}) << "right again";
+        keep(memory, {at(20), at(20), at(22)}, changes);
+    }
+}
+
+TEST(EndMemory, retracts_when_the_next_image_confirms_the_change) {
+    EndMemory memory;
+    keep(memory, {at(20), at(25)});
+    keep(memory, {at(30), at(25)}, {kChangeFound, 0});
+    EXPECT_EQ(found_by(memory, {at(30), at(25)}, {kChangeConfirmed, 0}), Codes{code_at(20)});
+    keep(memory, {at(30), at(25)}, {kChangeConfirmed, 0});
+    EXPECT_EQ(found_by(memory, {at(31), at(25)}), Codes{code_at(30)});
+}
+
+// Without an earlier end there is nothing to keep.
+TEST(EndMemory, remembers_the_first_end_of_a_pixel_at_once) {
+    EndMemory memory;
+    keep(memory, {std::nullopt});
+    keep(memory, {at(30)}, {kChangeFound});
+    EXPECT_EQ(found_by(memory, {at(31)}), Codes{code_at(30)});
 }
 
 TEST(EndMemory, only_remembers_what_is_kept) {
     EndMemory memory;
-    memory.keep(image_of({at(20)}));
+    keep(memory, {at(20)});
     EXPECT_EQ(found_by(memory, {at(21)}), Codes{code_at(20)});
     EXPECT_EQ(found_by(memory, {at(22)}), Codes{code_at(20)});
     EndMemory resumed;
@@ -153,23 +193,25 @@ TEST(EndMemory, only_remembers_what_is_kept) {
 /// The oracle: the definition with sets of voxels.
 class PlainMemory {
   public:
-    [[nodiscard]] Codes find(const Places& now, const std::vector<std::uint8_t>& restarted) const {
+    [[nodiscard]] Codes find(const Places& now, const std::vector<std::uint8_t>& changes) const {
         std::set<MortonCode> left;
         for (std::size_t i = 0; i < last_.size(); ++i) {
             if (!last_[i] || !now[i] || last_[i]->key == now[i]->key) continue;
-            const bool is_hidden = restarted[i] == 1 && now[i]->depth_m < last_[i]->depth_m;
+            if (changes[i] == kChangeFound) continue;
+            const bool is_hidden = changes[i] == kChangeConfirmed && now[i]->depth_m < last_[i]->depth_m;
             if (!is_hidden) left.insert(morton_of(last_[i]->key));
         }
         for (std::size_t i = 0; i < last_.size(); ++i) {
             if (now[i]) left.erase(morton_of(now[i]->key));
-            if (!now[i] && last_[i]) left.erase(morton_of(last_[i]->key));
+            const bool is_held = !now[i] || changes[i] == kChangeFound;
+            if (is_held && last_[i]) left.erase(morton_of(last_[i]->key));
         }
         return {left.begin(), left.end()};
     }
-    void keep(const Places& now) {
+    void keep(const Places& now, const std::vector<std::uint8_t>& changes) {
         last_.resize(now.size());
         for (std::size_t i = 0; i < now.size(); ++i)
-            if (now[i]) last_[i] = now[i];
+            if (now[i] && !(last_[i] && changes[i] == kChangeFound)) last_[i] = now[i];
     }
     void forget() { last_.clear(); }
 
@@ -193,22 +235,22 @@ TEST(EndMemory, is_its_definition_for_random_images) {
         PlainMemory plain;
         for (int number = 0; number < 40; ++number) {
             Places now;
-            std::vector<std::uint8_t> restarted;
+            std::vector<std::uint8_t> changes;
             for (std::uint32_t i = 0; i < pixels; ++i) {
                 now.emplace_back();
                 if (below(4) != 0) now.back() = Place{key(), 0.1F * static_cast<float>(below(5))};
-                restarted.push_back(static_cast<std::uint8_t>(below(2)));
+                changes.push_back(static_cast<std::uint8_t>(below(3)));
             }
-            const Codes expected = plain.find(now, restarted);
-            ASSERT_EQ(found_by(memory, now, restarted, {key(), key(), key()}), expected) << number;
+            const Codes expected = plain.find(now, changes);
+            ASSERT_EQ(found_by(memory, now, changes, {key(), key(), key()}), expected) << number;
             found += expected.size();
             if (below(10) == 0) {
                 memory.forget();
                 plain.forget();
             }
             if (below(5) != 0) {
-                memory.keep(image_of(now));
-                plain.keep(now);
+                keep(memory, now, changes);
+                plain.keep(now, changes);
             }
         }
     }
