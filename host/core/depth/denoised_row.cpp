@@ -156,7 +156,7 @@ struct Posterior {
     Float variance;
     Float weight;
 };
-HWY_INLINE Posterior posterior_at(const PosteriorRow& row, std::size_t u) {
+HWY_INLINE Posterior posterior_at(const PosteriorRow& row, std::ptrdiff_t u) {
     const Floats f;
     return {hn::LoadU(f, row.inverse + u), hn::LoadU(f, row.variance + u), hn::LoadU(f, row.weight + u)};
 }
@@ -206,12 +206,15 @@ void average_row(const DenoiserRule& rule, const AveragedRows& rows, std::size_t
                  const PosteriorRow& averaged, float* agreed) {
     const Floats f;
     for (std::size_t u = 0; u < width; u += hn::Lanes(f)) {
-        const Posterior centre = posterior_at(rows.centre, u);
+        const auto middle = static_cast<std::ptrdiff_t>(u);  // left of the first pixel is the margin
+        const std::ptrdiff_t left = middle - static_cast<std::ptrdiff_t>(step);
+        const std::ptrdiff_t right = middle + static_cast<std::ptrdiff_t>(step);
+        const Posterior centre = posterior_at(rows.centre, middle);
         Average average(rule, centre, step);
-        average.add(posterior_at(rows.centre, u - step), posterior_at(rows.centre, u + step), 1.0F);
-        average.add(posterior_at(rows.above, u), posterior_at(rows.below, u), 1.0F);
-        average.add(posterior_at(rows.above, u - step), posterior_at(rows.below, u + step), 2.0F);
-        average.add(posterior_at(rows.above, u + step), posterior_at(rows.below, u - step), 2.0F);
+        average.add(posterior_at(rows.centre, left), posterior_at(rows.centre, right), 1.0F);
+        average.add(posterior_at(rows.above, middle), posterior_at(rows.below, middle), 1.0F);
+        average.add(posterior_at(rows.above, left), posterior_at(rows.below, right), 2.0F);
+        average.add(posterior_at(rows.above, right), posterior_at(rows.below, left), 2.0F);
         hn::StoreU(hn::Div(average.sum, average.weights), f, averaged.inverse + u);
         hn::StoreU(hn::Div(constant(1.0F), average.weights), f, averaged.variance + u);
         hn::StoreU(average.weights, f, averaged.weight + u);
@@ -234,7 +237,8 @@ HWY_INLINE Float neighbours_of(const DenoiserRule& rule, const WindowRows& rows,
         for (std::size_t column = 0; column < kDenoiserSide; ++column) {
             const std::size_t steps = distance(row) + distance(column);
             if (steps == 0) continue;
-            const std::size_t at = u + column - kDenoiserHalf;
+            const std::ptrdiff_t at =
+                static_cast<std::ptrdiff_t>(u + column) - static_cast<std::ptrdiff_t>(kDenoiserHalf);
             const Float value = hn::LoadU(f, rows.inverse[row] + at);
             const Float variance = hn::Add(hn::LoadU(f, rows.variance[row] + at), centre_variance);
             const Float slopes = hn::Mul(slope, constant(static_cast<float>(steps)));
