@@ -59,9 +59,8 @@ std::string millimetres(const std::optional<double>& metres) {
 std::string thin_table(const ThinView& view, const rig::Camera& camera) {
     const double in_a_second = std::max(1.0, std::round(camera.rate_hz));
     std::string text = fmt::format(
-        "# The thinnest object that is kept, at most of a voxel's width ({:.1f} mm), after one image and "
-        "after "
-        "{:.0f},\n# and how far it must be before the surface behind it; in mm, at depths in m\n"
+        "# The thinnest object that is kept, at most of a voxel's width ({:.1f} mm), after one image and\n"
+        "# after {:.0f}, and how far it must be before the surface behind it; in mm, at depths in m\n"
         "# {:>6}{:>10}{:>10}{:>12}{:>12}{:>12}{:>12}\n",
         1000.0 * view.voxel_m, in_a_second, "depth", "pixel", "noise", "thinnest 1",
         fmt::format("thinnest {:.0f}", in_a_second), "before 1", fmt::format("before {:.0f}", in_a_second));

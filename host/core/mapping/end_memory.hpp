@@ -33,7 +33,7 @@ class EndMemory {
 
     /// Replaces `retracted` with EvidenceRule::retract for the voxels that an image from the same place as
     /// the remembered ones retracts. `terms`: the image's evidence. `changes`: as of DepthDenoiser, one
-    /// entry for each pixel (asserted), likewise for `keep`. About 0.3 ms for 512 x 424. Throws
+    /// entry for each pixel (asserted), likewise for `keep`. About 1.2 ms for 512 x 424. Throws
     /// std::bad_alloc.
     void find(const ProjectedImage& image, std::span<const std::uint8_t> changes, const Evidence& terms,
               Evidence& retracted);

@@ -12,7 +12,7 @@ namespace octoskin {
 
 /// What one measurement adds to a voxel that it passes. With 0 such measurements are no evidence.
 struct MissUnits {
-    float log_odds = 0.4F;  ///< an image of a standing camera, or a ray, below 0
+    float log_odds = 0.4F;  ///< an image of a stationary camera, or a ray, below 0
     float misses = 1.2F;    ///< a range of a cone, the largest of all kinds
     friend constexpr bool operator==(const MissUnits&, const MissUnits&) = default;
 };

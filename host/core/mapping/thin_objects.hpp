@@ -8,23 +8,23 @@
 
 namespace octoskin {
 
-/// A standing camera and its map. All lengths in metres.
+/// A stationary camera and its map. All lengths in metres.
 struct ThinView {
     double focal_px = 365.0;  ///< the shorter focal length
     DepthDenoiserConfig denoiser = {};
     double voxel_m = 0.04;
 };
 
-/// What of a long object is kept, by its pixels and their noise. It stands clear of what is behind it
+/// What of a long object is kept, by its pixels and their noise. It is clear of what is behind it
 /// (`standoff_m`).
 ///
 /// At depth z a pixel covers z / focal_px. If the object fills a voxel's length, it has there
 /// max(1, thickness / that) * max(1, voxel / that) pixels, of a thickness of at most a voxel. It fills any
 /// share of a voxel equally often, and one without a pixel is not seen. The denoiser takes the mean of
-/// `images` values of each pixel, and of m pixels: 5 along the object and up to 5 across. So a pixel's error
-/// is sigma / sqrt(images m), and one in five pixels has its own (chosen by measurement: windows overlap). A
-/// voxel is kept if one of them ends in it, where the surface is
-/// anywhere between its front and its back.
+/// `images` values of each pixel, and of its neighbours; m of them count here: 5 along the object and up to 5
+/// across. It takes more along a straight object, so this is a lower limit. So a pixel's error is
+/// sigma / sqrt(images m), and one in five pixels has its own (chosen by measurement: windows overlap). A
+/// voxel is kept if one of them ends in it, where the surface is anywhere between its front and its back.
 struct ThinKept {
     /// Of the object's length, a pixel falls on this share even in the worst place: 1 from the pixel's size
     /// on.

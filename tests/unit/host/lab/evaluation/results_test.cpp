@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/unit/host/lab/evaluation/metric_names.hpp"
+
 namespace octoskin::evaluation {
 namespace {
 
@@ -47,32 +49,7 @@ TEST(MetricsJson, nests_configuration_map_metric_and_statistic) {
 
 TEST(MetricsJson, has_every_metric_by_its_full_name_in_every_map) {
     const auto json = nlohmann::json::parse(metrics_json(two_seeds()));
-    for (const char* name : {"occupied",
-                             "free",
-                             "missed",
-                             "incorrect",
-                             "lost",
-                             "precision",
-                             "recall",
-                             "f1",
-                             "iou",
-                             "precision_tolerant",
-                             "occluded_recall",
-                             "object_recall",
-                             "coverage",
-                             "log_loss",
-                             "brier",
-                             "seen_occupied",
-                             "seen_free",
-                             "seen_unknown",
-                             "f1_seen",
-                             "f1_noise_free",
-                             "body_2cm",
-                             "body_5cm",
-                             "availability",
-                             "lost_beyond_camera",
-                             "freed_occupied",
-                             "freed_seen_unknown"}) {
+    for (const std::string_view name : kMetricNames) {
         for (const char* map : {"depth", "fused"}) {
             const auto& metric = json.at("robust").at(map).at(name);
             EXPECT_EQ(metric.size(), 3U) << name;
