@@ -1,0 +1,122 @@
+#include "host/core/body_fit/fit_capsules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <optional>
+#include <utility>
+
+#include "host/core/body_fit/body_search.hpp"
+#include "host/core/body_fit/coverage.hpp"
+#include "host/core/body_fit/spread_points.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr double kExcessSmall = 0.08;  ///< of the hull's volume, weighted: more capsules are not worth it
+constexpr double kExcessMost = 0.42;
+constexpr double kProtrusionP99Most_m = 0.029;
+constexpr double kProtrusionMost_m = 0.048;
+
+double diagonal_m(const SurfaceMesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+    return box.diagonal().norm();
+}
+
+/// The worst measure by its limit: at most 1 if all are kept.
+double badness(const FitMeasures& measures) {
+    return std::max({measures.excess_ratio.value_or(0.0) / kExcessMost,
+                     measures.protrusion_p99_m / kProtrusionP99Most_m,
+                     measures.protrusion_max_m / kProtrusionMost_m});
+}
+
+class LinkFit {
+  public:
+    explicit LinkFit(const SurfaceMesh& mesh)
+        : mesh_(mesh),
+          diagonal_m_(diagonal_m(mesh)),
+          distance_(mesh),
+          hull_(ConvexHull::around(mesh.vertices)),
+          field_(mesh, distance_, hull_ ? &*hull_ : nullptr),
+          search_(spread_points(mesh, std::max(kSpacingMin_m, diagonal_m_ / kPointsAcross)), field_) {}
+
+    BodyFit run() {
+        split_up_to_few();
+        try_groups();
+        for (const std::size_t rank : {0U, 1U, 2U, 0U}) search_.exchange(rank);
+        BodyFit best = finished();
+        while (badness(best.measures) > 1.0 && add_some()) {
+            BodyFit next = finished();
+            if (badness(next.measures) < badness(best.measures)) best = std::move(next);
+        }
+        return best;
+    }
+
+  private:
+    static constexpr double kSpacingMin_m = 0.0015;
+    static constexpr double kPointsAcross = 60.0;
+
+    void split_up_to_few() {
+        while (search_.capsules().size() < kCapsulesFew) {
+            search_.refine(2, 12);
+            const double excess_m3 = search_.excess() * field_.voxel_m3();
+            if (hull_ && excess_m3 < kExcessSmall * hull_->volume_m3()) return;
+            if (!search_.split()) return;
+        }
+        search_.refine(4, 12);
+    }
+
+    /// Groups of points may lead to a better set than splits.
+    void try_groups() {
+        constexpr std::array<std::size_t, 3> kCounts{5, 6, kCapsulesFew};
+        auto best = search_.capsules();
+        double least = search_.excess();
+        for (const std::size_t count : kCounts) {
+            search_.regroup(count);
+            search_.refine(4, 12);
+            const double excess = search_.excess();
+            if (!(excess < least)) continue;
+            least = excess;
+            best = search_.capsules();
+        }
+        search_.set_capsules(std::move(best));
+    }
+
+    /// False if there are as many capsules as there may be, or none can be split.
+    bool add_some() {
+        constexpr std::size_t kAtOnce = 4;
+        const std::size_t before = search_.capsules().size();
+        const std::size_t most = std::min(kCapsulesMost, before + kAtOnce);
+        while (search_.capsules().size() < most && search_.split()) {
+        }
+        search_.refine(2, 12);
+        return search_.capsules().size() > before;
+    }
+
+    [[nodiscard]] BodyFit finished() const {
+        constexpr double kEdgeMin_m = 0.001;
+        constexpr double kEdgesAcross = 1000.0;
+        BodyFit fit{search_.capsules(), {}};
+        grow_to_cover(mesh_, fit.capsules, kCoveredWithin_m,
+                      std::max(kEdgeMin_m, diagonal_m_ / kEdgesAcross));
+        fit.measures = measure(fit.capsules, distance_, hull_ ? &*hull_ : nullptr);
+        return fit;
+    }
+
+    const SurfaceMesh& mesh_;
+    double diagonal_m_;
+    MeshDistance distance_;
+    std::optional<ConvexHull> hull_;
+    ExcessField field_;
+    BodySearch search_;
+};
+
+}  // namespace
+
+BodyFit fit_capsules(const SurfaceMesh& mesh) {
+    assert(!mesh.triangles.empty());
+    return LinkFit(mesh).run();
+}
+
+}  // namespace octoskin
