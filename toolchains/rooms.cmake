@@ -45,14 +45,15 @@ set(OCTOSKIN_MAY_USE_hw/dbc common hw/dbc)
 set(OCTOSKIN_MAY_USE_host/errors host/errors)
 set(OCTOSKIN_MAY_USE_host/io/folder common host/errors host/io/folder)
 set(OCTOSKIN_MAY_USE_hw/rigfile common host/errors host/io/folder hw/rigfile)
+set(OCTOSKIN_MAY_USE_hw/mesh common hw/mesh hw/rigfile)
 set(OCTOSKIN_MAY_USE_hw/image common host/errors hw/image hw/rigfile)
-set(OCTOSKIN_MAY_USE_hw/sim common firmware/drivers firmware/core host/errors host/io/folder hw/image hw/rigfile hw/sim)
+set(OCTOSKIN_MAY_USE_hw/sim common firmware/drivers firmware/core host/errors host/io/folder hw/image hw/mesh hw/rigfile hw/sim)
 set(OCTOSKIN_MAY_USE_host/core common host/core host/errors)
-set(OCTOSKIN_MAY_USE_host/io common host/core host/errors hw/rigfile host/io host/io/folder)
+set(OCTOSKIN_MAY_USE_host/io common host/core host/errors hw/mesh hw/rigfile host/io host/io/folder)
 # The product: it does not depend on the simulator or the laboratory.
 set(OCTOSKIN_MAY_USE_host/apps common firmware/drivers firmware/core hw/image hw/rigfile host/core host/errors host/io host/io/folder
     host/apps)
-set(OCTOSKIN_ALL_ROOMS common firmware/drivers firmware/core firmware/port hw/dbc hw/image hw/rigfile hw/sim host/core
+set(OCTOSKIN_ALL_ROOMS common firmware/drivers firmware/core firmware/port hw/dbc hw/image hw/mesh hw/rigfile hw/sim host/core
     host/errors host/io host/io/folder host/apps host/lab firmware/app tests)
 set(OCTOSKIN_MAY_USE_host/lab ${OCTOSKIN_ALL_ROOMS})
 set(OCTOSKIN_MAY_USE_firmware/app ${OCTOSKIN_ALL_ROOMS})
@@ -219,7 +220,7 @@ function(octoskin_program name)
 endfunction()
 
 # The helper programs that other programs start from their own folder.
-set(OCTOSKIN_HELPERS octoskin-camera octoskin-film octoskin-oni-read octoskin-oni-write)
+set(OCTOSKIN_HELPERS octoskin-camera octoskin-film octoskin-mesh-read octoskin-oni-read octoskin-oni-write)
 set(OCTOSKIN_LAB_HELPERS octoskin-world-read)
 
 # Lets tests that are built in this folder find them, too.

@@ -9,11 +9,11 @@
 #include "common/result.hpp"
 #include "host/errors/error.hpp"
 #include "host/io/folder/open_folder.hpp"
-#include "hw/sim/world/sdf/world_files.hpp"
+#include "hw/mesh/allowed_files.hpp"
 
 namespace octoskin::sim {
 
-class FolderFiles final : public WorldFiles {
+class FolderFiles final : public AllowedFiles {
   public:
     [[nodiscard]] static Result<std::unique_ptr<FolderFiles>, Error> open(
         const std::filesystem::path& folder);

@@ -109,7 +109,7 @@ Result<SdfModule, Error> sdf_module() {
 
 }  // namespace
 
-SolidsOrError load_solids(const std::filesystem::path& sdf, const WorldFiles* files) {
+SolidsOrError load_solids(const std::filesystem::path& sdf, const AllowedFiles* files) {
     const auto failed = [](ErrorCode code, const std::string& what) { return unexpected(Error{code, what}); };
     std::filesystem::path path = sdf;
     if (files != nullptr) {

@@ -5,13 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace octoskin::sim {
+#include "hw/mesh/triangle_mesh.hpp"
 
-/// A triangle mesh, metres. The corners of a triangle run anticlockwise seen from outside.
-struct TriangleMesh {
-    std::vector<Eigen::Vector3d> vertices;
-    std::vector<Eigen::Vector3i> triangles;
-};
+namespace octoskin::sim {
 
 /// One visual of the SDF file: a triangle mesh in the world frame.
 struct Solid {

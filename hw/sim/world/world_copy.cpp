@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "hw/sim/world/mesh_kinds.hpp"
+#include "hw/mesh/mesh_kinds.hpp"
 #include "hw/sim/world/model_folders.hpp"
 
 namespace octoskin::sim {

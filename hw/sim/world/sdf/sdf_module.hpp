@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "hw/sim/world/sdf/world_files.hpp"
+#include "hw/mesh/allowed_files.hpp"
 #include "hw/sim/world/solids_bytes.hpp"
 
 namespace octoskin::sim {
@@ -11,7 +11,7 @@ namespace octoskin::sim {
 struct SdfInput {
     std::filesystem::path file;         ///< its name: mesh paths are relative to it
     std::filesystem::path path;         ///< the path for opening it
-    const WorldFiles* files = nullptr;  ///< the files it may refer to; nullptr: any
+    const AllowedFiles* files = nullptr;  ///< the files it may refer to; nullptr: any
 };
 
 /// The module's file name; it is in the loader's search path of the running program.

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "hw/sim/world/model_folders.hpp"
-#include "hw/sim/world/sdf/mesh_file.hpp"
+#include "hw/mesh/mesh_file.hpp"
 #include "hw/sim/world/shapes.hpp"
 
 namespace octoskin::sim {

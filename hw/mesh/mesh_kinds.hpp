@@ -1,4 +1,4 @@
-// The kinds of mesh files that a world may use.
+// The kinds of mesh files that a world or a robot may use.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace octoskin::sim {
+namespace octoskin {
 
 /// The endings of their names.
 inline constexpr std::array<std::string_view, 3> kMeshKinds{"stl", "obj", "dae"};
@@ -25,4 +25,4 @@ inline constexpr std::array<std::string_view, 3> kMeshKinds{"stl", "obj", "dae"}
     return !ending.empty() && is_mesh_kind(std::string_view(ending).substr(1));
 }
 
-}  // namespace octoskin::sim
+}  // namespace octoskin

@@ -1,7 +1,8 @@
-#include "hw/sim/world/sdf/mesh_file.hpp"
+#include "hw/mesh/mesh_file.hpp"
 
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -11,10 +12,10 @@
 #include <memory>
 #include <string_view>
 
+#include "hw/mesh/mesh_kinds.hpp"
 #include "hw/rigfile/file_kind.hpp"
-#include "hw/sim/world/mesh_kinds.hpp"
 
-namespace octoskin::sim {
+namespace octoskin {
 namespace {
 
 /// The reader's file endings are separated by blanks.
@@ -58,7 +59,7 @@ void append(const aiMesh& part, TriangleMesh& mesh) {
 /// Opens allowed files only, for reading, by the paths of checked descriptors.
 class CheckedFiles final : public Assimp::DefaultIOSystem {
   public:
-    explicit CheckedFiles(const WorldFiles& files) : files_(files) {}
+    explicit CheckedFiles(const AllowedFiles& files) : files_(files) {}
 
     bool Exists(const char* file) const override { return files_.openable(file).has_value(); }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
@@ -68,12 +69,12 @@ class CheckedFiles final : public Assimp::DefaultIOSystem {
     }
 
   private:
-    const WorldFiles& files_;
+    const AllowedFiles& files_;
 };
 
 }  // namespace
 
-Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, const WorldFiles* files) {
+Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, const AllowedFiles* files) {
     if (!has_mesh_kind(file)) {
         return unexpected("mesh " + file.string() +
                           ": is neither .stl nor .obj nor .dae (COLLADA); convert it to one of them");
@@ -86,6 +87,7 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
         return unexpected("mesh " + file.string() + " is " + std::string(kind) + ", not an ordinary file");
     Assimp::Importer importer;
     keep_readers_of_our_kinds(importer);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     if (files != nullptr) importer.SetIOHandler(new CheckedFiles(*files));  // the importer owns it
     const aiScene* scene =
         importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
@@ -107,4 +109,4 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
     return mesh;
 }
 
-}  // namespace octoskin::sim
+}  // namespace octoskin

@@ -1,0 +1,141 @@
+// Oracle: the corners that the files were written from, and python3-collada, which is not assimp.
+#include "hw/mesh/mesh_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/support/scratch_folder.hpp"
+#include "tests/unit/hw/mesh/shape_files.hpp"
+
+namespace octoskin {
+namespace {
+
+using Eigen::Vector3d;
+using testing_support::kWedge;
+using testing_support::kWedgeFaces;
+using testing_support::ScratchFolder;
+
+using Corners = std::vector<Vector3d>;
+
+/// The corners of all triangles, in an order that does not depend on the file's.
+Corners sorted(Corners corners) {
+    std::ranges::sort(corners, [](const Vector3d& left, const Vector3d& right) {
+        constexpr double kSame_m = 1e-5;
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::abs(left[axis] - right[axis]) > kSame_m) return left[axis] < right[axis];
+        return false;
+    });
+    return corners;
+}
+
+Corners corners_of(const TriangleMesh& mesh) {
+    Corners corners;
+    for (const auto& triangle : mesh.triangles)
+        for (int i = 0; i < 3; ++i) corners.push_back(mesh.vertices[static_cast<std::size_t>(triangle[i])]);
+    return sorted(corners);
+}
+
+Corners wedge_moved(const std::function<Vector3d(const Vector3d&)>& move) {
+    Corners corners;
+    for (const auto& face : kWedgeFaces)
+        for (const int corner : face) corners.push_back(move(kWedge[static_cast<std::size_t>(corner)]));
+    return sorted(corners);
+}
+
+void expect_same(const Corners& found, const Corners& wanted, const std::string& what) {
+    ASSERT_EQ(found.size(), wanted.size()) << what;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_LT((found[i] - wanted[i]).norm(), 1e-6)
+            << what << ", corner " << i << ": " << found[i].transpose();
+}
+
+TEST(MeshFile, has_the_same_points_in_each_format_unit_and_up_axis) {
+    const ScratchFolder folder;
+    std::vector<std::filesystem::path> files{folder.write("binary.stl", testing_support::wedge_stl()),
+                                             folder.write("ascii.STL", testing_support::wedge_ascii_stl()),
+                                             folder.write("wedge.obj", testing_support::wedge_obj())};
+    for (const char* const up : {"X_UP", "Y_UP", "Z_UP"}) {
+        for (const double unit_m : {1.0, 0.001, 0.0254}) {
+            files.push_back(folder.write(std::string(up) + std::to_string(unit_m) + ".dae",
+                                         testing_support::wedge_dae(up, unit_m)));
+        }
+    }
+    const Corners wanted = wedge_moved([](const Vector3d& at) { return at; });
+    for (const auto& file : files) {
+        const auto mesh = read_mesh(file);
+        ASSERT_TRUE(mesh) << mesh.error();
+        expect_same(corners_of(*mesh), wanted, file.string());
+    }
+}
+
+TEST(MeshFile, applies_the_transform_of_an_inner_node_in_the_unit_of_the_file) {
+    const ScratchFolder folder;
+    const std::string node =
+        "<translate>100 200 300</translate><rotate>0 0 1 90</rotate><scale>2 1 1</scale>";
+    const auto mesh = read_mesh(folder.write("node.dae", testing_support::wedge_dae("Y_UP", 0.001, node)));
+    ASSERT_TRUE(mesh) << mesh.error();
+    expect_same(corners_of(*mesh), wedge_moved([](const Vector3d& at) {
+                    return Vector3d(0.1 - at.y(), 0.2 + 2.0 * at.x(), 0.3 + at.z());
+                }),
+                "node.dae");
+}
+
+/// Prints the corners in metres, without the up axis: what pycollada calls the bound geometry.
+constexpr const char* kForeignReader = R"(import sys, collada
+d = collada.Collada(sys.argv[1]); u = d.assetInfo.unitmeter
+for g in d.scene.objects('geometry'):
+    for p in g.primitives():
+        for t in p:
+            for v in t.vertices: print(*[float(c) * u for c in v])
+)";
+
+TEST(MeshFile, of_collada_agrees_with_a_reader_that_is_not_assimp) {
+    if (std::system("/usr/bin/python3 -c 'import collada' 2> /dev/null") != 0)
+        GTEST_SKIP() << "python3-collada is not installed";
+    const ScratchFolder folder;
+    const auto script = folder.write("read.py", kForeignReader);
+    const std::string node = "<translate>10 -20 30</translate><rotate>1 2 3 40</rotate>";
+    for (const char* const up : {"Y_UP", "Z_UP"}) {
+        const auto file = folder.write("node.dae", testing_support::wedge_dae(up, 0.01, node));
+        const std::string command = "/usr/bin/python3 " + script.string() + " " + file.string();
+        const std::unique_ptr<FILE, int (*)(FILE*)> output(::popen(command.c_str(), "r"), ::pclose);
+        Corners foreign;
+        for (Vector3d at; std::fscanf(output.get(), "%lf %lf %lf", &at.x(), &at.y(), &at.z()) == 3;)
+            foreign.push_back(at);
+        const auto mesh = read_mesh(file);
+        ASSERT_TRUE(mesh) << mesh.error();
+        ASSERT_EQ(foreign.size(), 12U);
+        expect_same(corners_of(*mesh), sorted(foreign), up);
+    }
+}
+
+TEST(MeshFile, opens_only_the_files_that_are_allowed) {
+    class None final : public AllowedFiles {
+        [[nodiscard]] Result<std::filesystem::path, std::string> openable(
+            const std::filesystem::path& /*file*/) const override {
+            return unexpected(std::string("no"));
+        }
+    };
+    const ScratchFolder folder;
+    const None none;
+    EXPECT_FALSE(read_mesh(folder.write("a.stl", testing_support::wedge_stl()), &none));
+}
+
+TEST(MeshFile, refuses_other_endings_and_damaged_content) {
+    const ScratchFolder folder;
+    EXPECT_FALSE(read_mesh(folder.write("a.ply", testing_support::wedge_stl())));
+    EXPECT_FALSE(read_mesh(folder.write("empty.stl", "")));
+    EXPECT_FALSE(read_mesh(folder.write("text.dae", "no mesh")));
+    const std::string whole = testing_support::wedge_stl();
+    for (std::size_t bytes = 0; bytes < whole.size(); bytes += 7)
+        EXPECT_FALSE(read_mesh(folder.write("cut.stl", whole.substr(0, bytes)))) << bytes;
+}
+
+}  // namespace
+}  // namespace octoskin
