@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "hw/rigfile/element_fault.hpp"
+#include "hw/rigfile/fitted_urdf.hpp"
 #include "hw/rigfile/urdf_document.hpp"
 #include "hw/rigfile/urdf_pose.hpp"
 
@@ -30,6 +31,7 @@ struct Cylinder {
 struct Fitted {
     Capsule around;
     Capsule within;
+    bool is_from_mesh = false;  ///< fitted to a mesh, which it reaches beyond: nothing is known to lie within
 };
 
 /// The collision elements of one link, by shape.
@@ -199,8 +201,12 @@ Result<std::vector<Fitted>, Error> read_fitted(const FilePlace& urdf,
                               collision->geometry ? shape_name(*collision->geometry) : "no geometry"});
             break;
         }
+        const bool is_from_mesh = std::ranges::any_of(link->collision_array, [](const auto& collision) {
+            return std::string_view(collision->name).starts_with(kFittedName);
+        });
         const auto padding = link_padding_m.find(name);
         for (Fitted& element : to_capsules(std::move(bodies))) {
+            element.is_from_mesh = is_from_mesh;
             if (padding != link_padding_m.end()) element.around.radius_m += padding->second;
             all.push_back(std::move(element));
         }
@@ -254,7 +260,9 @@ Result<std::vector<Capsule>, Error> read_capsules(const FilePlace& urdf,
 }
 
 Result<std::vector<Capsule>, Error> read_inner_capsules(const FilePlace& urdf, BoxRule boxes) {
-    return all_of(read_fitted(urdf, {}, boxes), &Fitted::within);
+    auto elements = read_fitted(urdf, {}, boxes);
+    if (elements) std::erase_if(*elements, &Fitted::is_from_mesh);
+    return all_of(elements, &Fitted::within);
 }
 
 }  // namespace octoskin::rig

@@ -37,7 +37,8 @@ enum class BoxRule : std::uint8_t {
     BoxRule boxes = BoxRule::refused);
 
 /// A capsule that lies wholly within each collision element: for a box or a single cylinder one that touches
-/// its faces, for a capsule or a sphere the element itself. Errors as read_capsules.
+/// its faces, for a capsule or a sphere the element itself. None for a link with capsules fitted to a mesh
+/// (fitted_urdf.hpp). Errors as read_capsules.
 [[nodiscard]] Result<std::vector<Capsule>, Error> read_inner_capsules(const FilePlace& urdf,
                                                                       BoxRule boxes = BoxRule::refused);
 

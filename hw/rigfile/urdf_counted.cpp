@@ -14,14 +14,14 @@
 #include <vector>
 
 #include "hw/rigfile/element_fault.hpp"
+#include "hw/rigfile/urdf_rotation.hpp"
+#include "hw/rigfile/xacro_remedy.hpp"
 
 namespace octoskin::rig {
 namespace {
 
 using Element = tinyxml2::XMLElement;
 using Names = std::initializer_list<std::string_view>;
-
-constexpr const char* kXacroRemedy = "run xacro first, and give its output";
 
 bool is_one_of(std::string_view name, Names names) {
     return std::ranges::find(names, name) != names.end();
@@ -125,6 +125,45 @@ std::optional<ElementFault> find_shape_fault(const std::filesystem::path& file, 
     return std::nullopt;
 }
 
+/// Writes a `quat_xyzw` (URDF 1.2), which urdfdom ignores, as `rpy`. False if it is no unit quaternion, or if
+/// there is an `rpy`, too.
+bool make_rpy(Element& origin) {
+    constexpr double kUnit = 1e-3;
+    const char* const text = origin.Attribute("quat_xyzw");
+    if (text == nullptr) return true;
+    if (origin.Attribute("rpy") != nullptr || !has_numbers(origin, "quat_xyzw", 4)) return false;
+    std::istringstream numbers(text);
+    numbers.imbue(std::locale::classic());
+    Eigen::Quaterniond rotation;
+    numbers >> rotation.x() >> rotation.y() >> rotation.z() >> rotation.w();
+    if (std::abs(rotation.norm() - 1.0) > kUnit) return false;
+    const Eigen::Vector3d rpy = rpy_of(rotation.normalized().toRotationMatrix());
+    origin.SetAttribute("rpy", fmt::format("{:.17g} {:.17g} {:.17g}", rpy[0], rpy[1], rpy[2]).c_str());
+    origin.DeleteAttribute("quat_xyzw");
+    return true;
+}
+
+/// The first <origin> of a link or joint whose rotation cannot be read as a quaternion.
+std::optional<ElementFault> make_all_rpy(const std::filesystem::path& file, Element& of) {
+    const auto fault_of = [&](Element* origin) -> std::optional<ElementFault> {
+        if (origin == nullptr || make_rpy(*origin)) return std::nullopt;
+        const char* const name = of.Attribute("name");
+        return ElementFault{{.code = ErrorCode::bad_value,
+                             .what = "expected quat_xyzw with four numbers of length 1, without rpy",
+                             .value = fmt::format("\"{}\"", origin->Attribute("quat_xyzw")),
+                             .file = file,
+                             .line = origin->GetLineNum(),
+                             .key = fmt::format("{} {}", of.Name(), name == nullptr ? "" : name)},
+                            "its quat_xyzw"};
+    };
+    if (auto fault = fault_of(of.FirstChildElement("origin"))) return fault;
+    for (Element* part = of.FirstChildElement(); part != nullptr; part = part->NextSiblingElement()) {
+        const bool has_place = is_one_of(part->Name(), {"collision", "visual"});
+        if (auto fault = has_place ? fault_of(part->FirstChildElement("origin")) : std::nullopt) return fault;
+    }
+    return std::nullopt;
+}
+
 void simplify(Element& element) {
     if (std::string_view(element.Name()) == "joint") {
         keep_children(element, {"origin", "parent", "child", "axis", "limit", "mimic"});
@@ -163,7 +202,7 @@ std::optional<Error> find_xacro(const std::filesystem::path& file, const Element
         if (is_xacro(element)) {
             return Error{.code = ErrorCode::unsupported,
                          .what = "a macro that is not expanded",
-                         .remedy = kXacroRemedy,
+                         .remedy = xacro_remedy(file),
                          .file = file,
                          .line = element.GetLineNum(),
                          .key = element.Name()};
@@ -175,7 +214,7 @@ std::optional<Error> find_xacro(const std::filesystem::path& file, const Element
             return Error{.code = ErrorCode::unsupported,
                          .what = "expected a value, because xacro expressions are not evaluated",
                          .value = fmt::format("{}=\"{}\"", at->Name(), value),
-                         .remedy = kXacroRemedy,
+                         .remedy = xacro_remedy(file),
                          .file = file,
                          .line = element.GetLineNum(),
                          .key = fmt::format("<{}>", element.Name())};
@@ -196,6 +235,7 @@ Result<std::string, Error> counted_urdf(const std::filesystem::path& file, tinyx
     for (Element* element = robot.FirstChildElement(); element != nullptr;
          element = element->NextSiblingElement()) {
         if (auto fault = find_shape_fault(file, *element)) faults.push_back(std::move(*fault));
+        if (auto fault = make_all_rpy(file, *element)) faults.push_back(std::move(*fault));
         simplify(*element);
         if (auto fault = find_xacro(file, *element)) return unexpected(std::move(*fault));
     }

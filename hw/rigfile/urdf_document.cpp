@@ -40,22 +40,6 @@ class CapturedLog final : public console_bridge::OutputHandler {
     std::string errors_;
 };
 
-Result<std::string, Error> read_text(const FilePlace& file) {
-    const auto failed = [&file](Error error) {
-        error.file = file.shown();
-        return unexpected(std::move(error));
-    };
-    const auto opened = file.open();
-    if (!opened) return failed(unopened_file(opened.error(), "URDF"));
-    auto text = opened->read(kFileBytesMax);
-    if (!text) return failed(to_error(text.error(), "cannot be read: "));
-    if (text->size() > kFileBytesMax) {
-        return failed(
-            {ErrorCode::too_large, fmt::format("expected at most {} bytes", kFileBytesMax), "more"});
-    }
-    return std::move(*text);
-}
-
 /// Whether the text is UTF-16: by its byte order mark, or by the zero byte in the first character.
 bool is_utf16(std::string_view text) {
     using namespace std::string_view_literals;
@@ -120,8 +104,24 @@ std::optional<Error> unit_fault(const urdf::Joint& joint) {
 
 }  // namespace
 
+Result<std::string, Error> read_urdf_text(const FilePlace& file) {
+    const auto failed = [&file](Error error) {
+        error.file = file.shown();
+        return unexpected(std::move(error));
+    };
+    const auto opened = file.open();
+    if (!opened) return failed(unopened_file(opened.error(), "URDF"));
+    auto text = opened->read(kFileBytesMax);
+    if (!text) return failed(to_error(text.error(), "cannot be read: "));
+    if (text->size() > kFileBytesMax) {
+        return failed(
+            {ErrorCode::too_large, fmt::format("expected at most {} bytes", kFileBytesMax), "more"});
+    }
+    return std::move(*text);
+}
+
 Result<UrdfDocument, Error> UrdfDocument::read(const FilePlace& place) {
-    const auto text = read_text(place);
+    const auto text = read_urdf_text(place);
     const std::filesystem::path file = place.shown();
     if (!text) return unexpected(text.error());
     if (is_utf16(*text)) {

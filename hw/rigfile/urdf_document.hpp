@@ -19,6 +19,9 @@ class ModelInterface;
 
 namespace octoskin::rig {
 
+/// The file's text. Errors, for the user: it cannot be read, or is over 16 MiB.
+[[nodiscard]] Result<std::string, Error> read_urdf_text(const FilePlace& file);
+
 class UrdfDocument {
   public:
     /// Errors: unreadable, in UTF-16, over 16 MiB, those of UrdfOutline and counted_urdf(), errors of urdfdom

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "hw/rigfile/element_fault.hpp"
+#include "hw/rigfile/xacro_remedy.hpp"
 
 namespace octoskin::rig {
 namespace {
@@ -65,7 +66,7 @@ Result<UrdfOutline, Error> UrdfOutline::read(const std::filesystem::path& file,
         if (tag.starts_with("xacro:")) {
             return unexpected(Error{.code = ErrorCode::unsupported,
                                     .what = "a macro that is not expanded",
-                                    .remedy = "run xacro first, and give its output",
+                                    .remedy = xacro_remedy(file),
                                     .file = file,
                                     .line = element->GetLineNum(),
                                     .key = tag});

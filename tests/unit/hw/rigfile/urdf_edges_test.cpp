@@ -122,7 +122,7 @@ TEST_F(UrdfEdges, what_xacro_has_not_expanded_is_named_with_its_line) {
         const auto document = read(each.text);
         ASSERT_FALSE(document) << each.text;
         EXPECT_THAT(document.error(), AllOf(code_is(ErrorCode::unsupported), line_is(each.line),
-                                            remedy_is(HasSubstr("run xacro first"))));
+                                            remedy_is(HasSubstr("run `xacro "))));
         EXPECT_TRUE(has_its_fields(document.error()));
     }
 }

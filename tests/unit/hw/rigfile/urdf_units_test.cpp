@@ -150,7 +150,7 @@ TEST_F(UrdfUnits, a_link_of_more_shapes_than_any_has_is_refused) {
 TEST_F(UrdfUnits, a_macro_that_is_not_expanded_is_refused) {
     EXPECT_THAT(error_of("<xacro:arm name=\"x\"/>"),
                 AllOf(code_is(ErrorCode::unsupported), line_is(3), key_is("xacro:arm"),
-                      remedy_is(HasSubstr("run xacro first"))));
+                      remedy_is(HasSubstr("run `xacro "))));
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+// A robot description whose links have capsules in place of meshes and boxes.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/result.hpp"
+#include "hw/rigfile/robot_description.hpp"
+
+namespace octoskin::rig {
+
+/// The names of the <collision> elements begin so. Such a capsule reaches beyond the link.
+inline constexpr std::string_view kFittedName = "octoskin_fit_";
+
+/// The URDF `text` in which each link of `bodies` has these capsules and no <collision> that is a mesh or a
+/// box, and no <visual> that is a mesh: the result refers to no other file for these links. Everything else
+/// stays, but for the layout. A capsule is a cylinder with a sphere of its radius at each end, which each
+/// tool reads. Radii are rounded up: the body only grows, by at most 3 micrometres. Errors: those of
+/// parse_robot().
+[[nodiscard]] Result<std::string, Error> urdf_with_bodies(
+    const std::filesystem::path& file, const std::string& text,
+    const std::map<std::string, std::vector<Capsule>>& bodies);
+
+}  // namespace octoskin::rig

@@ -1,0 +1,210 @@
+#include "hw/rigfile/link_shapes.hpp"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+#include <urdf_model/model.h>
+
+#include <array>
+#include <cmath>
+#include <locale>
+#include <span>
+#include <sstream>
+#include <utility>
+
+#include "hw/rigfile/element_fault.hpp"
+#include "hw/rigfile/urdf_document.hpp"
+#include "hw/rigfile/urdf_rotation.hpp"
+#include "hw/rigfile/urdf_xml.hpp"
+
+namespace octoskin::rig {
+namespace {
+
+using Element = tinyxml2::XMLElement;
+
+constexpr std::array kKinds{std::pair{"mesh", ShapeKind::mesh}, std::pair{"box", ShapeKind::box},
+                            std::pair{"cylinder", ShapeKind::cylinder},
+                            std::pair{"sphere", ShapeKind::sphere}, std::pair{"capsule", ShapeKind::capsule}};
+
+std::string text_of(const Element& element, const char* name) {
+    const char* const text = element.Attribute(name);
+    return text == nullptr ? "" : text;
+}
+
+/// Empty unless the attribute has exactly as many finite numbers.
+template <int Count>
+std::optional<Eigen::Matrix<double, Count, 1>> numbers_of(const Element& element, const char* name) {
+    std::istringstream stream(text_of(element, name));
+    stream.imbue(std::locale::classic());
+    Eigen::Matrix<double, Count, 1> numbers;
+    for (int i = 0; i < Count; ++i)
+        if (!(stream >> numbers[i]) || !std::isfinite(numbers[i])) return std::nullopt;
+    stream >> std::ws;
+    return stream.eof() ? std::optional(numbers) : std::nullopt;
+}
+
+std::optional<Eigen::Isometry3d> place_of(const Element* origin) {
+    Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+    if (origin == nullptr) return place;
+    if (origin->Attribute("xyz") != nullptr) {
+        const auto xyz = numbers_of<3>(*origin, "xyz");
+        if (!xyz) return std::nullopt;
+        place.translation() = *xyz;
+    }
+    if (origin->Attribute("rpy") != nullptr) {
+        const auto rpy = numbers_of<3>(*origin, "rpy");
+        if (!rpy) return std::nullopt;
+        place.linear() = rotation_of_rpy(*rpy);
+    } else if (origin->Attribute("quat_xyzw") != nullptr) {
+        const auto quat = numbers_of<4>(*origin, "quat_xyzw");
+        if (!quat) return std::nullopt;
+        place.linear() = Eigen::Quaterniond((*quat)[3], (*quat)[0], (*quat)[1], (*quat)[2])
+                             .normalized()
+                             .toRotationMatrix();
+    }
+    return place;
+}
+
+bool take_positive(const Element& element, const char* name, double& value) {
+    const auto numbers = numbers_of<1>(element, name);
+    if (!numbers || !((*numbers)[0] > 0.0)) return false;
+    value = (*numbers)[0];
+    return true;
+}
+
+bool take_size(const Element& element, LinkShape& shape) {
+    switch (shape.kind) {
+        case ShapeKind::mesh: {
+            shape.mesh = text_of(element, "filename");
+            if (element.Attribute("scale") == nullptr) return !shape.mesh.empty();
+            const auto scale = numbers_of<3>(element, "scale");
+            if (scale) shape.size = *scale;
+            return scale && scale->cwiseAbs().minCoeff() > 0.0 && !shape.mesh.empty();
+        }
+        case ShapeKind::box: {
+            const auto size = numbers_of<3>(element, "size");
+            if (size) shape.size = *size;
+            return size && size->minCoeff() > 0.0;
+        }
+        case ShapeKind::cylinder:
+            return take_positive(element, "radius", shape.radius_m) &&
+                   take_positive(element, "length", shape.length_m);
+        case ShapeKind::sphere:
+            return take_positive(element, "radius", shape.radius_m);
+        case ShapeKind::capsule: {
+            const auto length = numbers_of<1>(element, "length");
+            if (length) shape.length_m = (*length)[0];
+            return take_positive(element, "radius", shape.radius_m) && length && shape.length_m >= 0.0;
+        }
+    }
+    return false;
+}
+
+/// None if it cannot be read.
+std::optional<LinkShape> shape_of(const Element& body) {
+    const Element* const geometry = body.FirstChildElement("geometry");
+    const Element* const element = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+    const auto place = place_of(body.FirstChildElement("origin"));
+    if (element == nullptr || !place) return std::nullopt;
+    for (const auto& [name, kind] : kKinds) {
+        if (std::string_view(element->Name()) != name) continue;
+        LinkShape shape{.kind = kind, .T_link_shape = *place, .line = element->GetLineNum()};
+        return take_size(*element, shape) ? std::optional(shape) : std::nullopt;
+    }
+    return std::nullopt;
+}
+
+const char* kind_name(const urdf::Joint& joint) {
+    switch (joint.type) {
+        case urdf::Joint::REVOLUTE:
+            return "revolute";
+        case urdf::Joint::CONTINUOUS:
+            return "continuous";
+        case urdf::Joint::PRISMATIC:
+            return "prismatic";
+        case urdf::Joint::FLOATING:
+            return "floating";
+        case urdf::Joint::PLANAR:
+            return "planar";
+        case urdf::Joint::FIXED:
+            return "fixed";
+        case urdf::Joint::UNKNOWN:
+            break;
+    }
+    return "unknown";
+}
+
+bool is_moving(const UrdfDocument& document, const std::string& base_link, const std::string& link) {
+    for (auto at = document.model().getLink(link); at && at->name != base_link;
+         at = document.model().getLink(at->parent_joint->parent_link_name)) {
+        if (at->parent_joint->type != urdf::Joint::FIXED) return true;
+    }
+    return false;
+}
+
+ShapedJoint joint_of(const UrdfDocument& document, const std::string& name) {
+    const urdf::Joint& joint = *document.model().joints_.at(name);
+    ShapedJoint shaped{name, kind_name(joint), {}, {}};
+    if (joint.limits && joint.type != urdf::Joint::CONTINUOUS) {
+        shaped.lower = joint.limits->lower;
+        shaped.upper = joint.limits->upper;
+    }
+    return shaped;
+}
+
+}  // namespace
+
+const char* name_of(ShapeKind kind) noexcept {
+    for (const auto& [name, of_kind] : kKinds)
+        if (of_kind == kind) return name;
+    return "shape";
+}
+
+Result<RobotShapes, Error> read_link_shapes(const FilePlace& urdf, const std::string& base_link) {
+    const auto document = UrdfDocument::read(urdf);
+    if (!document) return unexpected(document.error());
+    RobotShapes robot;
+    robot.base_link = base_link.empty() ? document->model().getRoot()->name : base_link;
+    if (!document->model().getLink(robot.base_link)) {
+        return unexpected(document->error("link", robot.base_link,
+                                          {ErrorCode::unknown_name, "expected the name of a link"}));
+    }
+    const auto text = read_urdf_text(urdf);
+    if (!text) return unexpected(text.error());
+    tinyxml2::XMLDocument xml;
+    const auto parsed = parse_robot(urdf.shown(), *text, xml);
+    if (!parsed) return unexpected(parsed.error());
+    std::vector<ElementFault> faults;
+    for (const auto* link = (*parsed)->FirstChildElement("link"); link != nullptr;
+         link = link->NextSiblingElement("link")) {
+        ShapedLink shaped{.name = text_of(*link, "name"), .line = link->GetLineNum()};
+        if (!document->is_below(robot.base_link, shaped.name)) continue;
+        shaped.is_moving = is_moving(*document, robot.base_link, shaped.name);
+        for (const auto* body = link->FirstChildElement("collision"); body != nullptr;
+             body = body->NextSiblingElement("collision")) {
+            if (auto shape = shape_of(*body)) {
+                shaped.collisions.push_back(*std::move(shape));
+                continue;
+            }
+            Error error{
+                .code = ErrorCode::bad_value,
+                .what =
+                    "expected a <collision> with a shape whose place and size are finite numbers, and "
+                    "whose sizes are positive",
+                .file = urdf.shown(),
+                .line = body->GetLineNum(),
+                .key = "link " + shaped.name};
+            faults.push_back({std::move(error), "its <collision>"});
+        }
+        for (const auto* body = link->FirstChildElement("visual"); body != nullptr;
+             body = body->NextSiblingElement("visual")) {
+            if (auto shape = shape_of(*body)) shaped.visuals.push_back(*std::move(shape));
+        }
+        robot.links.push_back(std::move(shaped));
+    }
+    if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));
+    for (const std::string& joint : document->moving_joints(robot.base_link))
+        robot.joints.push_back(joint_of(*document, joint));
+    return robot;
+}
+
+}  // namespace octoskin::rig
