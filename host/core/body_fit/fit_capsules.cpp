@@ -46,7 +46,10 @@ class LinkFit {
         try_groups();
         for (const std::size_t rank : {0U, 1U, 2U, 0U}) search_.exchange(rank);
         BodyFit best = finished();
-        while (badness(best.measures) > 1.0 && add_some()) {
+        for (const std::size_t count : kManyCounts) {
+            if (badness(best.measures) <= 1.0) break;
+            search_.regroup(count);
+            search_.refine(4, 12);
             BodyFit next = finished();
             if (badness(next.measures) < badness(best.measures)) best = std::move(next);
         }
@@ -54,6 +57,7 @@ class LinkFit {
     }
 
   private:
+    static constexpr std::array<std::size_t, 4> kManyCounts{12, 16, 24, kCapsulesMost};
     static constexpr double kSpacingMin_m = 0.0015;
     static constexpr double kPointsAcross = 60.0;
 
@@ -81,17 +85,6 @@ class LinkFit {
             best = search_.capsules();
         }
         search_.set_capsules(std::move(best));
-    }
-
-    /// False if there are as many capsules as there may be, or none can be split.
-    bool add_some() {
-        constexpr std::size_t kAtOnce = 4;
-        const std::size_t before = search_.capsules().size();
-        const std::size_t most = std::min(kCapsulesMost, before + kAtOnce);
-        while (search_.capsules().size() < most && search_.split()) {
-        }
-        search_.refine(2, 12);
-        return search_.capsules().size() > before;
     }
 
     [[nodiscard]] BodyFit finished() const {
