@@ -1,0 +1,158 @@
+#include "host/io/robot/mesh_places.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+namespace octoskin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPackage = "package://";
+constexpr std::string_view kFile = "file://";
+constexpr int kFoldersAbove = 12;
+
+std::vector<fs::path> split(std::string_view paths) {
+    std::vector<fs::path> found;
+    while (!paths.empty()) {
+        const std::string_view path = paths.substr(0, paths.find(':'));
+        if (!path.empty()) found.emplace_back(path);
+        paths.remove_prefix(std::min(path.size() + 1, paths.size()));
+    }
+    return found;
+}
+
+/// The folders above a file, the nearest first, without the root of the file system.
+std::vector<fs::path> folders_above(const fs::path& folder) {
+    std::vector<fs::path> above;
+    for (fs::path at = folder; at.has_relative_path() && above.size() < kFoldersAbove; at = at.parent_path())
+        above.push_back(at);
+    return above;
+}
+
+std::string environment(const char* name) {
+    const char* const text = std::getenv(name);
+    return text == nullptr ? "" : text;
+}
+
+/// Whether `file`, both absolute and normal, is below `folder`, and its name there.
+bool is_below(const fs::path& file, const fs::path& folder, fs::path& name) {
+    name = file.lexically_relative(folder);
+    return !name.empty() && *name.begin() != ".." && name != ".";
+}
+
+Error not_found(const std::string& uri, const std::vector<fs::path>& tried, std::string remedy) {
+    std::string folders;
+    for (const fs::path& folder : tried) folders += (folders.empty() ? "" : ", ") + folder.string();
+    return {.code = ErrorCode::not_found,
+            .what = "expected this mesh file" +
+                    (folders.empty() ? std::string(" in a known package") : " below " + folders),
+            .value = "none for " + uri,
+            .remedy = std::move(remedy)};
+}
+
+}  // namespace
+
+Result<PackagePath, Error> package_path_of(std::string_view text) {
+    const auto equals = text.find('=');
+    if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size()) {
+        return unexpected(Error{.code = ErrorCode::bad_argument,
+                                .what = "expected NAME=DIR",
+                                .value = fmt::format("'{}'", text),
+                                .remedy = "write for example ur_description=/opt/ur_description",
+                                .key = "--package-path"});
+    }
+    return PackagePath{std::string(text.substr(0, equals)), fs::path(text.substr(equals + 1))};
+}
+
+MeshSearch mesh_search(std::vector<PackagePath> packages) {
+    return {std::move(packages), environment("ROS_PACKAGE_PATH"), environment("AMENT_PREFIX_PATH")};
+}
+
+MeshPlaces::MeshPlaces(const fs::path& urdf, MeshSearch search)
+    : urdf_folder_(fs::absolute(urdf).lexically_normal().parent_path()),
+      root_(urdf_folder_.parent_path()),
+      search_(std::move(search)) {
+    std::error_code ignored;
+    for (const fs::path& folder : folders_above(urdf_folder_)) {
+        if (!fs::exists(folder / "package.xml", ignored)) continue;
+        root_ = folder;
+        break;
+    }
+    if (!root_.has_relative_path()) root_ = urdf_folder_;
+}
+
+std::vector<fs::path> MeshPlaces::folders_of(const std::string& package) const {
+    std::vector<fs::path> folders;
+    std::error_code ignored;
+    const auto add = [&](const fs::path& folder) {
+        const fs::path absolute = fs::absolute(folder).lexically_normal();
+        if (fs::is_directory(absolute, ignored) && std::ranges::find(folders, absolute) == folders.end())
+            folders.push_back(absolute);
+    };
+    const auto add_in_or_at = [&](fs::path folder) {
+        if (!folder.has_filename()) folder = folder.parent_path();
+        add(folder / package);
+        if (folder.filename() == package) add(folder);
+    };
+    for (const PackagePath& given : search_.packages)
+        if (given.name == package) add(given.folder);
+    for (const fs::path& folder : split(search_.ros_package_path)) add_in_or_at(folder);
+    for (const fs::path& prefix : split(search_.ament_prefix_path)) add(prefix / "share" / package);
+    for (const fs::path& folder : folders_above(urdf_folder_)) add_in_or_at(folder);
+    return folders;
+}
+
+Result<FilePlace, Error> MeshPlaces::find_in_package(const std::string& uri) const {
+    const std::string rest = uri.substr(kPackage.size());
+    const auto slash = rest.find('/');
+    const std::string package = rest.substr(0, slash);
+    const fs::path name =
+        slash == std::string::npos ? fs::path() : fs::path(rest.substr(slash + 1)).lexically_normal();
+    if (package.empty() || package == "." || package == ".." || name.empty())
+        return unexpected(Error{ErrorCode::bad_value, "expected package://NAME/FILE", uri});
+    if (name.is_absolute() || *name.begin() == "..")
+        return unexpected(
+            Error{ErrorCode::outside_folder, "expected a file below the folder of the package", uri});
+    const auto folders = folders_of(package);
+    for (const fs::path& folder : folders) {
+        FilePlace place(NamedFolder(folder), name);
+        if (place.is_there()) return place;
+    }
+    return unexpected(not_found(uri, folders, fmt::format("give --package-path {}=DIR", package)));
+}
+
+Result<FilePlace, Error> MeshPlaces::find_below_roots(const fs::path& file, const std::string& uri) const {
+    const fs::path absolute = (urdf_folder_ / file).lexically_normal();
+    std::vector<fs::path> roots{root_};
+    for (const PackagePath& given : search_.packages)
+        roots.push_back(fs::absolute(given.folder).lexically_normal());
+    for (const fs::path& folder : split(search_.ros_package_path)) roots.push_back(folder.lexically_normal());
+    for (const fs::path& prefix : split(search_.ament_prefix_path))
+        roots.push_back((prefix / "share").lexically_normal());
+    for (fs::path& root : roots) {
+        if (!root.has_filename()) root = root.parent_path();
+        fs::path name;
+        if (!is_below(absolute, root, name)) continue;
+        FilePlace place(NamedFolder(root), name);
+        if (place.is_there()) return place;
+        return unexpected(not_found(uri, {root}, "put it there"));
+    }
+    return unexpected(
+        Error{ErrorCode::outside_folder,
+              fmt::format("expected a mesh below {}, or in a ROS package", root_.string()), uri,
+              fmt::format("allow its folder with --package-path NAME={}", absolute.parent_path().string())});
+}
+
+Result<FilePlace, Error> MeshPlaces::find(const std::string& uri) const {
+    if (uri.starts_with(kPackage)) return find_in_package(uri);
+    if (uri.starts_with(kFile)) return find_below_roots(uri.substr(kFile.size()), uri);
+    if (uri.find("://") == std::string::npos) return find_below_roots(uri, uri);
+    return unexpected(Error{ErrorCode::unsupported, "expected package://, file:// or a path", uri,
+                            "save the mesh in a file; octoskin fetches nothing"});
+}
+
+}  // namespace octoskin

@@ -1,0 +1,61 @@
+// Where the mesh files are that a URDF names.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/result.hpp"
+#include "host/errors/error.hpp"
+#include "host/io/folder/file_place.hpp"
+
+namespace octoskin {
+
+/// A ROS package that the user placed: --package-path NAME=DIR.
+struct PackagePath {
+    std::string name;
+    std::filesystem::path folder;
+};
+
+/// The value of the option. Error (bad_argument): no name or no folder.
+[[nodiscard]] Result<PackagePath, Error> package_path_of(std::string_view text);
+
+/// Folders to look in.
+struct MeshSearch {
+    std::vector<PackagePath> packages;
+    std::string ros_package_path;   ///< of the environment: folders, separated by ':'
+    std::string ament_prefix_path;  ///< likewise: prefixes, with packages in share/
+};
+
+/// The search of this process: its environment, and `packages`.
+[[nodiscard]] MeshSearch mesh_search(std::vector<PackagePath> packages);
+
+class MeshPlaces {
+  public:
+    MeshPlaces(const std::filesystem::path& urdf, MeshSearch search);
+
+    /// The file of a <mesh filename="...">:
+    /// - package://NAME/FILE: below the folder of that package, the first of these that has the file: NAME of
+    ///   --package-path; NAME in, or at the end of, a folder of ROS_PACKAGE_PATH; share/NAME in a prefix of
+    ///   AMENT_PREFIX_PATH; NAME in, or the name of, a folder above the URDF.
+    /// - file://FILE, and an absolute path: below one of these folders, or below that of relative paths.
+    /// - a relative path: beside the URDF, below the nearest folder above it that has a package.xml, else
+    /// below the
+    ///   parent of its folder.
+    /// Symbolic links below these folders are not followed. Errors: not_found, with the folders that were
+    /// tried; outside_folder; unsupported (another scheme).
+    [[nodiscard]] Result<FilePlace, Error> find(const std::string& uri) const;
+
+  private:
+    [[nodiscard]] Result<FilePlace, Error> find_in_package(const std::string& uri) const;
+    [[nodiscard]] Result<FilePlace, Error> find_below_roots(const std::filesystem::path& file,
+                                                            const std::string& uri) const;
+    [[nodiscard]] std::vector<std::filesystem::path> folders_of(const std::string& package) const;
+
+    std::filesystem::path urdf_folder_;  ///< absolute
+    std::filesystem::path root_;         ///< of relative paths
+    MeshSearch search_;
+};
+
+}  // namespace octoskin

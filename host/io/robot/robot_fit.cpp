@@ -1,0 +1,202 @@
+#include "host/io/robot/robot_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "host/io/mesh/mesh_process.hpp"
+#include "hw/rigfile/element_fault.hpp"
+#include "hw/rigfile/fitted_urdf.hpp"
+#include "hw/rigfile/urdf_document.hpp"
+
+namespace octoskin {
+namespace {
+
+using rig::LinkShape;
+using rig::ShapedLink;
+using rig::ShapeKind;
+
+constexpr double kReachMax_m = 5.0;
+
+bool is_fitted(const LinkShape& shape) {
+    return shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::box;
+}
+
+SurfaceMesh box_surface(const Eigen::Vector3d& size_m) {
+    constexpr std::array<std::array<int, 3>, 12> kTriangles{{{0, 2, 3},
+                                                             {0, 3, 1},
+                                                             {4, 5, 7},
+                                                             {4, 7, 6},
+                                                             {0, 1, 5},
+                                                             {0, 5, 4},
+                                                             {2, 6, 7},
+                                                             {2, 7, 3},
+                                                             {0, 4, 6},
+                                                             {0, 6, 2},
+                                                             {1, 3, 7},
+                                                             {1, 7, 5}}};
+    SurfaceMesh mesh;
+    for (int i = 0; i < 8; ++i) {
+        const Eigen::Vector3d corner(i % 2 - 0.5, i / 2 % 2 - 0.5, i / 4 - 0.5);
+        mesh.vertices.emplace_back(corner.cwiseProduct(size_m));
+    }
+    for (const auto& triangle : kTriangles)
+        mesh.triangles.emplace_back(triangle[0], triangle[1], triangle[2]);
+    return mesh;
+}
+
+std::string counted(const std::vector<LinkShape>& shapes) {
+    constexpr std::array kPlural{std::pair{ShapeKind::mesh, "meshes"}, std::pair{ShapeKind::box, "boxes"},
+                                 std::pair{ShapeKind::cylinder, "cylinders"},
+                                 std::pair{ShapeKind::sphere, "spheres"},
+                                 std::pair{ShapeKind::capsule, "capsules"}};
+    std::string text;
+    for (const auto& [kind, plural] : kPlural) {
+        const auto count = std::ranges::count(shapes, kind, &LinkShape::kind);
+        if (count == 0) continue;
+        text +=
+            fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? rig::name_of(kind) : plural);
+    }
+    return text;
+}
+
+BodySource source_of(const ShapedLink& link) {
+    if (!link.collisions.empty()) return BodySource::collision;
+    if (link.is_moving && !link.visuals.empty()) return BodySource::visual;
+    return BodySource::nothing;
+}
+
+const std::vector<LinkShape>& shapes_of(const ShapedLink& link) {
+    return source_of(link) == BodySource::visual ? link.visuals : link.collisions;
+}
+
+/// Reads each file once.
+class Meshes {
+  public:
+    Meshes(const FilePlace& urdf, const MeshSearch& search) : urdf_(urdf.shown()), places_(urdf_, search) {}
+
+    /// Null, with a fault, if it cannot be read.
+    const SurfaceMesh* find(const LinkShape& shape, const std::string& link) {
+        if (failed_.contains(shape.mesh)) return nullptr;
+        if (const auto known = meshes_.find(shape.mesh); known != meshes_.end()) return &known->second;
+        auto place = places_.find(shape.mesh);
+        if (!place) return fail(shape, link, place.error());
+        auto read = read_mesh_in_process(*place);
+        if (!read) {
+            Error error = read.error();
+            error.what = error.file.string() + ": " + error.what;
+            return fail(shape, link, std::move(error));
+        }
+        return &meshes_
+                    .emplace(shape.mesh, SurfaceMesh{std::move(read->vertices), std::move(read->triangles)})
+                    .first->second;
+    }
+
+    std::vector<rig::ElementFault> faults;
+
+  private:
+    const SurfaceMesh* fail(const LinkShape& shape, const std::string& link, Error error) {
+        failed_.emplace(shape.mesh, true);
+        error.file = urdf_;
+        error.line = shape.line;
+        error.key = "link " + link;
+        faults.push_back({std::move(error), shape.mesh});
+        return nullptr;
+    }
+
+    std::filesystem::path urdf_;
+    MeshPlaces places_;
+    std::map<std::string, SurfaceMesh> meshes_;
+    std::map<std::string, bool> failed_;
+};
+
+/// The surface of the link's meshes and boxes.
+SurfaceMesh surface_of(const ShapedLink& link, Meshes& meshes) {
+    SurfaceMesh surface;
+    for (const LinkShape& shape : shapes_of(link)) {
+        const Eigen::Affine3d T_link_shape(shape.T_link_shape);
+        if (shape.kind == ShapeKind::box) append(box_surface(shape.size), T_link_shape, surface);
+        if (shape.kind != ShapeKind::mesh) continue;
+        if (const SurfaceMesh* const mesh = meshes.find(shape, link.name))
+            append(*mesh, T_link_shape * Eigen::Scaling(shape.size), surface);
+    }
+    return surface;
+}
+
+std::optional<Error> size_fault(const SurfaceMesh& surface) {
+    const double farthest_m =
+        surface.vertices.empty()
+            ? 0.0
+            : std::ranges::max(surface.vertices, {}, [](const auto& at) { return at.norm(); }).norm();
+    if (farthest_m <= kReachMax_m) return std::nullopt;
+    return Error{.code = ErrorCode::too_large,
+                 .what = fmt::format("expected a mesh within {} m of its link's origin", kReachMax_m),
+                 .value = fmt::format("{:.4g} m", farthest_m),
+                 .remedy = "is it written in millimetres? Then add scale=\"0.001 0.001 0.001\""};
+}
+
+std::vector<rig::Capsule> capsules_of(const LinkBody& body) {
+    std::vector<rig::Capsule> capsules;
+    for (const PosedCapsule& capsule : body.fit->capsules)
+        capsules.push_back({body.link, capsule.p_a, capsule.p_b, capsule.radius_m});
+    return capsules;
+}
+
+}  // namespace
+
+const char* name_of(BodySource source) noexcept {
+    switch (source) {
+        case BodySource::nothing:
+            return "nothing";
+        case BodySource::collision:
+            return "collision";
+        case BodySource::visual:
+            return "visual";
+    }
+    return "nothing";
+}
+
+bool needs_fit(const rig::RobotShapes& shapes) {
+    return std::ranges::any_of(
+        shapes.links, [](const ShapedLink& link) { return std::ranges::any_of(shapes_of(link), is_fitted); });
+}
+
+Result<RobotFit, Error> fit_robot(const FilePlace& urdf, const std::string& base_link,
+                                  const MeshSearch& search) {
+    auto shapes = rig::read_link_shapes(urdf, base_link);
+    if (!shapes) return unexpected(shapes.error());
+    RobotFit robot{.shapes = *std::move(shapes), .links = {}, .urdf = {}};
+    Meshes meshes(urdf, search);
+    for (const ShapedLink& link : robot.shapes.links) {
+        LinkBody body{.link = link.name, .is_moving = link.is_moving, .source = source_of(link)};
+        body.shapes = counted(shapes_of(link));
+        body.kept = static_cast<std::size_t>(
+            std::ranges::count_if(shapes_of(link), [](const LinkShape& shape) { return !is_fitted(shape); }));
+        body.mesh = surface_of(link, meshes);
+        if (auto fault = size_fault(body.mesh)) {
+            fault->file = urdf.shown();
+            fault->line = link.line;
+            fault->key = "link " + link.name;
+            meshes.faults.push_back({*std::move(fault), "too large"});
+        }
+        robot.links.push_back(std::move(body));
+    }
+    if (!meshes.faults.empty()) return unexpected(rig::one_error_of(std::move(meshes.faults)));
+    std::map<std::string, std::vector<rig::Capsule>> bodies;
+    for (LinkBody& body : robot.links) {
+        if (body.mesh.triangles.empty()) continue;
+        body.fit = fit_capsules(body.mesh);
+        bodies[body.link] = capsules_of(body);
+    }
+    const auto text = rig::read_urdf_text(urdf);
+    if (!text) return unexpected(text.error());
+    auto fitted = rig::urdf_with_bodies(urdf.shown(), *text, bodies);
+    if (!fitted) return unexpected(fitted.error());
+    robot.urdf = *std::move(fitted);
+    return robot;
+}
+
+}  // namespace octoskin

@@ -1,0 +1,117 @@
+#include "host/io/robot/robot_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "host/core/body_fit/coverage.hpp"
+#include "hw/rigfile/robot_description.hpp"
+#include "tests/support/scratch_folder.hpp"
+#include "tests/unit/hw/mesh/shape_files.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr double kEdge_m = 0.001;
+
+std::string link(const std::string& name, const std::string& content) {
+    return "<link name=\"" + name + "\">" + content + "</link>\n";
+}
+
+std::string joint(const std::string& parent, const std::string& child, const std::string& type) {
+    return "<joint name=\"to_" + child + "\" type=\"" + type + "\"><parent link=\"" + parent +
+           "\"/><child link=\"" + child +
+           "\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>\n";
+}
+
+std::string mesh(const std::string& tag, const std::string& file, const std::string& more = "") {
+    return "<" + tag + ">" + more + "<geometry><mesh filename=\"" + file +
+           "\" scale=\"0.2 0.2 0.2\"/></geometry></" + tag + ">";
+}
+
+TEST(RobotFit, takes_collisions_and_the_visual_of_a_moving_link_without_one) {
+    const testing_support::ScratchFolder folder;
+    folder.write("a.stl", testing_support::wedge_stl());
+    folder.write("b.dae", testing_support::wedge_dae("Z_UP", 0.001));
+    const auto urdf = folder.write(
+        "arm.urdf",
+        "<robot name=\"r\">" + link("base", mesh("visual", "a.stl")) +
+            link("upper", mesh("collision", "a.stl", "<origin xyz=\"0.1 0 0\" rpy=\"0 0 1\"/>") +
+                              mesh("visual", "b.dae") +
+                              "<collision><geometry><sphere radius=\"0.05\"/></geometry></collision>") +
+            link("fore", mesh("visual", "b.dae")) + link("tip", "") + joint("base", "upper", "revolute") +
+            joint("upper", "fore", "fixed") + joint("fore", "tip", "fixed") + "</robot>");
+    const auto robot = fit_robot(urdf, "", {});
+    ASSERT_TRUE(robot) << robot.error().message();
+    ASSERT_EQ(robot->links.size(), 4U);
+    EXPECT_EQ(robot->links[0].source, BodySource::nothing);  // it does not move
+    EXPECT_EQ(robot->links[1].source, BodySource::collision);
+    EXPECT_EQ(robot->links[1].kept, 1U);
+    EXPECT_EQ(robot->links[1].shapes, "1 mesh, 1 sphere");
+    EXPECT_EQ(robot->links[2].source, BodySource::visual);
+    EXPECT_EQ(robot->links[3].source, BodySource::nothing);
+    // The origin turns by one radian and moves, after the scale.
+    const Eigen::Vector3d top = robot->links[1].mesh.vertices[robot->links[1].mesh.vertices.size() - 1];
+    EXPECT_NEAR((top - Eigen::Vector3d(0.1, 0, 0)).norm(), 0.2 * std::hypot(0.125, 1.0), 1e-6);
+
+    // The new file is a whole robot by itself, and its capsules cover the meshes.
+    const auto alone = folder.write("fitted.urdf", robot->urdf);
+    std::filesystem::remove(folder / "a.stl");
+    std::filesystem::remove(folder / "b.dae");
+    const auto capsules = rig::read_capsules(alone, {});
+    ASSERT_TRUE(capsules) << capsules.error().message();
+    for (const std::size_t i : {1U, 2U}) {
+        std::vector<PosedCapsule> body;
+        for (const rig::Capsule& capsule : *capsules)
+            if (capsule.link == robot->links[i].link)
+                body.push_back({capsule.p_link_a, capsule.p_link_b, capsule.radius_m});
+        EXPECT_EQ(body.size(), robot->links[i].fit->capsules.size() + robot->links[i].kept);
+        EXPECT_FALSE(first_uncovered(robot->links[i].mesh, body, kCoveredWithin_m, kEdge_m));
+    }
+    EXPECT_FALSE(needs_fit(*rig::read_link_shapes(alone, "")));
+    EXPECT_TRUE(needs_fit(robot->shapes));
+}
+
+TEST(RobotFit, names_all_meshes_that_are_missing_in_one_error) {
+    const testing_support::ScratchFolder folder;
+    const auto urdf = folder.write("arm.urdf", "<robot name=\"r\">" +
+                                                   link("base", mesh("collision", "package://arm/a.stl")) +
+                                                   link("upper", mesh("collision", "b.stl")) +
+                                                   joint("base", "upper", "revolute") + "</robot>");
+    const auto robot = fit_robot(urdf, "", {});
+    ASSERT_FALSE(robot);
+    EXPECT_EQ(robot.error().code, ErrorCode::not_found);
+    EXPECT_EQ(robot.error().file, urdf);
+    const std::string message = robot.error().message();
+    for (const char* part :
+         {"link base", "link upper", "package://arm/a.stl", "b.stl", "--package-path arm="})
+        EXPECT_NE(message.find(part), std::string::npos) << part << " in " << message;
+}
+
+TEST(RobotFit, refuses_a_mesh_in_millimetres) {
+    const testing_support::ScratchFolder folder;
+    folder.write("a.stl", testing_support::wedge_stl());
+    const auto urdf =
+        folder.write("arm.urdf",
+                     "<robot name=\"r\"><link name=\"l\"><collision><geometry><mesh filename=\"a.stl\" "
+                     "scale=\"1000 1000 1000\"/></geometry></collision></link></robot>");
+    EXPECT_EQ(fit_robot(urdf, "", {}).error().code, ErrorCode::too_large);
+}
+
+TEST(RobotFit, fits_a_box_and_leaves_cylinders_as_they_are) {
+    const testing_support::ScratchFolder folder;
+    const auto urdf =
+        folder.write("arm.urdf",
+                     "<robot name=\"r\"><link name=\"l\"><collision><geometry><box size=\"0.1 0.1 0.3\"/>"
+                     "</geometry></collision><collision><geometry><cylinder radius=\"0.1\" length=\"0.2\"/>"
+                     "</geometry></collision></link></robot>");
+    const auto robot = fit_robot(urdf, "l", {});
+    ASSERT_TRUE(robot) << robot.error().message();
+    EXPECT_EQ(robot->links[0].kept, 1U);
+    EXPECT_EQ(robot->links[0].mesh.triangles.size(), 12U);
+    EXPECT_TRUE(robot->links[0].fit);
+}
+
+}  // namespace
+}  // namespace octoskin
