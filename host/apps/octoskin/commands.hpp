@@ -16,6 +16,7 @@ void add_record_command(CLI::App& app);
 void add_joints_command(CLI::App& app);
 void add_cameras_command(CLI::App& app);
 void add_rig_command(CLI::App& app);
+void add_robot_command(CLI::App& app);
 void add_mapping_command(CLI::App& app);
 void add_flash_command(CLI::App& app);
 void add_black_box_command(CLI::App& app);

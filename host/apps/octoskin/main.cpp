@@ -22,6 +22,7 @@ void add_commands(CLI::App& app) {
     add_joints_command(app);
     add_cameras_command(app);
     add_rig_command(app);
+    add_robot_command(app);
     add_mapping_command(app);
     add_flash_command(app);
     add_black_box_command(app);
