@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/core/body_fit/golden_turn.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -13,11 +15,15 @@ constexpr int kDirections = 24;
 constexpr std::size_t kTried = 3;  ///< of the directions
 
 /// Evenly spread over the half sphere (Fibonacci lattice).
-Eigen::Vector3d direction_of(int index, int count) {
-    const double z = (index + 0.5) / count;
-    const double turn = index * std::numbers::pi * (3.0 - std::sqrt(5.0));
-    const double across = std::sqrt(1.0 - z * z);
-    return {across * std::cos(turn), across * std::sin(turn), z};
+std::vector<Eigen::Vector3d> directions(int count) {
+    std::vector<Eigen::Vector3d> all;
+    GoldenTurn turn;
+    for (int i = 0; i < count; ++i, turn.advance()) {
+        const double z = (i + 0.5) / count;
+        const double across = std::sqrt(1.0 - z * z);
+        all.emplace_back(across * turn.cosine(), across * turn.sine(), z);
+    }
+    return all;
 }
 
 double radius_over(const PosedCapsule& capsule, std::span<const Eigen::Vector3d> points) {
@@ -110,7 +116,7 @@ Eigen::Matrix3d main_axes(std::span<const Eigen::Vector3d> points) {
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (const Eigen::Vector3d& point : points) spread += (point - mean) * (point - mean).transpose();
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(spread);
+    solver.compute(spread);  // with square roots only: the same on each processor
     return solver.eigenvectors();
 }
 
@@ -118,8 +124,7 @@ std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3d> poi
     constexpr int kCount = 120;
     if (points.size() <= 2 * kCount) return {points.begin(), points.end()};
     std::vector<std::size_t> chosen;
-    for (int i = 0; i < kCount; ++i) {
-        const Eigen::Vector3d direction = direction_of(i, kCount);
+    for (const Eigen::Vector3d& direction : directions(kCount)) {
         std::size_t low = 0;
         std::size_t high = 0;
         double lowest = 1e9;
@@ -176,7 +181,7 @@ ScoredCapsule capsule_around(std::span<const Eigen::Vector3d> points, const Exce
     std::vector<PosedCapsule> candidates;
     const Eigen::Matrix3d axes = main_axes(points);
     for (int i = 0; i < 3; ++i) candidates.push_back(along(points, axes.col(i)));
-    for (int i = 0; i < kDirections; ++i) candidates.push_back(along(points, direction_of(i, kDirections)));
+    for (const Eigen::Vector3d& u : directions(kDirections)) candidates.push_back(along(points, u));
     std::ranges::stable_sort(candidates, {}, volume_of);
     ScoredCapsule best = improved(candidates[0], points, field, rounds);
     for (std::size_t i = 1; i < kTried; ++i) {

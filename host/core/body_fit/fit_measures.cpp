@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/core/body_fit/golden_turn.hpp"
+
 namespace octoskin {
 namespace {
 
@@ -150,13 +152,13 @@ void for_each_surface_point(const PosedCapsule& capsule, Use&& use) {
     const double height_m = length_m + 2.0 * capsule.radius_m;
     const double area_m2 = 2.0 * std::numbers::pi * capsule.radius_m * height_m;
     const auto count = static_cast<int>(std::ceil(area_m2 / (kSpacing_m * kSpacing_m)));
-    for (int i = 0; i < count; ++i) {
+    GoldenTurn turn;
+    for (int i = 0; i < count; ++i, turn.advance()) {
         const double h = (i + 0.5) / count * height_m - capsule.radius_m;
         const double on_axis = std::clamp(h, 0.0, length_m);
         const double rise = h - on_axis;
         const double across = std::sqrt(std::max(0.0, capsule.radius_m * capsule.radius_m - rise * rise));
-        const double turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
-        use(capsule.p_a + h * u + across * (std::cos(turn) * v + std::sin(turn) * w), area_m2 / count);
+        use(capsule.p_a + h * u + across * (turn.cosine() * v + turn.sine() * w), area_m2 / count);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "host/core/body_fit/golden_turn.hpp"
 #include "tests/unit/host/core/body_fit/shapes.hpp"
 
 namespace octoskin {
@@ -15,6 +16,15 @@ FitMeasures measures_of(const SurfaceMesh& mesh, const std::vector<PosedCapsule>
     const MeshDistance distance(mesh);
     const auto hull = ConvexHull::around(mesh.vertices);
     return measure(capsules, distance, hull ? &*hull : nullptr);
+}
+
+TEST(GoldenTurn, stays_with_the_cosine_and_sine_of_the_library) {
+    GoldenTurn turn;
+    for (int i = 0; i < 100'000; ++i, turn.advance()) {
+        const double angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
+        ASSERT_NEAR(turn.cosine(), std::cos(angle), 1e-9) << i;
+        ASSERT_NEAR(turn.sine(), std::sin(angle), 1e-9) << i;
+    }
 }
 
 TEST(FitMeasures, of_a_ball_around_a_cube_are_those_of_geometry) {
