@@ -83,7 +83,7 @@ bool take_size(const Element& element, LinkShape& shape) {
         case ShapeKind::box: {
             const auto size = numbers_of<3>(element, "size");
             if (size) shape.size = *size;
-            return size && size->minCoeff() > 0.0;
+            return size && size->minCoeff() >= 0.0;  // some vendors' frames have a box without size
         }
         case ShapeKind::cylinder:
             return take_positive(element, "radius", shape.radius_m) &&

@@ -48,7 +48,7 @@ struct RobotShapes {
 };
 
 /// `base_link`: empty for the root. Errors: those of UrdfDocument; an unknown base link; a <collision> whose
-/// place or size is not a finite number, or is not positive.
+/// place or size is not a finite number, or a size that is not positive (a box may have none).
 [[nodiscard]] Result<RobotShapes, Error> read_link_shapes(const FilePlace& urdf,
                                                           const std::string& base_link);
 

@@ -103,6 +103,11 @@ std::vector<fs::path> MeshPlaces::folders_of(const std::string& package) const {
     for (const fs::path& folder : split(search_.ros_package_path)) add_in_or_at(folder);
     for (const fs::path& prefix : split(search_.ament_prefix_path)) add(prefix / "share" / package);
     for (const fs::path& folder : folders_above(urdf_folder_)) add_in_or_at(folder);
+    // A copy of the package under another name.
+    for (const fs::path& folder : folders_above(urdf_folder_)) {
+        add(folder);
+        if (folder == root_) break;
+    }
     return folders;
 }
 

@@ -38,7 +38,8 @@ class MeshPlaces {
     /// The file of a <mesh filename="...">:
     /// - package://NAME/FILE: below the folder of that package, the first of these that has the file: NAME of
     ///   --package-path; NAME in, or at the end of, a folder of ROS_PACKAGE_PATH; share/NAME in a prefix of
-    ///   AMENT_PREFIX_PATH; NAME in, or the name of, a folder above the URDF.
+    ///   AMENT_PREFIX_PATH; NAME in, or the name of, a folder above the URDF; a folder from that of the URDF
+    ///   up to that of relative paths, whatever its name: a copy of the package.
     /// - file://FILE, and an absolute path: below one of these folders, or below that of relative paths.
     /// - a relative path: beside the URDF, below the nearest folder above it that has a package.xml, else
     /// below the

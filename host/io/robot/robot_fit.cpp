@@ -69,10 +69,6 @@ BodySource source_of(const ShapedLink& link) {
     return BodySource::nothing;
 }
 
-const std::vector<LinkShape>& shapes_of(const ShapedLink& link) {
-    return source_of(link) == BodySource::visual ? link.visuals : link.collisions;
-}
-
 /// Reads each file once.
 class Meshes {
   public:
@@ -116,7 +112,7 @@ class Meshes {
 /// The surface of the link's meshes and boxes.
 SurfaceMesh surface_of(const ShapedLink& link, Meshes& meshes) {
     SurfaceMesh surface;
-    for (const LinkShape& shape : shapes_of(link)) {
+    for (const LinkShape& shape : body_shapes(link)) {
         const Eigen::Affine3d T_link_shape(shape.T_link_shape);
         if (shape.kind == ShapeKind::box) append(box_surface(shape.size), T_link_shape, surface);
         if (shape.kind != ShapeKind::mesh) continue;
@@ -159,9 +155,14 @@ const char* name_of(BodySource source) noexcept {
     return "nothing";
 }
 
+const std::vector<LinkShape>& body_shapes(const ShapedLink& link) {
+    return source_of(link) == BodySource::visual ? link.visuals : link.collisions;
+}
+
 bool needs_fit(const rig::RobotShapes& shapes) {
-    return std::ranges::any_of(
-        shapes.links, [](const ShapedLink& link) { return std::ranges::any_of(shapes_of(link), is_fitted); });
+    return std::ranges::any_of(shapes.links, [](const ShapedLink& link) {
+        return std::ranges::find(link.collisions, ShapeKind::mesh, &LinkShape::kind) != link.collisions.end();
+    });
 }
 
 Result<RobotFit, Error> fit_robot(const FilePlace& urdf, const std::string& base_link,
@@ -172,9 +173,9 @@ Result<RobotFit, Error> fit_robot(const FilePlace& urdf, const std::string& base
     Meshes meshes(urdf, search);
     for (const ShapedLink& link : robot.shapes.links) {
         LinkBody body{.link = link.name, .is_moving = link.is_moving, .source = source_of(link)};
-        body.shapes = counted(shapes_of(link));
-        body.kept = static_cast<std::size_t>(
-            std::ranges::count_if(shapes_of(link), [](const LinkShape& shape) { return !is_fitted(shape); }));
+        body.shapes = counted(body_shapes(link));
+        body.kept = static_cast<std::size_t>(std::ranges::count_if(
+            body_shapes(link), [](const LinkShape& shape) { return !is_fitted(shape); }));
         body.mesh = surface_of(link, meshes);
         if (auto fault = size_fault(body.mesh)) {
             fault->file = urdf.shown();

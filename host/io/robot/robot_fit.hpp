@@ -44,8 +44,10 @@ struct RobotFit {
 [[nodiscard]] Result<RobotFit, Error> fit_robot(const FilePlace& urdf, const std::string& base_link,
                                                 const MeshSearch& search);
 
-/// Whether a link at or below the base link has a <collision> that only a fit can use: a mesh or a box; or
-/// moves and has only a <visual> that is one.
+/// The shapes that a link's body is made of: its <collision>s; if it moves and has none, its <visual>s.
+[[nodiscard]] const std::vector<rig::LinkShape>& body_shapes(const rig::ShapedLink& link);
+
+/// Whether a <collision> at or below the base link is a mesh, which is no body without a fit.
 [[nodiscard]] bool needs_fit(const rig::RobotShapes& shapes);
 
 }  // namespace octoskin

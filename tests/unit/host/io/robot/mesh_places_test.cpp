@@ -44,6 +44,13 @@ TEST_F(MeshPlacesTest, finds_a_package_in_each_kind_of_folder) {
               "ament/share/rail/a.stl");
 }
 
+TEST_F(MeshPlacesTest, finds_a_file_in_a_copy_of_its_package_under_another_name) {
+    make("ws/src/arm/meshes/a.stl");
+    make("ws/src/b.stl");
+    EXPECT_EQ(found("package://other/meshes/a.stl"), "ws/src/arm/meshes/a.stl");
+    EXPECT_EQ(found("package://other/b.stl"), "not_found");  // not above the folder of relative paths
+}
+
 TEST_F(MeshPlacesTest, the_users_folder_wins_and_the_next_is_used_if_it_lacks_the_file) {
     make("ws/src/arm/a.stl");
     make("ws/src/arm/b.stl");
