@@ -62,7 +62,7 @@ Result<bool, AppError> use_fitted_robot(rig::Rig& rig, RobotFitting fitting) {
     const auto key = fit_key(rig.urdf, *shapes, search);
     if (!key) return refused(key.error());
     const fs::path folder = fitted_robot_folder();
-    const std::string name = *key + ".urdf";
+    const std::string name = fmt::format("{}.{}.urdf", rig.urdf.name().stem().string().substr(0, 100), *key);
     if (!folder.empty() && FilePlace(folder / name).is_file()) {
         rig.urdf = FilePlace(folder / name);
         return true;
