@@ -14,6 +14,7 @@
 #include "host/apps/recording/text_file.hpp"
 #include "host/apps/robot/body_picture.hpp"
 #include "host/apps/robot/robot_report.hpp"
+#include "host/io/folder/confined.hpp"
 #include "host/io/robot/robot_fit.hpp"
 
 namespace octoskin::app {
@@ -49,7 +50,7 @@ void run(const RobotOptions& options) {
         if (file.empty()) continue;
         if (const auto place = check_text_place(file); !place) throw CommandFailure(place.error());
     }
-    const auto robot = fit_robot(options.urdf, options.base_link, search);
+    const auto robot = fit_robot(confined_to_recording(options.urdf), options.base_link, search);
     if (!robot) throw CommandFailure(reading_error(ExitCode::bad_config, robot.error()));
     write(options.out, robot->urdf);
     write(options.picture, body_picture(*robot));
