@@ -9,8 +9,8 @@
 namespace octoskin::sim {
 
 struct SdfInput {
-    std::filesystem::path file;         ///< its name: mesh paths are relative to it
-    std::filesystem::path path;         ///< the path for opening it
+    std::filesystem::path file;           ///< its name: mesh paths are relative to it
+    std::filesystem::path path;           ///< the path for opening it
     const AllowedFiles* files = nullptr;  ///< the files it may refer to; nullptr: any
 };
 

@@ -6,8 +6,8 @@
 #include <sdf/sdf.hh>
 #include <string_view>
 
-#include "hw/sim/world/model_folders.hpp"
 #include "hw/mesh/mesh_file.hpp"
+#include "hw/sim/world/model_folders.hpp"
 #include "hw/sim/world/shapes.hpp"
 
 namespace octoskin::sim {
