@@ -143,9 +143,8 @@ std::vector<Eigen::Vector3d> extreme_points(std::span<const Eigen::Vector3d> poi
         chosen.push_back(low);
         chosen.push_back(high);
     }
-    std::ranges::sort(chosen);
-    const auto repeated = std::ranges::unique(chosen);
-    chosen.erase(repeated.begin(), repeated.end());
+    std::sort(chosen.begin(), chosen.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     std::vector<Eigen::Vector3d> extremes;
     for (const std::size_t k : chosen) extremes.push_back(points[k]);
     return extremes;
