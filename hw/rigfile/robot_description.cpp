@@ -93,6 +93,14 @@ Capsule within_cylinder(const Cylinder& cylinder) {
     return within;
 }
 
+std::string remedy_for(const urdf::Geometry& refused) {
+    if (refused.type == urdf::Geometry::MESH)
+        return "fit capsules with `octoskin robot FILE --out FITTED.urdf` and use that file, or remove it";
+    const std::string remedy = "replace it by one that encloses it, or remove it";
+    return refused.type == urdf::Geometry::BOX ? remedy + "; or set `fits_capsules: true` in the rig"
+                                               : remedy;
+}
+
 /// Adds one collision element to `bodies`. Returns an error if it is refused.
 std::optional<Error> add_body(const urdf::Collision& collision, const std::string& link, BoxRule boxes,
                               Bodies& bodies) {
@@ -120,11 +128,7 @@ std::optional<Error> add_body(const urdf::Collision& collision, const std::strin
             ErrorCode::unsupported,
             fmt::format("expected a cylinder or a sphere (two spheres and a cylinder are a capsule) as {}",
                         name_of(collision)),
-            fmt::format("a {}", shape_name(*collision.geometry)),
-            fmt::format("replace it by one that encloses it, or remove it{}",
-                        collision.geometry->type == urdf::Geometry::BOX
-                            ? "; or set `fits_capsules: true` in the rig"
-                            : "")};
+            fmt::format("a {}", shape_name(*collision.geometry)), remedy_for(*collision.geometry)};
     }
     const bool is_sound = T_link_body.matrix().allFinite() && body.radius_m > 0.0 &&
                           body.radius_m <= kRadiusMaxM && length_m >= 0.0 && length_m <= kRadiusMaxM;

@@ -80,8 +80,7 @@ Result<Settings, AppError> read_settings(const DaemonRequest& request) {
     std::optional<std::string> text_before;
     std::optional<FileStamp> stamp_before;
     for (int attempt = 0; attempt < kReadingsMax; ++attempt) {
-        const auto rig =
-            read_given_rig(request.rig, request.robot, ExitCode::bad_config, RobotFitting::kept_only);
+        const auto rig = read_given_rig(request.rig, request.robot);
         if (!rig) return unexpected(rig.error());
         auto settings = settings_of(*rig, request);
         if (!settings) return settings;

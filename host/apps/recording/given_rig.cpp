@@ -7,10 +7,9 @@
 namespace octoskin {
 
 Result<rig::Rig, AppError> read_given_rig(const FilePlace& file, const std::filesystem::path& robot,
-                                          ExitCode otherwise, RobotFitting fitting) {
+                                          ExitCode otherwise) {
     auto rig = rig::read_rig(file, robot);
     if (!rig) return unexpected(reading_error(otherwise, rig.error()));
-    if (const auto fitted = use_fitted_robot(*rig, fitting); !fitted) return unexpected(fitted.error());
     return std::move(rig).value();
 }
 

@@ -6,17 +6,15 @@
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
-#include "host/apps/recording/fitted_robot.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin {
 
 /// rig::read_rig() with an exit code for its error: no_permission if the file may not be read, else
-/// `otherwise`. A robot with meshes is replaced by the one with capsules fitted to them (fitted_robot.hpp).
+/// `otherwise`.
 [[nodiscard]] Result<rig::Rig, AppError> read_given_rig(const FilePlace& file,
                                                         const std::filesystem::path& robot = {},
-                                                        ExitCode otherwise = ExitCode::bad_config,
-                                                        RobotFitting fitting = RobotFitting::if_needed);
+                                                        ExitCode otherwise = ExitCode::bad_config);
 
 /// The text of the rig's URDF. Error (bad_config; no_permission): it cannot be read.
 [[nodiscard]] Result<std::string, AppError> robot_text(const rig::Rig& rig);

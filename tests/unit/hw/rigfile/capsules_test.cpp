@@ -141,6 +141,7 @@ TEST_F(Capsules, box_and_mesh_are_refused_by_link_and_name) {
     const auto mesh = read("<collision><geometry><mesh filename=\"hull.stl\"/></geometry></collision>\n");
     ASSERT_FALSE(mesh);
     EXPECT_THAT(mesh.error(), AllOf(code_is(ErrorCode::unsupported), value_is("a mesh")));
+    EXPECT_NE(mesh.error().remedy.find("octoskin robot FILE --out FITTED.urdf"), std::string::npos);
 }
 
 TEST_F(Capsules, box_is_the_capsule_around_it_if_the_rig_says_so) {
