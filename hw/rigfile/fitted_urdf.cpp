@@ -64,13 +64,24 @@ bool has_shape(const Element& part, std::string_view shape) {
     return element != nullptr && element->Name() == shape;
 }
 
-void remove_replaced(Element& link) {
+/// The <visual> as a <collision>.
+void add_collision_of(const Element& visual, Element& link) {
+    Element& collision = *link.InsertNewChildElement("collision");
+    for (const char* const part : {"origin", "geometry"}) {
+        if (const Element* const element = visual.FirstChildElement(part))
+            collision.InsertEndChild(element->DeepClone(link.GetDocument()));
+    }
+}
+
+void remove_replaced(Element& link, bool is_of_visual) {
+    const Element* const last = link.LastChildElement();
     for (Element* part = link.FirstChildElement(); part != nullptr;) {
-        Element* const next = part->NextSiblingElement();
+        Element* const next = part == last ? nullptr : part->NextSiblingElement();
         const std::string_view name = part->Name();
-        const bool is_replaced =
-            (name == "collision" && (has_shape(*part, "mesh") || has_shape(*part, "box"))) ||
-            (name == "visual" && has_shape(*part, "mesh"));
+        const bool is_fitted = has_shape(*part, "mesh") || has_shape(*part, "box");
+        if (is_of_visual && name == "visual" && !is_fitted) add_collision_of(*part, link);
+        const bool is_replaced = (name == "collision" && is_fitted) ||
+                                 (is_of_visual && name == "visual" && has_shape(*part, "mesh"));
         if (is_replaced) link.DeleteChild(part);
         part = next;
     }
@@ -79,7 +90,7 @@ void remove_replaced(Element& link) {
 }  // namespace
 
 Result<std::string, Error> urdf_with_bodies(const std::filesystem::path& file, const std::string& text,
-                                            const std::map<std::string, std::vector<Capsule>>& bodies) {
+                                            const std::map<std::string, FittedBody>& bodies) {
     tinyxml2::XMLDocument xml;
     const auto robot = parse_robot(file, text, xml);
     if (!robot) return unexpected(robot.error());
@@ -88,8 +99,9 @@ Result<std::string, Error> urdf_with_bodies(const std::filesystem::path& file, c
         const char* const name = link->Attribute("name");
         const auto body = bodies.find(name == nullptr ? "" : name);
         if (body == bodies.end()) continue;
-        remove_replaced(*link);
-        for (std::size_t i = 0; i < body->second.size(); ++i) add_capsule(*link, i, body->second[i]);
+        remove_replaced(*link, body->second.is_of_visual);
+        const std::vector<Capsule>& capsules = body->second.capsules;
+        for (std::size_t i = 0; i < capsules.size(); ++i) add_capsule(*link, i, capsules[i]);
     }
     tinyxml2::XMLPrinter printer;
     xml.Print(&printer);

@@ -4,8 +4,10 @@
 #include <tinyxml2.h>
 #include <urdf_model/model.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <locale>
 #include <span>
 #include <sstream>
@@ -113,6 +115,26 @@ std::optional<LinkShape> shape_of(const Element& body) {
     return std::nullopt;
 }
 
+/// Appends the elements of this name that can be read, and a fault for each other.
+void read_shapes(const Element& link, const char* name, const FilePlace& urdf, std::vector<LinkShape>& shapes,
+                 std::vector<ElementFault>& faults) {
+    for (const auto* body = link.FirstChildElement(name); body != nullptr;
+         body = body->NextSiblingElement(name)) {
+        if (auto shape = shape_of(*body)) {
+            shapes.push_back(*std::move(shape));
+            continue;
+        }
+        Error error{.code = ErrorCode::bad_value,
+                    .what = fmt::format("expected a <{}> with a shape whose place and size are finite "
+                                        "numbers, and whose sizes are positive",
+                                        name),
+                    .file = urdf.shown(),
+                    .line = body->GetLineNum(),
+                    .key = "link " + text_of(link, "name")};
+        faults.push_back({std::move(error), fmt::format("its <{}>", name)});
+    }
+}
+
 const char* kind_name(const urdf::Joint& joint) {
     switch (joint.type) {
         case urdf::Joint::REVOLUTE:
@@ -159,6 +181,14 @@ const char* name_of(ShapeKind kind) noexcept {
     return "shape";
 }
 
+bool is_body(const LinkShape& shape) noexcept {
+    return shape.kind != ShapeKind::box || shape.size.maxCoeff() > 0.0;
+}
+
+bool is_body_visual(const ShapedLink& link) noexcept {
+    return link.is_moving && std::ranges::none_of(link.collisions, is_body);
+}
+
 Result<RobotShapes, Error> read_link_shapes(const FilePlace& urdf, const std::string& base_link) {
     const auto document = UrdfDocument::read(urdf);
     if (!document) return unexpected(document.error());
@@ -179,26 +209,11 @@ Result<RobotShapes, Error> read_link_shapes(const FilePlace& urdf, const std::st
         ShapedLink shaped{.name = text_of(*link, "name"), .line = link->GetLineNum()};
         if (!document->is_below(robot.base_link, shaped.name)) continue;
         shaped.is_moving = is_moving(*document, robot.base_link, shaped.name);
-        for (const auto* body = link->FirstChildElement("collision"); body != nullptr;
-             body = body->NextSiblingElement("collision")) {
-            if (auto shape = shape_of(*body)) {
-                shaped.collisions.push_back(*std::move(shape));
-                continue;
-            }
-            Error error{
-                .code = ErrorCode::bad_value,
-                .what =
-                    "expected a <collision> with a shape whose place and size are finite numbers, and "
-                    "whose sizes are positive",
-                .file = urdf.shown(),
-                .line = body->GetLineNum(),
-                .key = "link " + shaped.name};
-            faults.push_back({std::move(error), "its <collision>"});
-        }
-        for (const auto* body = link->FirstChildElement("visual"); body != nullptr;
-             body = body->NextSiblingElement("visual")) {
-            if (auto shape = shape_of(*body)) shaped.visuals.push_back(*std::move(shape));
-        }
+        read_shapes(*link, "collision", urdf, shaped.collisions, faults);
+        // No body is made of the others: a tool may give a <visual> what only it can read.
+        std::vector<ElementFault> of_visuals;
+        read_shapes(*link, "visual", urdf, shaped.visuals, of_visuals);
+        if (is_body_visual(shaped)) std::ranges::move(of_visuals, std::back_inserter(faults));
         robot.links.push_back(std::move(shaped));
     }
     if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));

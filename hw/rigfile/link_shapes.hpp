@@ -34,6 +34,11 @@ struct ShapedLink {
     std::vector<LinkShape> visuals = {};  ///< those that can be read
 };
 
+/// False for a box of no size, which frames of some vendors have.
+[[nodiscard]] bool is_body(const LinkShape& shape) noexcept;
+/// Whether the link's body is that of its <visual>s: it moves, and no <collision> is a body.
+[[nodiscard]] bool is_body_visual(const ShapedLink& link) noexcept;
+
 struct ShapedJoint {
     std::string name;
     std::string kind;             ///< "revolute"
@@ -48,7 +53,8 @@ struct RobotShapes {
 };
 
 /// `base_link`: empty for the root. Errors: those of UrdfDocument; an unknown base link; a <collision> whose
-/// place or size is not a finite number, or a size that is not positive (a box may have none).
+/// shape is unknown, place or size is not a finite number, or size is not positive (a box may have none);
+/// such a <visual> where the body is made of it.
 [[nodiscard]] Result<RobotShapes, Error> read_link_shapes(const FilePlace& urdf,
                                                           const std::string& base_link);
 

@@ -20,9 +20,10 @@ using rig::ShapedLink;
 using rig::ShapeKind;
 
 constexpr double kReachMax_m = 5.0;
+constexpr double kExtentMin_m = 0.005;
 
 bool is_fitted(const LinkShape& shape) {
-    return shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::box;
+    return rig::is_body(shape) && (shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::box);
 }
 
 SurfaceMesh box_surface(const Eigen::Vector3d& size_m) {
@@ -64,8 +65,9 @@ std::string counted(const std::vector<LinkShape>& shapes) {
 }
 
 BodySource source_of(const ShapedLink& link) {
-    if (!link.collisions.empty()) return BodySource::collision;
-    if (link.is_moving && !link.visuals.empty()) return BodySource::visual;
+    if (std::ranges::any_of(link.collisions, rig::is_body)) return BodySource::collision;
+    if (rig::is_body_visual(link) && std::ranges::any_of(link.visuals, rig::is_body))
+        return BodySource::visual;
     return BodySource::nothing;
 }
 
@@ -114,6 +116,7 @@ SurfaceMesh surface_of(const ShapedLink& link, Meshes& meshes) {
     SurfaceMesh surface;
     for (const LinkShape& shape : body_shapes(link)) {
         const Eigen::Affine3d T_link_shape(shape.T_link_shape);
+        if (!rig::is_body(shape)) continue;
         if (shape.kind == ShapeKind::box) append(box_surface(shape.size), T_link_shape, surface);
         if (shape.kind != ShapeKind::mesh) continue;
         if (const SurfaceMesh* const mesh = meshes.find(shape, link.name))
@@ -123,15 +126,28 @@ SurfaceMesh surface_of(const ShapedLink& link, Meshes& meshes) {
 }
 
 std::optional<Error> size_fault(const SurfaceMesh& surface) {
-    const double farthest_m =
-        surface.vertices.empty()
-            ? 0.0
-            : std::ranges::max(surface.vertices, {}, [](const auto& at) { return at.norm(); }).norm();
-    if (farthest_m <= kReachMax_m) return std::nullopt;
-    return Error{.code = ErrorCode::too_large,
-                 .what = fmt::format("expected a mesh within {} m of its link's origin", kReachMax_m),
-                 .value = fmt::format("{:.4g} m", farthest_m),
-                 .remedy = "is it written in millimetres? Then add scale=\"0.001 0.001 0.001\""};
+    if (surface.vertices.empty()) return std::nullopt;
+    double farthest_m = 0.0;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& at : surface.vertices) {
+        const double distance_m = at.norm();
+        if (!(distance_m <= farthest_m)) farthest_m = distance_m;
+        if (!(farthest_m <= kReachMax_m)) break;  // not a number, too
+        box.extend(at);
+    }
+    if (!(farthest_m <= kReachMax_m)) {
+        return Error{.code = ErrorCode::too_large,
+                     .what = fmt::format("expected a mesh within {} m of its link's origin", kReachMax_m),
+                     .value = fmt::format("{:.4g} m", farthest_m),
+                     .remedy = "is it written in millimetres? Then add scale=\"0.001 0.001 0.001\""};
+    }
+    const double extent_m = box.sizes().maxCoeff();
+    if (extent_m >= kExtentMin_m) return std::nullopt;
+    return Error{
+        .code = ErrorCode::out_of_range,
+        .what = fmt::format("expected meshes and boxes of at least {} mm together", 1e3 * kExtentMin_m),
+        .value = fmt::format("{:.4g} mm", 1e3 * extent_m),
+        .remedy = "is it scaled twice? If the link is a frame, remove its shape"};
 }
 
 std::vector<rig::Capsule> capsules_of(const LinkBody& body) {
@@ -174,23 +190,28 @@ Result<RobotFit, Error> fit_robot(const FilePlace& urdf, const std::string& base
     for (const ShapedLink& link : robot.shapes.links) {
         LinkBody body{.link = link.name, .is_moving = link.is_moving, .source = source_of(link)};
         body.shapes = counted(body_shapes(link));
-        body.kept = static_cast<std::size_t>(std::ranges::count_if(
-            body_shapes(link), [](const LinkShape& shape) { return !is_fitted(shape); }));
+        body.kept =
+            static_cast<std::size_t>(std::ranges::count_if(body_shapes(link), [](const LinkShape& shape) {
+                return rig::is_body(shape) && !is_fitted(shape);
+            }));
         body.mesh = surface_of(link, meshes);
         if (auto fault = size_fault(body.mesh)) {
             fault->file = urdf.shown();
             fault->line = link.line;
             fault->key = "link " + link.name;
-            meshes.faults.push_back({*std::move(fault), "too large"});
+            const char* const kind = fault->code == ErrorCode::too_large ? "too large" : "too small";
+            meshes.faults.push_back({*std::move(fault), kind});
         }
         robot.links.push_back(std::move(body));
     }
     if (!meshes.faults.empty()) return unexpected(rig::one_error_of(std::move(meshes.faults)));
-    std::map<std::string, std::vector<rig::Capsule>> bodies;
+    std::map<std::string, rig::FittedBody> bodies;
     for (LinkBody& body : robot.links) {
+        rig::FittedBody& fitted = bodies[body.link];
+        fitted.is_of_visual = body.source == BodySource::visual;
         if (body.mesh.triangles.empty()) continue;
         body.fit = fit_capsules(body.mesh);
-        bodies[body.link] = capsules_of(body);
+        fitted.capsules = capsules_of(body);
     }
     const auto text = rig::read_urdf_text(urdf);
     if (!text) return unexpected(text.error());

@@ -15,7 +15,7 @@ namespace octoskin {
 
 /// What the body of a link is made of.
 enum class BodySource : std::uint8_t {
-    nothing,    ///< the link has no shape
+    nothing,    ///< the link has no shape; a box of no size is none
     collision,  ///< its <collision> elements
     visual,     ///< its <visual> elements: it moves, and has no <collision>
 };
@@ -39,8 +39,8 @@ struct RobotFit {
 
 /// Reads each mesh in a process with limits, and fits each link. `base_link`: empty for the root. A link that
 /// does not move and has no <collision> gets no body. Errors: those of read_link_shapes(); all meshes that
-/// are missing or cannot be read, in one error; too_large beyond 5 m. About a second for each link with a
-/// mesh.
+/// are missing or cannot be read, in one error; too_large beyond 5 m; out_of_range below 5 mm. About a second
+/// for each link with a mesh.
 [[nodiscard]] Result<RobotFit, Error> fit_robot(const FilePlace& urdf, const std::string& base_link,
                                                 const MeshSearch& search);
 

@@ -68,6 +68,31 @@ TEST(LinkShapes, refuse_a_place_or_a_size_that_is_no_number) {
     EXPECT_EQ(read_link_shapes(folder.write("arm.urdf", kArm), "none").error().code, ErrorCode::unknown_name);
 }
 
+TEST(LinkShapes, refuse_a_visual_that_cannot_be_read_where_the_body_is_made_of_it) {
+    const ScratchFolder folder;
+    const auto read = [&](const std::string& collision, const std::string& geometry) {
+        return read_link_shapes(
+            folder.write("arm.urdf",
+                         "<robot name=\"r\"><link name=\"b\"/><joint name=\"j\" type=\"revolute\"><parent "
+                         "link=\"b\"/><child link=\"l\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" "
+                         "velocity=\"1\"/></joint>\n<link name=\"l\">" +
+                             collision + "\n<visual><geometry>" + geometry +
+                             "</geometry></visual></link></robot>"),
+            "");
+    };
+    const std::string empty_box = "<collision><geometry><box size=\"0 0 0\"/></geometry></collision>";
+    for (const std::string bad :
+         {"<mesh filename=\"a.stl\" scale=\"nan 1 1\"/>", "<mesh/>", "<torus/>", ""}) {
+        for (const std::string& collision : {std::string(), empty_box}) {
+            const auto refused = read(collision, bad);
+            ASSERT_FALSE(refused) << bad;
+            EXPECT_EQ(refused.error().code, ErrorCode::bad_value) << bad;
+            EXPECT_EQ(refused.error().line, 3) << bad;
+        }
+        EXPECT_TRUE(read("<collision><geometry><sphere radius=\"0.1\"/></geometry></collision>", bad)) << bad;
+    }
+}
+
 TEST(LinkShapes, xacro_gets_the_command_that_expands_it) {
     const ScratchFolder folder;
     const auto file =
@@ -125,10 +150,10 @@ TEST(FittedUrdf, comes_back_as_the_capsules_that_were_written) {
             const Vector3d b(uniform(random), uniform(random), uniform(random));
             body.push_back({"upper", a, i == 0 ? a : b, 0.05 + 0.01 * i});
         }
-        const auto text = urdf_with_bodies("arm.urdf", kArm, {{"upper", body}});
+        const auto text = urdf_with_bodies("arm.urdf", kArm, {{"upper", {body}}});
         ASSERT_TRUE(text);
         EXPECT_EQ(text->find("a.stl"), std::string::npos);
-        EXPECT_EQ(text->find("a.dae"), std::string::npos);
+        EXPECT_NE(text->find("a.dae"), std::string::npos);  // a <visual>, with which the body is compared
         const auto read = read_capsules(folder.write("fitted.urdf", *text), {});
         ASSERT_TRUE(read) << read.error().message();
         // And the cylinder, the capsule and the tool's sphere, which stay.
@@ -145,6 +170,20 @@ TEST(FittedUrdf, comes_back_as_the_capsules_that_were_written) {
         // Fitted capsules reach beyond the link: only the tool's sphere is certain.
         EXPECT_EQ(read_inner_capsules(folder / "fitted.urdf")->size(), 1U);
     }
+}
+
+TEST(FittedUrdf, makes_a_collision_of_the_visuals_that_the_body_is_made_of) {
+    const ScratchFolder folder;
+    std::string text = kArm;
+    for (auto at = text.find("<collision>"); at < text.find("<visual>"); at = text.find("<collision>"))
+        text.erase(at, text.find("</collision>", at) + 12 - at);
+    const std::vector<Capsule> body{{"upper", {0, 0, 0.5}, {0, 0, 1}, 0.2}};
+    const auto fitted = urdf_with_bodies("arm.urdf", text, {{"upper", {body, true}}});
+    ASSERT_TRUE(fitted);
+    EXPECT_EQ(fitted->find("a.dae"), std::string::npos);
+    const auto read = read_capsules(folder.write("fitted.urdf", *fitted), {});
+    ASSERT_TRUE(read) << read.error().message();
+    EXPECT_EQ(read->size(), 3U);  // with the sphere, and that of the tool
 }
 
 }  // namespace

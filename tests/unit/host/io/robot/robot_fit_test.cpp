@@ -99,6 +99,41 @@ TEST(RobotFit, refuses_a_mesh_in_millimetres) {
     EXPECT_EQ(fit_robot(urdf, "", {}).error().code, ErrorCode::too_large);
 }
 
+TEST(RobotFit, refuses_a_mesh_that_is_scaled_twice_or_beyond_all_numbers) {
+    const testing_support::ScratchFolder folder;
+    folder.write("a.stl", testing_support::wedge_stl());
+    for (const auto& [scale, code] :
+         {std::pair{"1e-4", ErrorCode::out_of_range}, std::pair{"1e308", ErrorCode::too_large}}) {
+        const std::string three = std::string(scale) + " " + scale + " " + scale;
+        const auto urdf = folder.write(
+            "arm.urdf",
+            "<robot name=\"r\"><link name=\"l\"><collision><origin rpy=\"1 2 3\"/><geometry><mesh "
+            "filename=\"a.stl\" scale=\"" +
+                three + "\"/></geometry></collision></link></robot>");
+        const auto robot = fit_robot(urdf, "", {});
+        ASSERT_FALSE(robot) << scale;
+        EXPECT_EQ(robot.error().code, code) << scale;
+        EXPECT_EQ(robot.error().key, "link l") << scale;
+    }
+}
+
+TEST(RobotFit, a_box_of_no_size_is_no_body_and_leaves_the_visual_to_be_compared) {
+    const testing_support::ScratchFolder folder;
+    folder.write("a.stl", testing_support::wedge_stl());
+    const std::string empty = "<collision><geometry><box size=\"0 0 0\"/></geometry></collision>";
+    const auto urdf = folder.write("arm.urdf", "<robot name=\"r\">" + link("base", "") +
+                                                   link("upper", empty + mesh("visual", "a.stl")) +
+                                                   link("frame", empty) + joint("base", "upper", "revolute") +
+                                                   joint("upper", "frame", "fixed") + "</robot>");
+    const auto robot = fit_robot(urdf, "", {});
+    ASSERT_TRUE(robot) << robot.error().message();
+    EXPECT_EQ(robot->links[1].source, BodySource::visual);
+    EXPECT_EQ(robot->links[2].source, BodySource::nothing);
+    const auto capsules = rig::read_capsules(folder.write("fitted.urdf", robot->urdf), {});
+    ASSERT_TRUE(capsules) << capsules.error().message();
+    EXPECT_EQ(capsules->size(), robot->links[1].fit->capsules.size());
+}
+
 TEST(RobotFit, fits_a_box_and_leaves_cylinders_as_they_are) {
     const testing_support::ScratchFolder folder;
     const auto urdf =
