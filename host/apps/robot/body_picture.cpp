@@ -12,7 +12,6 @@ namespace {
 constexpr double kSide_px = 300.0;
 constexpr double kHead_px = 26.0;
 constexpr double kEdge_px = 8.0;
-constexpr std::size_t kTrianglesMax = 3000;
 
 /// The axes that a view shows to the right and upwards.
 struct View {
@@ -60,9 +59,8 @@ class Panel {
           y_(y + 0.5 * kSide_px) {}
 
     [[nodiscard]] std::string mesh(const SurfaceMesh& mesh) const {
-        const std::size_t step = 1 + mesh.triangles.size() / kTrianglesMax;
         std::string path;
-        for (std::size_t i = 0; i < mesh.triangles.size(); i += step) {
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             const auto [a, b, c] = mesh.corners(i);
             path += fmt::format("M{}L{}L{}Z", at(a), at(b), at(c));
         }

@@ -85,7 +85,7 @@ ordered_json robot_json(const RobotFit& robot) {
                            {"body", name_of(link.source)},
                            {"shapes", link.shapes},
                            {"kept", link.kept},
-                           {"triangles", link.mesh.triangles.size()},
+                           {"triangles", link.triangles},
                            {"capsules", link.fit ? link.fit->capsules.size() : 0}};
         const FitMeasures measures = link.fit ? link.fit->measures : FitMeasures{};
         const auto measured = [&](double value) { return link.fit ? ordered_json(value) : ordered_json(); };

@@ -29,10 +29,10 @@ std::size_t longest_edge(const Triangle& piece, double& length_m) {
 }
 
 /// Calls `on_uncovered` with each piece that is in no capsule and too short to be cut. It may enlarge
-/// capsules; returning false ends the walk.
+/// capsules; returning false ends the walk, and so does `work`.
 template <typename OnUncovered>
 void walk(const SurfaceMesh& mesh, std::span<const PosedCapsule> capsules, double grown_m, double edge_m,
-          OnUncovered&& on_uncovered) {
+          FitWork* work, OnUncovered&& on_uncovered) {
     std::size_t last = 0;          // neighbouring pieces are mostly in the same capsule
     std::vector<Triangle> pieces;  // at most one for each halving of an edge
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -40,6 +40,7 @@ void walk(const SurfaceMesh& mesh, std::span<const PosedCapsule> capsules, doubl
         while (!pieces.empty()) {
             const Triangle piece = pieces.back();
             pieces.pop_back();
+            if (work != nullptr && !work->spend(1 + capsules.size() / 4)) return;
             const auto holds = [&](const PosedCapsule& capsule) {
                 return lacking_m(capsule, piece) <= grown_m;
             };
@@ -72,7 +73,7 @@ void walk(const SurfaceMesh& mesh, std::span<const PosedCapsule> capsules, doubl
 std::optional<Triangle> first_uncovered(const SurfaceMesh& mesh, std::span<const PosedCapsule> capsules,
                                         double grown_m, double edge_m) {
     std::optional<Triangle> found;
-    walk(mesh, capsules, grown_m, edge_m, [&](const Triangle& piece) {
+    walk(mesh, capsules, grown_m, edge_m, nullptr, [&](const Triangle& piece) {
         found = piece;
         return false;
     });
@@ -80,10 +81,10 @@ std::optional<Triangle> first_uncovered(const SurfaceMesh& mesh, std::span<const
 }
 
 void grow_to_cover(const SurfaceMesh& mesh, std::vector<PosedCapsule>& capsules, double grown_m,
-                   double edge_m) {
+                   double edge_m, FitWork* work) {
     assert(!capsules.empty());
     constexpr double kRounding_m = 1e-9;
-    walk(mesh, capsules, grown_m, edge_m, [&](const Triangle& piece) {
+    walk(mesh, capsules, grown_m, edge_m, work, [&](const Triangle& piece) {
         const auto nearest = std::ranges::min_element(
             capsules, {}, [&](const PosedCapsule& capsule) { return lacking_m(capsule, piece); });
         nearest->radius_m += std::max(0.0, lacking_m(*nearest, piece) - grown_m) + kRounding_m;

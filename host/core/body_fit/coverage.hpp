@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "host/core/body_fit/fit_work.hpp"
 #include "host/core/body_fit/surface_mesh.hpp"
 #include "host/core/kinematics/capsule.hpp"
 
@@ -18,8 +19,8 @@ namespace octoskin {
                                                       double edge_m);
 
 /// Enlarges radii until first_uncovered() finds none: a piece with edges of at most `edge_m` that no capsule
-/// contains enlarges the one that needs the least.
+/// contains enlarges the one that needs the least. `work` ends it early.
 void grow_to_cover(const SurfaceMesh& mesh, std::vector<PosedCapsule>& capsules, double grown_m,
-                   double edge_m);
+                   double edge_m, FitWork* work = nullptr);
 
 }  // namespace octoskin

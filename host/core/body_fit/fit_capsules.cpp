@@ -36,23 +36,26 @@ class LinkFit {
     explicit LinkFit(const SurfaceMesh& mesh)
         : mesh_(mesh),
           diagonal_m_(diagonal_m(mesh)),
-          distance_(mesh),
+          distance_(mesh, &work_),
           hull_(ConvexHull::around(mesh.vertices)),
           field_(mesh, distance_, hull_ ? &*hull_ : nullptr),
-          search_(spread_points(mesh, std::max(kSpacingMin_m, diagonal_m_ / kPointsAcross)), field_) {}
+          search_(points_of(mesh), field_) {}
 
-    BodyFit run() {
+    std::optional<BodyFit> run() {
+        if (work_.is_spent()) return std::nullopt;
         split_up_to_few();
         try_groups();
         for (const std::size_t rank : {0U, 1U, 2U, 0U}) search_.exchange(rank);
         BodyFit best = finished();
         for (const std::size_t count : kManyCounts) {
-            if (badness(best.measures) <= 1.0) break;
+            if (work_.is_spent() || badness(best.measures) <= 1.0) break;
             search_.regroup(count);
             search_.refine(4, 12);
             BodyFit next = finished();
             if (badness(next.measures) < badness(best.measures)) best = std::move(next);
         }
+        if (work_.is_spent()) return std::nullopt;
+        best.work = work_.used();
         return best;
     }
 
@@ -60,6 +63,15 @@ class LinkFit {
     static constexpr std::array<std::size_t, 4> kManyCounts{12, 16, 24, kCapsulesMost};
     static constexpr double kSpacingMin_m = 0.0015;
     static constexpr double kPointsAcross = 60.0;
+
+    /// The search takes time for each point and capsule; a surface has about 10,000 points.
+    std::vector<Eigen::Vector3d> points_of(const SurfaceMesh& mesh) {
+        constexpr std::size_t kPointsMost = 60'000;
+        auto points = spread_points(mesh, std::max(kSpacingMin_m, diagonal_m_ / kPointsAcross), &work_);
+        if (points.size() > kPointsMost) work_.spend_all();
+        if (work_.is_spent()) points.resize(1);
+        return points;
+    }
 
     void split_up_to_few() {
         while (search_.capsules().size() < kCapsulesFew) {
@@ -87,17 +99,19 @@ class LinkFit {
         search_.set_capsules(std::move(best));
     }
 
-    [[nodiscard]] BodyFit finished() const {
+    [[nodiscard]] BodyFit finished() {
         constexpr double kEdgeMin_m = 0.001;
         constexpr double kEdgesAcross = 1000.0;
-        BodyFit fit{search_.capsules(), {}};
-        grow_to_cover(mesh_, fit.capsules, kCoveredWithin_m,
-                      std::max(kEdgeMin_m, diagonal_m_ / kEdgesAcross));
+        BodyFit fit{.capsules = search_.capsules(), .measures = {}};
+        grow_to_cover(mesh_, fit.capsules, kCoveredWithin_m, std::max(kEdgeMin_m, diagonal_m_ / kEdgesAcross),
+                      &work_);
+        if (work_.is_spent()) return fit;
         fit.measures = measure(fit.capsules, distance_, hull_ ? &*hull_ : nullptr);
         return fit;
     }
 
     const SurfaceMesh& mesh_;
+    FitWork work_;
     double diagonal_m_;
     MeshDistance distance_;
     std::optional<ConvexHull> hull_;
@@ -107,7 +121,7 @@ class LinkFit {
 
 }  // namespace
 
-BodyFit fit_capsules(const SurfaceMesh& mesh) {
+std::optional<BodyFit> fit_capsules(const SurfaceMesh& mesh) {
     assert(!mesh.triangles.empty());
     return LinkFit(mesh).run();
 }

@@ -12,6 +12,8 @@ namespace octoskin {
 namespace {
 
 constexpr double kSpacing_m = 0.004;
+constexpr double kPointsMost =
+    60'000.0;  ///< of a capsule: the spacing is larger on one of over a square metre
 constexpr double kRows = 8'000.0;
 constexpr double kVoxelsAround = 60'000.0;
 constexpr double kMeasuredUpTo_m = 1.0;
@@ -151,7 +153,8 @@ void for_each_surface_point(const PosedCapsule& capsule, Use&& use) {
     // A ball cut at its equator and moved apart by the axis: equal areas along the height (Archimedes).
     const double height_m = length_m + 2.0 * capsule.radius_m;
     const double area_m2 = 2.0 * std::numbers::pi * capsule.radius_m * height_m;
-    const auto count = static_cast<int>(std::ceil(area_m2 / (kSpacing_m * kSpacing_m)));
+    const auto count =
+        static_cast<int>(std::ceil(std::min(kPointsMost, area_m2 / (kSpacing_m * kSpacing_m))));
     GoldenTurn turn;
     for (int i = 0; i < count; ++i, turn.advance()) {
         const double h = (i + 0.5) / count * height_m - capsule.radius_m;

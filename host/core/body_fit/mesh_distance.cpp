@@ -40,7 +40,7 @@ double distance_to_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d&
     return (ap - vb / sum * ab - vc / sum * ac).norm();
 }
 
-MeshDistance::MeshDistance(const SurfaceMesh& mesh) : mesh_(mesh) {
+MeshDistance::MeshDistance(const SurfaceMesh& mesh, FitWork* work) : mesh_(mesh), work_(work) {
     const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
     order_.resize(count);
     std::vector<Eigen::Vector3d> centres(count);
@@ -79,11 +79,14 @@ MeshDistance::MeshDistance(const SurfaceMesh& mesh) : mesh_(mesh) {
 
 double MeshDistance::operator()(const Eigen::Vector3d& point, double max_m) const {
     double best = max_m;
+    if (work_ != nullptr && work_->is_spent()) return best;
+    std::uint64_t steps = 0;
     std::array<std::uint32_t, 64> stack{};  // halved in each level: at most 32 levels
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
         const Node& node = nodes_[stack[--depth]];
+        steps += 1 + node.count;
         if (node.box.squaredExteriorDistance(point) >= best * best) continue;
         if (node.count > 0) {
             for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
@@ -97,6 +100,7 @@ double MeshDistance::operator()(const Eigen::Vector3d& point, double max_m) cons
         stack[depth++] = node.first + (is_left_nearer ? 1 : 0);
         stack[depth++] = node.first + (is_left_nearer ? 0 : 1);
     }
+    if (work_ != nullptr) work_->spend(steps);
     return best;
 }
 

@@ -30,13 +30,16 @@ class Cubes {
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> spread_points(const SurfaceMesh& mesh, double spacing_m) {
+std::vector<Eigen::Vector3d> spread_points(const SurfaceMesh& mesh, double spacing_m, FitWork* work) {
     Cubes cubes(spacing_m);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto [a, b, c] = mesh.corners(i);
         for (const Eigen::Vector3d& corner : {a, b, c}) cubes.add(corner);
         const double longest_m = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
         const int steps = std::max(1, static_cast<int>(std::ceil(longest_m / spacing_m)));
+        if (work != nullptr &&
+            !work->spend(static_cast<std::uint64_t>(steps + 2) * static_cast<std::uint64_t>(steps + 1) / 2))
+            break;
         for (int along_b = 0; along_b <= steps; ++along_b) {
             for (int along_c = 0; along_b + along_c <= steps; ++along_c)
                 cubes.add(a + static_cast<double>(along_b) / steps * (b - a) +

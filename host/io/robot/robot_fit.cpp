@@ -21,6 +21,8 @@ using rig::ShapeKind;
 
 constexpr double kReachMax_m = 5.0;
 constexpr double kExtentMin_m = 0.005;
+constexpr std::size_t kLinkTrianglesMax = 2'000'000;
+constexpr std::size_t kRobotTrianglesMax = 8'000'000;
 
 bool is_fitted(const LinkShape& shape) {
     return rig::is_body(shape) && (shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::box);
@@ -71,7 +73,12 @@ BodySource source_of(const ShapedLink& link) {
     return BodySource::nothing;
 }
 
-/// Reads each file once.
+/// The shapes that a link's body is made of.
+const std::vector<LinkShape>& shapes_of(const ShapedLink& link) {
+    return source_of(link) == BodySource::visual ? link.visuals : link.collisions;
+}
+
+/// Reads a file once for a link: all meshes of a robot may not fit in memory.
 class Meshes {
   public:
     Meshes(const FilePlace& urdf, const MeshSearch& search) : urdf_(urdf.shown()), places_(urdf_, search) {}
@@ -93,6 +100,8 @@ class Meshes {
                     .first->second;
     }
 
+    void forget() { meshes_.clear(); }
+
     std::vector<rig::ElementFault> faults;
 
   private:
@@ -111,26 +120,40 @@ class Meshes {
     std::map<std::string, bool> failed_;
 };
 
-/// The surface of the link's meshes and boxes.
-SurfaceMesh surface_of(const ShapedLink& link, Meshes& meshes) {
+Error too_many(const std::string& of, std::size_t most, std::size_t found) {
+    return {.code = ErrorCode::too_large,
+            .what = fmt::format("expected at most {} triangles of {}", most, of),
+            .value = fmt::format("{} or more", found),
+            .remedy = "export the meshes with fewer triangles"};
+}
+
+/// The surface of the link's meshes and boxes, in the frame of `T_link_surface`. Error (too_large): too many
+/// triangles, of the link or of the robot with `before`.
+Result<SurfaceMesh, Error> surface_of(const ShapedLink& link, const Eigen::Isometry3d& T_link_surface,
+                                      std::size_t before, Meshes& meshes) {
     SurfaceMesh surface;
-    for (const LinkShape& shape : body_shapes(link)) {
-        const Eigen::Affine3d T_link_shape(shape.T_link_shape);
-        if (!rig::is_body(shape)) continue;
-        if (shape.kind == ShapeKind::box) append(box_surface(shape.size), T_link_shape, surface);
+    for (const LinkShape& shape : shapes_of(link)) {
+        if (!is_fitted(shape)) continue;
+        const Eigen::Affine3d T_surface_shape(T_link_surface.inverse() * shape.T_link_shape);
+        if (shape.kind == ShapeKind::box) append(box_surface(shape.size), T_surface_shape, surface);
         if (shape.kind != ShapeKind::mesh) continue;
-        if (const SurfaceMesh* const mesh = meshes.find(shape, link.name))
-            append(*mesh, T_link_shape * Eigen::Scaling(shape.size), surface);
+        const SurfaceMesh* const mesh = meshes.find(shape, link.name);
+        if (mesh == nullptr) continue;
+        const std::size_t count = surface.triangles.size() + mesh->triangles.size();
+        if (count > kLinkTrianglesMax) return unexpected(too_many("a link", kLinkTrianglesMax, count));
+        if (before + count > kRobotTrianglesMax)
+            return unexpected(too_many("all links together", kRobotTrianglesMax, before + count));
+        append(*mesh, T_surface_shape * Eigen::Scaling(shape.size), surface);
     }
     return surface;
 }
 
-std::optional<Error> size_fault(const SurfaceMesh& surface) {
+std::optional<Error> size_fault(const SurfaceMesh& surface, const Eigen::Isometry3d& T_link_surface) {
     if (surface.vertices.empty()) return std::nullopt;
     double farthest_m = 0.0;
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& at : surface.vertices) {
-        const double distance_m = at.norm();
+        const double distance_m = (T_link_surface * at).norm();
         if (!(distance_m <= farthest_m)) farthest_m = distance_m;
         if (!(farthest_m <= kReachMax_m)) break;  // not a number, too
         box.extend(at);
@@ -149,6 +172,104 @@ std::optional<Error> size_fault(const SurfaceMesh& surface) {
         .value = fmt::format("{:.4g} mm", 1e3 * extent_m),
         .remedy = "is it scaled twice? If the link is a frame, remove its shape"};
 }
+
+/// Evenly spread triangles of a surface.
+SurfaceMesh part_of(const SurfaceMesh& surface, const Eigen::Isometry3d& T_link_surface) {
+    SurfaceMesh part;
+    const std::size_t step = 1 + (surface.triangles.size() - 1) / kDrawnTrianglesMax;
+    for (std::size_t i = 0; i < surface.triangles.size(); i += step) {
+        const auto first = static_cast<int>(part.vertices.size());
+        for (const Eigen::Vector3d& corner : surface.corners(i))
+            part.vertices.push_back(T_link_surface * corner);
+        part.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return part;
+}
+
+/// The place of the box that alone is fitted, so that the same box elsewhere has the same fit.
+std::optional<LinkShape> lone_box(const ShapedLink& link) {
+    const auto& shapes = shapes_of(link);
+    const auto first = std::ranges::find_if(shapes, is_fitted);
+    if (first == shapes.end() || first->kind != ShapeKind::box ||
+        std::ranges::count_if(shapes, is_fitted) > 1)
+        return std::nullopt;
+    return *first;
+}
+
+BodyFit moved(BodyFit fit, const Eigen::Isometry3d& T_link_surface) {
+    for (PosedCapsule& capsule : fit.capsules) {
+        capsule.p_a = T_link_surface * capsule.p_a;
+        capsule.p_b = T_link_surface * capsule.p_b;
+    }
+    return fit;
+}
+
+/// Fits one link after the other.
+class Fitting {
+  public:
+    Fitting(const FilePlace& urdf, const MeshSearch& search) : urdf_(urdf.shown()), meshes_(urdf, search) {}
+
+    LinkBody fit(const ShapedLink& link) {
+        LinkBody body{.link = link.name, .is_moving = link.is_moving, .source = source_of(link)};
+        body.shapes = counted(shapes_of(link));
+        body.kept =
+            static_cast<std::size_t>(std::ranges::count_if(shapes_of(link), [](const LinkShape& shape) {
+                return rig::is_body(shape) && !is_fitted(shape);
+            }));
+        meshes_.forget();
+        const auto box = lone_box(link);
+        const Eigen::Isometry3d T_link_surface = box ? box->T_link_shape : Eigen::Isometry3d::Identity();
+        const auto surface = surface_of(link, T_link_surface, triangles_, meshes_);
+        if (!surface) {
+            fail(link, surface.error(), "too large");
+            return body;
+        }
+        triangles_ += surface->triangles.size();
+        if (auto fault = size_fault(*surface, T_link_surface)) {
+            const char* const kind = fault->code == ErrorCode::too_large ? "too large" : "too small";
+            fail(link, *std::move(fault), kind);
+            return body;
+        }
+        // A robot that is refused is fitted no further, but all of its faults are named.
+        if (surface->triangles.empty() || !faults().empty()) return body;
+        body.triangles = surface->triangles.size();
+        body.mesh = part_of(*surface, T_link_surface);
+        const auto fit = box ? fit_of_box(box->size, *surface) : fit_capsules(*surface);
+        if (!fit) {
+            fail(link,
+                 {.code = ErrorCode::too_large,
+                  .what = "expected a surface that capsules can be fitted to",
+                  .value = fmt::format("{} triangles, too many of them large and across each other",
+                                       body.triangles),
+                  .remedy = "export the outer surface alone"},
+                 "too much work");
+            return body;
+        }
+        body.fit = moved(*fit, T_link_surface);
+        return body;
+    }
+
+    std::vector<rig::ElementFault>& faults() { return meshes_.faults; }
+
+  private:
+    void fail(const ShapedLink& link, Error error, const char* kind) {
+        error.file = urdf_;
+        error.line = link.line;
+        error.key = "link " + link.name;
+        faults().push_back({std::move(error), kind});
+    }
+
+    std::optional<BodyFit> fit_of_box(const Eigen::Vector3d& size, const SurfaceMesh& surface) {
+        const std::array key{size.x(), size.y(), size.z()};
+        if (const auto known = boxes_.find(key); known != boxes_.end()) return known->second;
+        return boxes_.emplace(key, fit_capsules(surface)).first->second;
+    }
+
+    std::filesystem::path urdf_;
+    Meshes meshes_;
+    std::size_t triangles_ = 0;  ///< of all links so far
+    std::map<std::array<double, 3>, std::optional<BodyFit>> boxes_;
+};
 
 std::vector<rig::Capsule> capsules_of(const LinkBody& body) {
     std::vector<rig::Capsule> capsules;
@@ -171,47 +292,19 @@ const char* name_of(BodySource source) noexcept {
     return "nothing";
 }
 
-const std::vector<LinkShape>& body_shapes(const ShapedLink& link) {
-    return source_of(link) == BodySource::visual ? link.visuals : link.collisions;
-}
-
-bool needs_fit(const rig::RobotShapes& shapes) {
-    return std::ranges::any_of(shapes.links, [](const ShapedLink& link) {
-        return std::ranges::find(link.collisions, ShapeKind::mesh, &LinkShape::kind) != link.collisions.end();
-    });
-}
-
 Result<RobotFit, Error> fit_robot(const FilePlace& urdf, const std::string& base_link,
                                   const MeshSearch& search) {
     auto shapes = rig::read_link_shapes(urdf, base_link);
     if (!shapes) return unexpected(shapes.error());
     RobotFit robot{.shapes = *std::move(shapes), .links = {}, .urdf = {}};
-    Meshes meshes(urdf, search);
-    for (const ShapedLink& link : robot.shapes.links) {
-        LinkBody body{.link = link.name, .is_moving = link.is_moving, .source = source_of(link)};
-        body.shapes = counted(body_shapes(link));
-        body.kept =
-            static_cast<std::size_t>(std::ranges::count_if(body_shapes(link), [](const LinkShape& shape) {
-                return rig::is_body(shape) && !is_fitted(shape);
-            }));
-        body.mesh = surface_of(link, meshes);
-        if (auto fault = size_fault(body.mesh)) {
-            fault->file = urdf.shown();
-            fault->line = link.line;
-            fault->key = "link " + link.name;
-            const char* const kind = fault->code == ErrorCode::too_large ? "too large" : "too small";
-            meshes.faults.push_back({*std::move(fault), kind});
-        }
-        robot.links.push_back(std::move(body));
-    }
-    if (!meshes.faults.empty()) return unexpected(rig::one_error_of(std::move(meshes.faults)));
+    Fitting fitting(urdf, search);
+    for (const ShapedLink& link : robot.shapes.links) robot.links.push_back(fitting.fit(link));
+    if (!fitting.faults().empty()) return unexpected(rig::one_error_of(std::move(fitting.faults())));
     std::map<std::string, rig::FittedBody> bodies;
-    for (LinkBody& body : robot.links) {
+    for (const LinkBody& body : robot.links) {
         rig::FittedBody& fitted = bodies[body.link];
         fitted.is_of_visual = body.source == BodySource::visual;
-        if (body.mesh.triangles.empty()) continue;
-        body.fit = fit_capsules(body.mesh);
-        fitted.capsules = capsules_of(body);
+        if (body.fit) fitted.capsules = capsules_of(body);
     }
     const auto text = rig::read_urdf_text(urdf);
     if (!text) return unexpected(text.error());

@@ -21,14 +21,17 @@ enum class BodySource : std::uint8_t {
 };
 [[nodiscard]] const char* name_of(BodySource source) noexcept;
 
+inline constexpr std::size_t kDrawnTrianglesMax = 3000;
+
 struct LinkBody {
     std::string link;
     bool is_moving = false;
     BodySource source = BodySource::nothing;
     std::string shapes = {};          ///< "2 meshes, 1 cylinder"
     std::size_t kept = 0;             ///< cylinders, spheres and capsules, which stay as they are
-    SurfaceMesh mesh = {};            ///< meshes and boxes, link frame
-    std::optional<BodyFit> fit = {};  ///< to `mesh`; none without meshes and boxes
+    std::size_t triangles = 0;        ///< of meshes and boxes
+    SurfaceMesh mesh = {};            ///< some of them, at most kDrawnTrianglesMax, link frame
+    std::optional<BodyFit> fit = {};  ///< to all of them; none without meshes and boxes
 };
 
 struct RobotFit {
@@ -39,15 +42,10 @@ struct RobotFit {
 
 /// Reads each mesh in a process with limits, and fits each link. `base_link`: empty for the root. A link that
 /// does not move and has no <collision> gets no body. Errors: those of read_link_shapes(); all meshes that
-/// are missing or cannot be read, in one error; too_large beyond 5 m; out_of_range below 5 mm. About a second
-/// for each link with a mesh.
+/// are missing or cannot be read, in one error; too_large beyond 5 m, beyond two million triangles of a link
+/// or eight of the robot, or what fit_capsules() gives up; out_of_range below 5 mm. About a second for each
+/// link with a mesh.
 [[nodiscard]] Result<RobotFit, Error> fit_robot(const FilePlace& urdf, const std::string& base_link,
                                                 const MeshSearch& search);
-
-/// The shapes that a link's body is made of: its <collision>s; if it moves and has none, its <visual>s.
-[[nodiscard]] const std::vector<rig::LinkShape>& body_shapes(const rig::ShapedLink& link);
-
-/// Whether a <collision> at or below the base link is a mesh, which is no body without a fit.
-[[nodiscard]] bool needs_fit(const rig::RobotShapes& shapes);
 
 }  // namespace octoskin

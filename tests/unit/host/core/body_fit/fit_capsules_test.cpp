@@ -5,6 +5,7 @@
 #include <random>
 
 #include "host/core/body_fit/coverage.hpp"
+#include "host/core/body_fit/fit_work.hpp"
 #include "tests/unit/host/core/body_fit/shapes.hpp"
 
 namespace octoskin {
@@ -36,7 +37,7 @@ double farthest_outside_m(const SurfaceMesh& mesh, const std::vector<PosedCapsul
 }
 
 TEST(FitCapsules, makes_one_capsule_of_a_capsule) {
-    const BodyFit fit = fit_capsules(capsule_mesh(0.3, 0.06));
+    const BodyFit fit = fit_capsules(capsule_mesh(0.3, 0.06)).value();
     ASSERT_EQ(fit.capsules.size(), 1U);
     EXPECT_NEAR(fit.capsules[0].radius_m, 0.06, 0.003);
     EXPECT_LT(*fit.measures.excess_ratio, 0.06);
@@ -46,7 +47,7 @@ TEST(FitCapsules, makes_one_capsule_of_a_capsule) {
 TEST(FitCapsules, covers_each_shape_and_keeps_its_limits) {
     const std::vector<SurfaceMesh> meshes{box_mesh({0.3, 0.1, 0.05}), angle_mesh()};
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const BodyFit fit = fit_capsules(meshes[i]);
+        const BodyFit fit = fit_capsules(meshes[i]).value();
         EXPECT_FALSE(first_uncovered(meshes[i], fit.capsules, kCoveredWithin_m, kFitEdge_m)) << "shape " << i;
         EXPECT_LE(farthest_outside_m(meshes[i], fit.capsules), kCoveredWithin_m) << "shape " << i;
         EXPECT_LE(fit.capsules.size(), kCapsulesMost) << "shape " << i;
@@ -55,10 +56,21 @@ TEST(FitCapsules, covers_each_shape_and_keeps_its_limits) {
     }
 }
 
+TEST(FitCapsules, needs_little_of_its_work_for_a_link_and_gives_up_large_triangles_that_cross) {
+    EXPECT_LT(fit_capsules(angle_mesh()).value().work, FitWork::kMost / 4);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> uniform(-2.8, 2.8);
+    SurfaceMesh mesh;
+    for (int i = 0; i < 60'000; ++i)
+        mesh.vertices.emplace_back(uniform(random), uniform(random), uniform(random));
+    for (int i = 0; i < 60'000; i += 3) mesh.triangles.emplace_back(i, i + 1, i + 2);
+    EXPECT_FALSE(fit_capsules(mesh));
+}
+
 TEST(FitCapsules, gives_the_same_numbers_each_time) {
     const SurfaceMesh mesh = angle_mesh();
-    const BodyFit first = fit_capsules(mesh);
-    const BodyFit second = fit_capsules(mesh);
+    const BodyFit first = fit_capsules(mesh).value();
+    const BodyFit second = fit_capsules(mesh).value();
     ASSERT_EQ(first.capsules.size(), second.capsules.size());
     for (std::size_t i = 0; i < first.capsules.size(); ++i) {
         EXPECT_EQ(first.capsules[i].p_a, second.capsules[i].p_a);
@@ -72,7 +84,7 @@ TEST(FitCapsules, takes_a_flat_piece_a_needle_and_a_triangle_without_area) {
                                           {{{0, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}}, {{0, 1, 2}}},
                                           {{{0, 0, 0.3}}, {{0, 0, 0}}}};
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const BodyFit fit = fit_capsules(meshes[i]);
+        const BodyFit fit = fit_capsules(meshes[i]).value();
         EXPECT_FALSE(first_uncovered(meshes[i], fit.capsules, kCoveredWithin_m, kFitEdge_m)) << "shape " << i;
         EXPECT_LE(fit.measures.protrusion_max_m, 0.050) << "shape " << i;
     }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -69,8 +71,6 @@ TEST(RobotFit, takes_collisions_and_the_visual_of_a_moving_link_without_one) {
         EXPECT_EQ(body.size(), robot->links[i].fit->capsules.size() + robot->links[i].kept);
         EXPECT_FALSE(first_uncovered(robot->links[i].mesh, body, kCoveredWithin_m, kEdge_m));
     }
-    EXPECT_FALSE(needs_fit(*rig::read_link_shapes(alone, "")));
-    EXPECT_TRUE(needs_fit(robot->shapes));
 }
 
 TEST(RobotFit, names_all_meshes_that_are_missing_in_one_error) {
@@ -144,8 +144,51 @@ TEST(RobotFit, fits_a_box_and_leaves_cylinders_as_they_are) {
     const auto robot = fit_robot(urdf, "l", {});
     ASSERT_TRUE(robot) << robot.error().message();
     EXPECT_EQ(robot->links[0].kept, 1U);
-    EXPECT_EQ(robot->links[0].mesh.triangles.size(), 12U);
+    EXPECT_EQ(robot->links[0].triangles, 12U);
     EXPECT_TRUE(robot->links[0].fit);
+}
+
+TEST(RobotFit, refuses_more_than_two_million_triangles_of_a_link_by_name) {
+    const testing_support::ScratchFolder folder;
+    std::string stl(80, '\0');
+    const std::uint32_t count = 1'000'001;
+    stl.append(reinterpret_cast<const char*>(&count), 4);
+    const std::array<float, 12> triangle{0, 0, 1, 0, 0, 0, 0.1F, 0, 0, 0, 0.1F, 0};
+    std::string record(reinterpret_cast<const char*>(triangle.data()), 48);
+    record += std::string(2, '\0');
+    for (std::uint32_t i = 0; i < count; ++i) stl += record;
+    folder.write("a.stl", stl);
+    const auto urdf = folder.write(
+        "arm.urdf", "<robot name=\"r\">" +
+                        link("l", mesh("collision", "a.stl") + mesh("collision", "a.stl")) + "</robot>");
+    const auto robot = fit_robot(urdf, "", {});
+    ASSERT_FALSE(robot);
+    EXPECT_EQ(robot.error().code, ErrorCode::too_large);
+    EXPECT_EQ(robot.error().key, "link l");
+    EXPECT_EQ(robot.error().value, "2000002 or more");
+}
+
+TEST(RobotFit, gives_the_same_box_elsewhere_the_same_fit) {
+    const testing_support::ScratchFolder folder;
+    const auto box = [](const std::string& origin) {
+        return "<collision>" + origin + "<geometry><box size=\"0.1 0.1 0.3\"/></geometry></collision>";
+    };
+    const auto urdf =
+        folder.write("arm.urdf", "<robot name=\"r\">" + link("base", box("")) +
+                                     link("upper", box("<origin xyz=\"0 0 1\" rpy=\"1 0 0\"/>")) +
+                                     joint("base", "upper", "revolute") + "</robot>");
+    const auto robot = fit_robot(urdf, "", {});
+    ASSERT_TRUE(robot) << robot.error().message();
+    ASSERT_EQ(robot->links[0].fit->capsules.size(), robot->links[1].fit->capsules.size());
+    const Eigen::Isometry3d T_upper_box =
+        Eigen::Translation3d(0, 0, 1) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX());
+    for (std::size_t i = 0; i < robot->links[0].fit->capsules.size(); ++i) {
+        const PosedCapsule& first = robot->links[0].fit->capsules[i];
+        const PosedCapsule& second = robot->links[1].fit->capsules[i];
+        EXPECT_LT((T_upper_box * first.p_a - second.p_a).norm(), 1e-12);
+        EXPECT_LT((T_upper_box * first.p_b - second.p_b).norm(), 1e-12);
+        EXPECT_EQ(first.radius_m, second.radius_m);
+    }
 }
 
 }  // namespace
