@@ -72,10 +72,11 @@ MeshSearch mesh_search(std::vector<PackagePath> packages) {
     return {std::move(packages), environment("ROS_PACKAGE_PATH"), environment("AMENT_PREFIX_PATH")};
 }
 
-MeshPlaces::MeshPlaces(const fs::path& urdf, MeshSearch search)
-    : urdf_folder_(fs::absolute(urdf).lexically_normal().parent_path()),
+MeshPlaces::MeshPlaces(const FilePlace& urdf, MeshSearch search)
+    : urdf_folder_(fs::absolute(urdf.shown()).lexically_normal().parent_path()),
       root_(urdf_folder_.parent_path()),
       search_(std::move(search)) {
+    if (urdf.folder() != nullptr) recording_ = *urdf.folder();
     std::error_code ignored;
     for (const fs::path& folder : folders_above(urdf_folder_)) {
         if (!fs::exists(folder / "package.xml", ignored)) continue;
@@ -85,30 +86,61 @@ MeshPlaces::MeshPlaces(const fs::path& urdf, MeshSearch search)
     if (!root_.has_relative_path()) root_ = urdf_folder_;
 }
 
-std::vector<fs::path> MeshPlaces::folders_of(const std::string& package) const {
-    std::vector<fs::path> folders;
+std::vector<MeshPlaces::PackageFolder> MeshPlaces::folders_of(const std::string& package) const {
+    std::vector<PackageFolder> folders;
     std::error_code ignored;
-    const auto add = [&](const fs::path& folder) {
-        const fs::path absolute = fs::absolute(folder).lexically_normal();
-        if (fs::is_directory(absolute, ignored) && std::ranges::find(folders, absolute) == folders.end())
-            folders.push_back(absolute);
-    };
-    const auto add_in_or_at = [&](fs::path folder) {
-        if (!folder.has_filename()) folder = folder.parent_path();
-        add(folder / package);
-        if (folder.filename() == package) add(folder);
+    const auto add = [&](const fs::path& folder, const fs::path& below = {}) {
+        const PackageFolder found{fs::absolute(folder).lexically_normal(), below};
+        if (fs::is_directory(found.folder / below, ignored) &&
+            std::ranges::find(folders, found) == folders.end())
+            folders.push_back(found);
     };
     for (const PackagePath& given : search_.packages)
         if (given.name == package) add(given.folder);
-    for (const fs::path& folder : split(search_.ros_package_path)) add_in_or_at(folder);
+    // The user names these folders; links to packages are usual in them.
+    for (fs::path folder : split(search_.ros_package_path)) {
+        if (!folder.has_filename()) folder = folder.parent_path();
+        add(folder / package);
+        if (folder.filename() == package) add(folder);
+    }
     for (const fs::path& prefix : split(search_.ament_prefix_path)) add(prefix / "share" / package);
-    for (const fs::path& folder : folders_above(urdf_folder_)) add_in_or_at(folder);
+    const auto above = folders_above(urdf_folder_);
+    for (const fs::path& folder : above) {
+        const fs::path named = folder / package;
+        // The URDF is below many folders, of which few are packages.
+        const bool is_above = std::ranges::find(above, named) != above.end();
+        if (!is_above || named == root_ || fs::exists(named / "package.xml", ignored)) add(folder, package);
+    }
     // A copy of the package under another name.
-    for (const fs::path& folder : folders_above(urdf_folder_)) {
+    for (const fs::path& folder : above) {
         add(folder);
         if (folder == root_) break;
     }
     return folders;
+}
+
+/// Below the folder of the recording only: as a path from the URDF's folder, or for package://NAME/FILE as
+/// NAME/FILE, or FILE of a copy of the package.
+Result<FilePlace, Error> MeshPlaces::find_in_recording(const std::string& uri) const {
+    const fs::path base = fs::absolute(recording_->shown()).lexically_normal();
+    const bool is_package = uri.starts_with(kPackage);
+    const std::string rest = uri.substr(is_package               ? kPackage.size()
+                                        : uri.starts_with(kFile) ? kFile.size()
+                                                                 : 0);
+    std::vector<fs::path> tried{is_package ? base / rest : urdf_folder_ / rest};
+    if (is_package && rest.find('/') != std::string::npos)
+        tried.push_back(base / fs::path(rest.substr(rest.find('/') + 1)).relative_path());
+    for (const fs::path& file : tried) {
+        fs::path name;
+        if (!is_below(file.lexically_normal(), base, name)) {
+            return unexpected(Error{ErrorCode::outside_folder,
+                                    "expected a mesh in the folder of the recording", uri,
+                                    "copy URDF and meshes out of the recording"});
+        }
+        FilePlace place(*recording_, name);
+        if (place.is_there()) return place;
+    }
+    return unexpected(not_found(uri, {base}, "copy URDF and meshes out of the recording"));
 }
 
 Result<FilePlace, Error> MeshPlaces::find_in_package(const std::string& uri) const {
@@ -123,11 +155,13 @@ Result<FilePlace, Error> MeshPlaces::find_in_package(const std::string& uri) con
         return unexpected(
             Error{ErrorCode::outside_folder, "expected a file below the folder of the package", uri});
     const auto folders = folders_of(package);
-    for (const fs::path& folder : folders) {
-        FilePlace place(NamedFolder(folder), name);
+    std::vector<fs::path> tried;
+    for (const PackageFolder& folder : folders) {
+        FilePlace place(NamedFolder(folder.folder), folder.package / name);
         if (place.is_there()) return place;
+        tried.push_back(folder.folder / folder.package);
     }
-    return unexpected(not_found(uri, folders, fmt::format("give --package-path {}=DIR", package)));
+    return unexpected(not_found(uri, tried, fmt::format("give --package-path {}=DIR", package)));
 }
 
 Result<FilePlace, Error> MeshPlaces::find_below_roots(const fs::path& file, const std::string& uri) const {
@@ -153,6 +187,9 @@ Result<FilePlace, Error> MeshPlaces::find_below_roots(const fs::path& file, cons
 }
 
 Result<FilePlace, Error> MeshPlaces::find(const std::string& uri) const {
+    if (recording_ &&
+        (uri.starts_with(kPackage) || uri.starts_with(kFile) || uri.find("://") == std::string::npos))
+        return find_in_recording(uri);
     if (uri.starts_with(kPackage)) return find_in_package(uri);
     if (uri.starts_with(kFile)) return find_below_roots(uri.substr(kFile.size()), uri);
     if (uri.find("://") == std::string::npos) return find_below_roots(uri, uri);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,12 +34,14 @@ struct MeshSearch {
 
 class MeshPlaces {
   public:
-    MeshPlaces(const std::filesystem::path& urdf, MeshSearch search);
+    /// `urdf`: if it is below a named folder (confined_to_recording()), all meshes are below that folder.
+    MeshPlaces(const FilePlace& urdf, MeshSearch search);
 
     /// The file of a <mesh filename="...">:
     /// - package://NAME/FILE: below the folder of that package, the first of these that has the file: NAME of
     ///   --package-path; NAME in, or at the end of, a folder of ROS_PACKAGE_PATH; share/NAME in a prefix of
-    ///   AMENT_PREFIX_PATH; NAME in, or the name of, a folder above the URDF; a folder from that of the URDF
+    ///   AMENT_PREFIX_PATH; NAME in a folder above the URDF, or the name of such a
+    ///   folder that has a package.xml or is that of relative paths; a folder from that of the URDF
     ///   up to that of relative paths, whatever its name: a copy of the package.
     /// - file://FILE, and an absolute path: below one of these folders, or below that of relative paths.
     /// - a relative path: beside the URDF, below the nearest folder above it that has a package.xml, else
@@ -49,14 +52,23 @@ class MeshPlaces {
     [[nodiscard]] Result<FilePlace, Error> find(const std::string& uri) const;
 
   private:
+    /// A folder, and the name of the package below it; empty if it is the package. Names below `folder` are
+    /// opened without links.
+    struct PackageFolder {
+        std::filesystem::path folder;
+        std::filesystem::path package;
+        bool operator==(const PackageFolder&) const = default;
+    };
     [[nodiscard]] Result<FilePlace, Error> find_in_package(const std::string& uri) const;
     [[nodiscard]] Result<FilePlace, Error> find_below_roots(const std::filesystem::path& file,
                                                             const std::string& uri) const;
-    [[nodiscard]] std::vector<std::filesystem::path> folders_of(const std::string& package) const;
+    [[nodiscard]] std::vector<PackageFolder> folders_of(const std::string& package) const;
+    [[nodiscard]] Result<FilePlace, Error> find_in_recording(const std::string& uri) const;
 
     std::filesystem::path urdf_folder_;  ///< absolute
     std::filesystem::path root_;         ///< of relative paths
     MeshSearch search_;
+    std::optional<NamedFolder> recording_;
 };
 
 }  // namespace octoskin

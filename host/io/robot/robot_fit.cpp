@@ -81,7 +81,7 @@ const std::vector<LinkShape>& shapes_of(const ShapedLink& link) {
 /// Reads a file once for a link: all meshes of a robot may not fit in memory.
 class Meshes {
   public:
-    Meshes(const FilePlace& urdf, const MeshSearch& search) : urdf_(urdf.shown()), places_(urdf_, search) {}
+    Meshes(const FilePlace& urdf, const MeshSearch& search) : urdf_(urdf.shown()), places_(urdf, search) {}
 
     /// Null, with a fault, if it cannot be read.
     const SurfaceMesh* find(const LinkShape& shape, const std::string& link) {

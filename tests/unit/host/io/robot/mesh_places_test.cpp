@@ -89,6 +89,43 @@ TEST_F(MeshPlacesTest, a_link_below_a_package_is_found_but_not_followed) {
     EXPECT_EQ(opened.error().fault, FolderFault::link);
 }
 
+TEST_F(MeshPlacesTest, a_link_named_as_the_package_is_not_followed) {
+    make("secret/a.stl");
+    make("ws/src/arm/urdf/arm.urdf");
+    fs::create_directory_symlink(folder_ / "secret", folder_ / "ws/src/tool");
+    const auto place = MeshPlaces(folder_ / "ws/src/arm/urdf/arm.urdf", {}).find("package://tool/a.stl");
+    EXPECT_TRUE(!place || !place->open());
+}
+
+TEST_F(MeshPlacesTest, a_folder_far_above_is_a_package_by_its_name_only_with_a_package_xml) {
+    make("ws/src/arm/urdf/arm.urdf");
+    make("ws/a.stl");
+    EXPECT_EQ(found("package://ws/a.stl"), "not_found");
+    make("ws/package.xml");
+    EXPECT_EQ(found("package://ws/a.stl"), "ws/a.stl");
+}
+
+TEST_F(MeshPlacesTest, all_meshes_of_a_recording_are_in_its_folder) {
+    make("given/a.stl");
+    make("rec/arm.urdf");
+    make("rec/arm/b.stl");
+    make("rec/c.stl");
+    make("d.stl");
+    const MeshPlaces places(FilePlace(NamedFolder(folder_ / "rec"), "arm.urdf"),
+                            {{{"arm", folder_ / "given"}}, (folder_ / "given").string(), ""});
+    const auto code_of = [&](const std::string& uri) { return places.find(uri).error().code; };
+    EXPECT_EQ(code_of("package://arm/a.stl"), ErrorCode::not_found);
+    EXPECT_EQ(code_of("../d.stl"), ErrorCode::outside_folder);
+    EXPECT_EQ(code_of("package://../d.stl"), ErrorCode::outside_folder);
+    EXPECT_EQ(code_of("file://" + (folder_ / "d.stl").string()), ErrorCode::outside_folder);
+    for (const char* good : {"package://arm/b.stl", "package://arm/c.stl", "c.stl"}) {
+        const auto place = places.find(good);
+        ASSERT_TRUE(place) << good;
+        EXPECT_NE(place->folder(), nullptr);
+        EXPECT_TRUE(place->open()) << good;
+    }
+}
+
 TEST(PackagePath, has_a_name_and_a_folder) {
     EXPECT_EQ(package_path_of("a=/b=c")->folder, "/b=c");
     for (const char* bad : {"", "a", "=b", "a="}) EXPECT_FALSE(package_path_of(bad)) << bad;
