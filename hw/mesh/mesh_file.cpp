@@ -56,6 +56,18 @@ void append(const aiMesh& part, TriangleMesh& mesh) {
     }
 }
 
+/// The triangles that all polygons are, whether or not they are cut yet; points and lines have none.
+std::size_t triangles_in(const aiScene& scene) {
+    std::size_t count = 0;
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        for (unsigned k = 0; k < scene.mMeshes[i]->mNumFaces; ++k) {
+            const unsigned corners = scene.mMeshes[i]->mFaces[k].mNumIndices;
+            if (corners > 2) count += corners - 2;
+        }
+    }
+    return count;
+}
+
 /// Opens allowed files only, for reading, by the paths of checked descriptors.
 class CheckedFiles final : public Assimp::DefaultIOSystem {
   public:
@@ -83,14 +95,22 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
         if (const auto path = files->openable(file); !path)
             return unexpected("mesh " + file.string() + ": " + path.error());
     }
-    if (const auto kind = rig::other_than_a_file(file); !kind.empty())
+    const auto kind = files == nullptr ? rig::other_than_a_file(file) : std::string_view();
+    if (!kind.empty())
         return unexpected("mesh " + file.string() + " is " + std::string(kind) + ", not an ordinary file");
     Assimp::Importer importer;
     keep_readers_of_our_kinds(importer);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     if (files != nullptr) importer.SetIOHandler(new CheckedFiles(*files));  // the importer owns it
-    const aiScene* scene =
-        importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
+    const aiScene* scene = importer.ReadFile(file.string(), 0);
+    const std::size_t expected = scene == nullptr ? 0 : triangles_in(*scene);
+    if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+    if (scene != nullptr && triangles_in(*scene) < expected) {
+        return unexpected("mesh " + file.string() + " has polygons that cannot be cut into triangles: " +
+                          std::to_string(expected - triangles_in(*scene)) + " of " +
+                          std::to_string(expected) + " triangles are lost; export it as triangles");
+    }
+    if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_PreTransformVertices);
     if (scene == nullptr) {
         return unexpected("cannot read mesh " + file.string() + ": " + importer.GetErrorString());
     }
