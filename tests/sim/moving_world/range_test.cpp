@@ -122,7 +122,7 @@ class BoxBeforeRangeSensor : public testing::TestWithParam<Tested> {
     }
 
     static sim::World world_of(const Eigen::Vector3d& p_box) {
-        sim::TriangleMesh mesh = sim::box_mesh({0.3, 0.3, 0.3});
+        TriangleMesh mesh = sim::box_mesh({0.3, 0.3, 0.3});
         sim::Solid solid{"box/body/cube", "box", mesh.vertices, mesh.triangles, true};
         for (Eigen::Vector3d& vertex : solid.vertices) vertex += p_box;
         return sim::World({solid});

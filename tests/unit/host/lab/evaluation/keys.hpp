@@ -19,7 +19,7 @@ constexpr KeyBox row(int voxels) {
 }
 
 inline sim::Solid box(const std::string& model, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
-    const sim::TriangleMesh mesh = sim::box_mesh(max - min);
+    const TriangleMesh mesh = sim::box_mesh(max - min);
     sim::Solid solid{model + "/link/visual", model, mesh.vertices, mesh.triangles, true};
     for (auto& vertex : solid.vertices) {
         vertex += (min + max) / 2.0;

@@ -14,7 +14,7 @@ using Extents = std::array<double, 3>;
 using enum ThicknessClass;
 
 /// Turned so that no face is parallel to an axis, and moved.
-sim::Solid turned(const sim::TriangleMesh& mesh) {
+sim::Solid turned(const TriangleMesh& mesh) {
     Eigen::Isometry3d T_world_mesh = Eigen::Isometry3d::Identity();
     T_world_mesh.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()));
     T_world_mesh.pretranslate(Eigen::Vector3d(1.0, -2.0, 0.5));
@@ -22,7 +22,7 @@ sim::Solid turned(const sim::TriangleMesh& mesh) {
     return {"solid", "solid", placed.vertices, placed.triangles, true};
 }
 
-void expect_extents(const sim::TriangleMesh& mesh, const Extents& expected) {
+void expect_extents(const TriangleMesh& mesh, const Extents& expected) {
     const Extents extents = extents_of(turned(mesh));
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(extents[i], expected[i], 1.2e-3 * expected[i]) << i;
 }
