@@ -10,8 +10,8 @@ namespace {
 /// therefore also lead by a fraction of all that it explains.
 constexpr double kLead = 3.0;
 constexpr double kLeadOfCamera = 0.25;
-/// A shorter lead may come from one view of one object.
-constexpr Nanoseconds kLeadTime{3'000'000'000};
+/// A shorter error or lead may come from one view of one object.
+constexpr Nanoseconds kShortest{3'000'000'000};
 
 /// By how much more one error explains than another, without the strongest single sensor.
 double lead(const ErrorEvidence& of, const ErrorEvidence& to) {
@@ -47,9 +47,10 @@ void PoseJudge::decide(HostTime now) {
     const Leader leader = is_error ? this->leader() : Leader::none;
     if (leader != leader_ || now < leads_since_) leads_since_ = now;
     leader_ = leader;
+    if (!is_error || now < errs_since_) errs_since_ = now;
     fault_.reset();
-    if (!is_error) return;
-    const bool is_alone = leader != Leader::none && now - leads_since_ >= kLeadTime;
+    if (!is_error || now - errs_since_ < kShortest) return;
+    const bool is_alone = leader != Leader::none && now - leads_since_ >= kShortest;
     PoseFault fault;
     if (!is_alone || leader == Leader::camera) fault.camera = camera_.likeliest();
     // If no sensor supports any joint's error, there is nothing to compare.

@@ -50,19 +50,22 @@ class PoseJudgeTest : public testing::Test {
             .value_or(RangeChange{});
     }
 
-    /// `off`: what a range is off by, of its change.
+    /// Images of ten per second, from the first one on. `off`: what a range is off by, of its change.
     template <typename Off>
     void look(int images, const Off& off) {
-        for (int image = 0; image < images; ++image) {
-            const JointTwists twists = twists_at(image);
-            for (std::size_t sensor = 0; sensor < kSensors; ++sensor) {
-                RangeChange change = change_at(image, sensor);
-                if (change.weight == 0.0) continue;
-                change.off_m = off(change, twists, sensor);
-                judge_.compare(static_cast<std::uint16_t>(sensor), change, twists);
-            }
-            judge_.decide(HostTime{100'000'000LL * image});
+        for (int image = 0; image < images; ++image) look_at(image, off);
+    }
+
+    template <typename Off>
+    void look_at(int image, const Off& off) {
+        const JointTwists twists = twists_at(image);
+        for (std::size_t sensor = 0; sensor < kSensors; ++sensor) {
+            RangeChange change = change_at(image, sensor);
+            if (change.weight == 0.0) continue;
+            change.off_m = off(change, twists, sensor);
+            judge_.compare(static_cast<std::uint16_t>(sensor), change, twists);
         }
+        judge_.decide(HostTime{100'000'000LL * image});
     }
 
     PoseJudge judge_{kSensors};
@@ -78,17 +81,31 @@ TEST_F(PoseJudgeTest, names_the_joint_that_is_off_after_some_seconds_and_the_cam
     const auto off = [](const RangeChange& change, const JointTwists& twists, std::size_t) {
         return 0.05 * change.of_joint(twists[4]);
     };
-    look(5, off);
+    int image = 0;
+    while (image < 100 && !judge_.fault()) look_at(image++, off);
     ASSERT_TRUE(judge_.fault());
     EXPECT_TRUE(judge_.fault()->camera && judge_.fault()->joint);
     EXPECT_TRUE(judge_.is_suspect());
-    look(150, off);
+    while (image < 150) look_at(image++, off);
     ASSERT_TRUE(judge_.fault());
     EXPECT_FALSE(judge_.fault()->camera);
     ASSERT_TRUE(judge_.fault()->joint);
     EXPECT_EQ(judge_.fault()->joint->joint, 4U);
     EXPECT_NEAR(judge_.fault()->joint->offset, 0.05, 0.01);
     EXPECT_GE(judge_.fault()->explained, 4U);
+}
+
+TEST_F(PoseJudgeTest, names_neither_before_an_error_has_lasted_3_s) {
+    const auto off = [](const RangeChange& change, const JointTwists& twists, std::size_t) {
+        return 0.05 * change.of_joint(twists[4]);
+    };
+    int suspect_since = 0;
+    while (suspect_since < 100 && !judge_.is_suspect()) look_at(suspect_since++, off);
+    ASSERT_TRUE(judge_.is_suspect());
+    for (int image = suspect_since; image < suspect_since + 30; ++image) {
+        EXPECT_FALSE(judge_.fault()) << image;
+        look_at(image, off);
+    }
 }
 
 TEST_F(PoseJudgeTest, cannot_tell_the_camera_from_a_joint_whose_axis_stays_where_it_is) {
