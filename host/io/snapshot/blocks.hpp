@@ -71,6 +71,9 @@ struct Block {
     std::size_t at = 0;  ///< position of its first byte in the file
 };
 
+/// What became of the content of a block.
+enum class BlockRead : std::uint8_t { all, malformed, no_room };
+
 /// Reads blocks from a file's bytes; each is checked before it is returned.
 class BlockReader {
   public:

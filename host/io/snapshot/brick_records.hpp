@@ -83,9 +83,6 @@ void put_bricks(BlockWriter& blocks, BlockKind kind, const BrickTreeOf<Value>& t
     });
 }
 
-/// The result of reading a block of bricks.
-enum class BricksRead : std::uint8_t { all, malformed, no_room };
-
 /// Reads bricks into a tree, block by block, in ascending order.
 template <class Value>
 class BrickTaker {
@@ -96,18 +93,18 @@ class BrickTaker {
 
     /// `is_possible(value)`: whether a voxel may have this value. Throws std::bad_alloc.
     template <class IsPossible>
-    [[nodiscard]] BricksRead take(std::string_view payload, const IsPossible& is_possible) {
+    [[nodiscard]] BlockRead take(std::string_view payload, const IsPossible& is_possible) {
         ByteReader reader(payload);
         for (bool is_first = true; !reader.is_over(); is_first = false) {
             const std::uint64_t step = reader.get_count();
-            if (!is_first && step == 0) return BricksRead::malformed;
+            if (!is_first && step == 0) return BlockRead::malformed;
             if (!go_to(is_first ? step : number_ + step) || !take_one(reader, is_possible))
-                return BricksRead::malformed;
+                return BlockRead::malformed;
             const std::size_t bytes = tree_.nodes() * BrickTreeOf<Value>::kNodeBytes +
                                       tree_.bricks() * BrickTreeOf<Value>::kBrickBytes;
-            if (bytes > bytes_max_) return BricksRead::no_room;
+            if (bytes > bytes_max_) return BlockRead::no_room;
         }
-        return reader.is_sound() ? BricksRead::all : BricksRead::malformed;
+        return reader.is_sound() ? BlockRead::all : BlockRead::malformed;
     }
 
   private:

@@ -88,12 +88,19 @@ void put_camera(BlockWriter& blocks, const CameraMemory& memory) {
         });
 }
 
-bool CameraTaker::take(std::string_view payload) {
+BlockRead CameraTaker::take(std::string_view payload) {
     ByteReader reader(payload);
-    if (!memory_ && !take_head(reader)) return false;
+    if (!memory_ && !take_head(reader)) return BlockRead::malformed;
+    if (!is_within_limit()) return BlockRead::no_room;
     while (!reader.is_over())
-        if (is_complete() || !take_row(reader)) return false;
-    return reader.is_sound();
+        if (is_complete() || !take_row(reader)) return BlockRead::malformed;
+    return reader.is_sound() ? BlockRead::all : BlockRead::malformed;
+}
+
+/// A row without any value takes two bytes of the file: the file's size is no limit.
+bool CameraTaker::is_within_limit() const noexcept {
+    const std::uint64_t pixels = std::uint64_t{memory_->width} * memory_->height;
+    return pixels * sizeof(CameraMemory::Pixel) <= std::uint64_t{mapping_.map.memory_max_mib} << 20U;
 }
 
 bool CameraTaker::is_complete() const noexcept {

@@ -32,8 +32,9 @@ class CameraTaker {
     /// `mapping` must outlive it.
     explicit CameraTaker(const MappingConfig& mapping) noexcept : mapping_(mapping) {}
 
-    /// False: the content is not the memory of a camera with this mapping. Throws std::bad_alloc.
-    [[nodiscard]] bool take(std::string_view payload);
+    /// Malformed: the content is not the memory of a camera with this mapping. No room: the camera's memory
+    /// would be larger than the mapping allows the map. Throws std::bad_alloc.
+    [[nodiscard]] BlockRead take(std::string_view payload);
     /// True without any block, and after the last row.
     [[nodiscard]] bool is_complete() const noexcept;
     /// Moves it out, after the last block; empty without any.
@@ -43,6 +44,7 @@ class CameraTaker {
     [[nodiscard]] bool take_head(ByteReader& reader);
     [[nodiscard]] bool take_row(ByteReader& reader);
     [[nodiscard]] CameraMemory::Pixel take_pixel(ByteReader& reader) const;
+    [[nodiscard]] bool is_within_limit() const noexcept;
     [[nodiscard]] bool is_possible(const DepthDenoiser::Pixel& depth) const noexcept;
 
     const MappingConfig& mapping_;

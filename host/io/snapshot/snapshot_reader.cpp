@@ -116,21 +116,21 @@ class Decoder {
             case BlockKind::head:
                 return take_head(block);
             case BlockKind::log_odds:
-                return bricks(block, log_odds_.take(block.payload, is_log_odds));
+                return within_limit(block, log_odds_.take(block.payload, is_log_odds));
             case BlockKind::prior:
-                return bricks(block, prior_.take(block.payload, is_log_odds));
+                return within_limit(block, prior_.take(block.payload, is_log_odds));
             case BlockKind::misses:
-                return bricks(block, misses_.take(block.payload, is_count));
+                return within_limit(block, misses_.take(block.payload, is_count));
             case BlockKind::hits:
-                return bricks(block, hits_.take(block.payload, is_count));
+                return within_limit(block, hits_.take(block.payload, is_count));
             case BlockKind::ages:
-                return bricks(block, ages_.take(block.payload, is_stamp));
+                return within_limit(block, ages_.take(block.payload, is_stamp));
             case BlockKind::confirmed:
                 return records(block, readings_.take_confirmed(block.payload, mapping_.standing));
             case BlockKind::seen:
                 return records(block, readings_.take_seen(block.payload));
             case BlockKind::camera:
-                return records(block, camera_.take(block.payload));
+                return within_limit(block, camera_.take(block.payload));
             case BlockKind::done:
                 return take_done(block);
         }
@@ -141,8 +141,8 @@ class Decoder {
         return fail(ErrorCode::damaged, block.at,
                     fmt::format("the block {} has an invalid record", tag_of(block.kind)));
     }
-    Taken bricks(const Block& block, BricksRead read) const {
-        if (read != BricksRead::no_room) return records(block, read == BricksRead::all);
+    Taken within_limit(const Block& block, BlockRead read) const {
+        if (read != BlockRead::no_room) return records(block, read == BlockRead::all);
         return fail(ErrorCode::too_large, block.at,
                     fmt::format("it needs more memory than the {} MiB of map.memory_max_mib",
                                 mapping_.map.memory_max_mib));

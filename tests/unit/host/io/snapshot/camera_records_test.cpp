@@ -26,7 +26,9 @@ std::string encode(const std::optional<CameraMemory>& camera) {
 }
 
 Result<Snapshot, Error> decode(std::string_view bytes) {
-    return decode_snapshot(bytes, quickly_aging(), kMapping);
+    MappingConfig mapping = quickly_aging();
+    mapping.map.memory_max_mib = 16;  // a Kinect's memory takes 5
+    return decode_snapshot(bytes, mapping, kMapping);
 }
 
 std::array<std::uint32_t, 6> bits_of(const CameraMemory::Pixel& pixel) {
@@ -149,6 +151,18 @@ std::optional<ErrorCode> fault_of_pixel(float mean_m, float drift, int code, std
     Payload payload = Payload().head(1, 1).byte(0).byte(1).value(mean_m, drift, code);
     if (end_m) payload.end(*end_m);
     return fault_of({payload});
+}
+
+TEST(CameraRecords, of_more_memory_than_the_map_may_take_are_refused) {
+    MappingConfig mapping = quickly_aging();
+    mapping.map.memory_max_mib = 12;  // 1024 x 512 pixels of 24 bytes
+    const auto fault_of_size = [&](std::uint32_t width, std::uint32_t height) {
+        std::vector<Payload> blocks = {Payload().head(width, height)};
+        for (std::uint32_t row = 0; row < height; ++row) blocks.push_back(Payload().byte(0x80).byte(0x08));
+        return fault_of(blocks, mapping);
+    };
+    EXPECT_FALSE(fault_of_size(1024, 512));
+    EXPECT_EQ(fault_of_size(1024, 513), ErrorCode::too_large);
 }
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
