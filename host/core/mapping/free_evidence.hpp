@@ -1,10 +1,6 @@
 // The evidence behind a free voxel, in measurements: how many passed it more than ended in it.
 #pragma once
 
-#include <cstddef>
-
-#include "host/core/bricks/brick.hpp"
-#include "host/core/mapping/map_layers.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/mapping/voxel_rules.hpp"
 
@@ -33,22 +29,5 @@ struct FreeEvidence {
 
 /// Of a free voxel; of others without meaning.
 [[nodiscard]] FreeEvidence free_evidence(const VoxelState& voxel, const MissUnits& units) noexcept;
-
-/// A brick's voxels in all layers but the time stamps. Valid while the map is unchanged.
-struct VoxelBrick {
-    BrickView log_odds;
-    BrickView prior;
-    BrickView hits{nullptr, 0.0F};
-    BrickView misses{nullptr, 0.0F};
-    bool has_counts = false;
-
-    [[nodiscard]] VoxelState at(std::size_t cell) const noexcept {
-        return {log_odds.at(cell), prior.at(cell), hits.at(cell), misses.at(cell)};
-    }
-};
-/// `first`: code of the brick's first voxel; `log_odds`: the layer's brick there.
-[[nodiscard]] VoxelBrick voxel_brick(const MapLayers& layers, MortonCode first,
-                                     const BrickView& log_odds) noexcept;
-[[nodiscard]] VoxelState voxel_state(const MapLayers& layers, VoxelKey key) noexcept;
 
 }  // namespace octoskin

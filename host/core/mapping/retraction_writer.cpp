@@ -4,6 +4,8 @@
 #include <cmath>
 #include <new>
 
+#include "host/core/mapping/voxel_brick.hpp"
+
 namespace octoskin {
 
 void RetractionWriter::write(const Evidence& evidence) noexcept {
@@ -22,8 +24,7 @@ void RetractionWriter::write(const Evidence& evidence) noexcept {
 
 BrickMask RetractionWriter::changed_in(const BrickEvidence& brick) const noexcept {
     const MapLayers& layers = editor_.layers();
-    const BrickView priors = editor_.has_counts(brick.first) ? layers.counts.prior.find(brick.first)
-                                                             : layers.log_odds.find(brick.first);
+    const BrickView priors = voxel_brick(layers, brick.first, layers.log_odds.find(brick.first)).prior;
     BrickMask changed{};
     for_each_cell(brick.voxels, [&](std::size_t cell) {
         if (editor_.rules().is_occupied(priors.at(cell))) put_in(changed, cell);
@@ -35,13 +36,9 @@ void RetractionWriter::write_brick(MortonCode brick, const BrickMask& voxels) {
     MapLayers& layers = editor_.layers();
     BrickValues& log_odds = layers.log_odds.open(brick);
     BrickValues* const priors = editor_.has_counts(brick) ? &layers.counts.prior.open(brick) : nullptr;
+    const VoxelBrick opened = voxel_brick(layers, brick, layers.log_odds.find(brick));
     const auto retracted = [&](std::size_t cell) {
-        VoxelState voxel{.log_odds = log_odds[cell], .prior = log_odds[cell]};
-        if (priors != nullptr) {
-            voxel.prior = (*priors)[cell];
-            voxel.hits = layers.counts.hits.find(brick).at(cell);
-            voxel.misses = layers.counts.misses.find(brick).at(cell);
-        }
+        VoxelState voxel = opened.at(cell);
         editor_.rules().retract(voxel);
         return voxel;
     };

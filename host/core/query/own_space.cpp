@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/core/mapping/voxel_brick.hpp"
+
 namespace octoskin {
 namespace {
 

@@ -6,6 +6,7 @@
 #include "host/core/kinematics/capsule.hpp"
 #include "host/core/mapping/free_evidence.hpp"
 #include "host/core/mapping/fused_map.hpp"
+#include "host/core/mapping/voxel_brick.hpp"
 
 namespace octoskin {
 

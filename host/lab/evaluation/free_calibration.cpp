@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host/core/mapping/voxel_brick.hpp"
+
 namespace octoskin::evaluation {
 namespace {
 

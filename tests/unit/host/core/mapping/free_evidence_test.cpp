@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/core/mapping/fused_map.hpp"
+#include "host/core/mapping/voxel_brick.hpp"
 #include "tests/support/evidence.hpp"
 
 namespace octoskin {

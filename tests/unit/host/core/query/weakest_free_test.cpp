@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "host/core/mapping/voxel_brick.hpp"
 #include "host/core/query/own_space.hpp"
 #include "host/core/query/path_query.hpp"
 #include "host/core/query/segment_cube.hpp"
