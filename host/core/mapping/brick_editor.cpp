@@ -116,7 +116,8 @@ Status<MapRefusal> BrickEditor::open_counts(MortonCode brick) noexcept {
 
 void BrickEditor::date(MortonCode brick, const BrickMask& voxels, SensorKind kind) noexcept {
     VoxelAges& ages = layers_.ages;
-    if (!ages.has_begun()) return;
+    // A brick without any time stamp would leave the agenda, and what it gets later would never expire.
+    if (!ages.has_begun() || voxels == BrickMask{}) return;
     bool is_dated = !ages.find(brick).is_unknown();
     if (!is_dated) {
         // Refused; or counts only, in a map where nothing expires.
