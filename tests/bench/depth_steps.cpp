@@ -63,9 +63,10 @@ void DepthSteps::take(const DepthFrame& frame, const RobotPose& robot) {
     if (!denoiser_) remove_arm(image, robot, T_map_camera);
     DepthUpdates updates;
     time("integrate", [&] {
-        const bool is_moving = denoiser_ && frame.T_map_camera;
-        auto result = integrator_.integrate(
-            image, T_map_camera, is_moving ? std::optional(config_.moving_miss_log_odds) : std::nullopt);
+        ImageNotes notes;
+        if (denoiser_) notes.doubts_m = denoiser_->doubts_m();
+        if (denoiser_ && frame.T_map_camera) notes.miss_log_odds = config_.moving_miss_log_odds;
+        auto result = integrator_.integrate(image, T_map_camera, notes);
         if (!result) throw std::runtime_error("a frame was refused");
         updates = std::move(result).value();
     });

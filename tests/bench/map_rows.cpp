@@ -109,7 +109,7 @@ class OurBeams final : public Task {
         for (const Beam& beam : beams_) {
             const auto evidence = model_.find(beam);
             if (!evidence) throw std::runtime_error("a beam was refused");
-            map_.apply(**evidence);
+            map_.apply((*evidence)->terms);
         }
     }
     void tell(Figures& figures) const override { tell_size(map_, figures); }

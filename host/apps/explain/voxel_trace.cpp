@@ -11,6 +11,7 @@ void VoxelTrace::on_reading(const RangeMeasurement& measurement, const Beam& bea
     Contribution contribution;
     contribution.source = measurement.source;
     contribution.captured = measurement.captured;
+    captured_ = measurement.captured;
     contribution.range_m = measurement.range_m;
     contribution.p_map_sensor = beam.p_map_sensor;
     contribution.direction_map = beam.direction_map;
@@ -21,7 +22,7 @@ void VoxelTrace::on_depth(const DepthFrame& frame, const Evidence& terms) {
     Contribution contribution;
     contribution.frame = depth_frames_++;
     contribution.captured = frame.captured;
-    depth_captured_ = frame.captured;
+    captured_ = frame.captured;
     const VoxelUpdate update{key_, term_of(terms, key_)};
     take(std::move(contribution), std::span(&update, 1));
 }
@@ -41,7 +42,7 @@ void VoxelTrace::forget(std::optional<HostTime> now) {
 
 void VoxelTrace::on_fused(const FusedMap& map) {
     const auto now = map.log_odds(key_);
-    if (now_ && !now && !is_newest_of_commit_) return forget(depth_captured_);  // retracted by an image
+    if (now_ && !now && !is_newest_of_commit_) return forget(captured_);  // weakened
     if (now == now_ && !map.layers().counts.has(brick_of(key_))) return;
     now_ = now;
     if (!is_newest_of_commit_ || newest_.empty()) return;

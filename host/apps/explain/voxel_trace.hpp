@@ -42,8 +42,8 @@ struct SourceShare {
     HostTime last;
 };
 
-/// The voxel became unknown: no sensor had confirmed it for `age.unknown_after_s`, or an image of the update
-/// `denoised` retracted it.
+/// The voxel became unknown: no sensor had confirmed it for `age.unknown_after_s`, or a measurement took back
+/// that it is occupied (EvidenceRule::weaken).
 struct Forgotten {
     std::uint64_t times = 0;
     double change = 0.0;           ///< log-odds, sum over all expiries
@@ -96,7 +96,7 @@ class VoxelTrace final : public CommitListener {
     std::optional<float> now_;
     std::size_t kept_max_;
     std::uint64_t depth_frames_ = 0;
-    std::optional<HostTime> depth_captured_;  ///< of the newest frame
+    std::optional<HostTime> captured_;  ///< of the newest reading or frame
     std::uint64_t count_ = 0;
     bool is_newest_of_commit_ = false;  ///< newest_.back() belongs to the latest reading or frame
     std::deque<Contribution> newest_;

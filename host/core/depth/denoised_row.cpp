@@ -265,6 +265,19 @@ void drop_unsupported(const DenoiserRule& rule, const WindowRows& rows, const fl
     }
 }
 
+void find_doubts(const DenoiserRule& rule, const PosteriorRow& posterior, const float* count, float count_min,
+                 std::size_t width, float* doubts_m) {
+    const Floats f;
+    for (std::size_t u = 0; u < width; u += hn::Lanes(f)) {
+        const Float depth = hn::Div(constant(1.0F), hn::LoadU(f, posterior.inverse + u));
+        const Float variance = hn::Add(hn::LoadU(f, posterior.variance + u), constant(rule.bias_variance));
+        const Float sigma_m = hn::Mul(squared(depth), hn::Sqrt(variance));
+        const Mask is_old = hn::Ge(hn::Abs(hn::LoadU(f, count + u)), constant(count_min));
+        hn::StoreU(hn::IfThenElseZero(is_old, hn::Mul(constant(rule.doubt_sigmas), sigma_m)), f,
+                   doubts_m + u);
+    }
+}
+
 void replace_depths(const float* inverse, std::size_t width, float* depth_m) {
     const Floats f;
     const Float none = constant(std::numeric_limits<float>::quiet_NaN());
@@ -287,6 +300,7 @@ HWY_EXPORT(sum_fives);
 HWY_EXPORT(take_row);
 HWY_EXPORT(average_row);
 HWY_EXPORT(drop_unsupported);
+HWY_EXPORT(find_doubts);
 HWY_EXPORT(replace_depths);
 
 }  // namespace
@@ -314,6 +328,11 @@ void average_row(const DenoiserRule& rule, const AveragedRows& rows, std::size_t
 void drop_unsupported(const DenoiserRule& rule, const WindowRows& rows, const float* agreed,
                       const float* count, std::size_t width, float* depth_m) {
     HWY_DYNAMIC_DISPATCH(drop_unsupported)(rule, rows, agreed, count, width, depth_m);
+}
+
+void find_doubts(const DenoiserRule& rule, const PosteriorRow& posterior, const float* count, float count_min,
+                 std::size_t width, float* doubts_m) {
+    HWY_DYNAMIC_DISPATCH(find_doubts)(rule, posterior, count, count_min, width, doubts_m);
 }
 
 void replace_depths(const float* inverse, std::size_t width, float* depth_m) {

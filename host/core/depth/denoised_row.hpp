@@ -20,6 +20,8 @@ struct DenoiserRule {
     float pair_sigmas = 0.0F;
     float slope = 0.0F;  ///< largest change of depth from pixel to pixel, as a share of the depth
     float support_min = 0.0F;
+    float doubt_sigmas = 0.0F;
+    float bias_variance = 0.0F;  ///< of the inverse depth
 };
 
 /// Pixels on each side of the centre of the window that is pooled and that supports a value.
@@ -99,6 +101,11 @@ struct WindowRows {
 /// `count`: of the pixel's values, after take_row().
 void drop_unsupported(const DenoiserRule& rule, const WindowRows& rows, const float* agreed,
                       const float* count, std::size_t width, float* depth_m);
+
+/// Of each pixel with a value `doubt_sigmas` sigmas of its depth, metres: of its posterior, and of what no
+/// mean removes. 0 for a pixel with less than `count_min` values; `count`: after take_row().
+void find_doubts(const DenoiserRule& rule, const PosteriorRow& posterior, const float* count, float count_min,
+                 std::size_t width, float* doubts_m);
 
 /// Replaces each depth above 0 by the reciprocal of `inverse`, any other by NaN.
 void replace_depths(const float* inverse, std::size_t width, float* depth_m);

@@ -10,6 +10,10 @@ namespace {
 /// Steepest surface whose pixels are averaged however small the noise, seen 63 degrees off its normal.
 constexpr double kSlopeTangent = 2.0;
 
+/// A surface of which a stationary camera has fewer values may just have come there. It marks all that it may
+/// be in.
+constexpr float kDoubtfulFrom = 10.0F;
+
 DenoiserRule rule_of(const DepthDenoiserConfig& config, const CameraIntrinsics& camera) {
     const auto single = [](double value) { return static_cast<float>(value); };
     const double pixel = 2.0 / (camera.fx + camera.fy);  // size of a pixel at 1 m
@@ -23,7 +27,9 @@ DenoiserRule rule_of(const DepthDenoiserConfig& config, const CameraIntrinsics& 
             .count_max = static_cast<float>(config.count_max),
             .pair_sigmas = single(config.pair_sigmas),
             .slope = single(kSlopeTangent * pixel),
-            .support_min = static_cast<float>(config.support_min)};
+            .support_min = static_cast<float>(config.support_min),
+            .doubt_sigmas = single(config.doubt_sigmas),
+            .bias_variance = single(config.noise.bias_per_m * config.noise.bias_per_m)};
 }
 
 // How many rows later than `pool` each part comes, which needs rows below its own.
@@ -67,7 +73,8 @@ DepthDenoiser::DepthDenoiser(const DepthDenoiserConfig& config, const CameraIntr
       posteriors_(kAveragedSteps.size() + 1, PosteriorRows(kRows, width_)),
       outside_(1, width_),
       changes_row_(stride_, 0),
-      changes_(std::size_t{width_} * height_, 0) {
+      changes_(std::size_t{width_} * height_, 0),
+      doubts_m_(std::size_t{width_} * height_ + kDenoiserLanesMax, 0.0F) {
     assert(config.noise.constant_m >= 1e-4 && config.noise.quadratic_per_m >= 0.0);
     assert(config.count_max > 0);
     assert(std::min({config.gate_sigmas, config.step_sigmas, config.drift_sigmas, config.pair_sigmas}) > 0.0);
@@ -101,7 +108,7 @@ void DepthDenoiser::denoise(DepthImage& image, Memory memory) {
             average(level, averaged);
             if (level == 0) support(averaged);
         }
-        write(averaged, image);
+        write(averaged, image, memory);
     }
 }
 
@@ -153,9 +160,13 @@ void DepthDenoiser::support(Row v) {
                      width_, depth_m_.at(v));
 }
 
-void DepthDenoiser::write(Row v, DepthImage& image) {
+void DepthDenoiser::write(Row v, DepthImage& image, Memory memory) {
     if (!has(v)) return;
-    replace_depths(posteriors_.back().inverse.at(v), width_, depth_m_.at(v));
+    const PosteriorRow posterior = posteriors_.back().at(v);
+    const float count_min = memory == Memory::used ? kDoubtfulFrom : 0.0F;
+    find_doubts(rule_, posterior, next_.count.data() + begin_of(static_cast<std::size_t>(v)), count_min,
+                width_, doubts_m_.data() + static_cast<std::size_t>(v) * width_);
+    replace_depths(posterior.inverse, width_, depth_m_.at(v));
     std::copy_n(depth_m_.at(v), width_, image.depth_m.data() + static_cast<std::size_t>(v) * width_);
 }
 

@@ -35,6 +35,9 @@ struct DepthDenoiserConfig {
     std::uint32_t count_max = 100;
     double pair_sigmas = 3.0;
     std::uint32_t support_min = 3;
+    /// An end is in doubt if it may as well lie in the next voxel along its ray: up to so many sigmas further
+    /// or less far.
+    double doubt_sigmas = 1.0;
     friend bool operator==(const DepthDenoiserConfig&, const DepthDenoiserConfig&) = default;
 };
 
@@ -62,6 +65,11 @@ class DepthDenoiser {
     /// Row-major; of each pixel of the last image kChangeFound, kChangeConfirmed or 0.
     [[nodiscard]] std::span<const std::uint8_t> changes() const noexcept { return changes_; }
 
+    /// Row-major, of each pixel of the last image that has a value: `doubt_sigmas` sigmas of its depth,
+    /// metres; 0 for a surface that a stationary camera has seen for less than 10 images. kDenoiserLanesMax
+    /// further values may be read.
+    [[nodiscard]] std::span<const float> doubts_m() const noexcept { return doubts_m_; }
+
     /// What is remembered of a pixel (PixelMemoryRow).
     struct Pixel {
         float mean_m = 0.0F;
@@ -85,7 +93,7 @@ class DepthDenoiser {
     void take(Row v, Memory memory);
     void average(std::size_t level, Row v);
     void support(Row v);
-    void write(Row v, DepthImage& image);
+    void write(Row v, DepthImage& image, Memory memory);
 
     /// The newest rows of something. Rows have margins that only the constructor and `limit` write.
     class Rows {
@@ -134,6 +142,7 @@ class DepthDenoiser {
     PosteriorRows outside_;                  ///< a row without values
     std::vector<std::uint8_t> changes_row_;
     std::vector<std::uint8_t> changes_;
+    std::vector<float> doubts_m_;
 };
 
 }  // namespace octoskin

@@ -11,8 +11,8 @@ void CountWriter::write(const Evidence& evidence) {
     switch (evidence.rule) {
         case EvidenceRule::image:
         case EvidenceRule::terms:
-        case EvidenceRule::retract:
-            return;  // written by ImageWriter, TermWriter and RetractionWriter
+        case EvidenceRule::weaken:
+            return;  // written by ImageWriter, TermWriter and WeakeningWriter
         case EvidenceRule::counts:
             return count(evidence);
         case EvidenceRule::confirm:

@@ -148,7 +148,7 @@ const ProjectedImage& DepthIntegrator::rays() const noexcept {
 
 Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage& image,
                                                                 const Eigen::Isometry3d& T_map_camera,
-                                                                std::optional<float> miss_log_odds) {
+                                                                const ImageNotes& notes) {
     const CameraIntrinsics& camera = pixel_rays_.camera();
     const std::size_t pixels = std::size_t{camera.width} * camera.height;
     if (image.width != camera.width || image.height != camera.height || image.depth_m.size() != pixels) {
@@ -159,7 +159,7 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
     if (!lattice_.key_of(origin.cast<double>())) return unexpected(DepthRejection::camera_outside_map);
 
     try {
-        return updates_of(image, T_map_camera, miss_log_odds.value_or(config_.model.miss_log_odds));
+        return updates_of(image, T_map_camera, notes);
     } catch (...) {  // no memory: the next image must not find data of an unfinished one
         *workspace_ = {};
         throw;
@@ -168,7 +168,7 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::integrate(const DepthImage
 
 Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImage& image,
                                                                  const Eigen::Isometry3d& T_map_camera,
-                                                                 float miss_log_odds) {
+                                                                 const ImageNotes& notes) {
     ProjectedImage& rays = workspace_->rays;
     const auto place = [&](auto& place_how) {
         place_how(image, pixel_rays_, lattice_, T_map_camera, config_.depth_range_max_m, rays, pool_.get());
@@ -179,14 +179,14 @@ Result<DepthUpdates, DepthRejection> DepthIntegrator::updates_of(const DepthImag
     DepthUpdates result;
     result.pixels = rays.counts;
     Evidence& terms = result.terms;
-    terms.miss = miss_log_odds;
+    terms.miss = notes.miss_log_odds.value_or(config_.model.miss_log_odds);
     terms.bricks.reserve(workspace_->bricks_before);
     terms.cells.reserve(workspace_->hits_before);
     bool has_room = false;
     switch (config_.depth_update) {
         case DepthUpdate::paper:
         case DepthUpdate::denoised:
-            has_room = take_sets(rays, T_map_camera, terms);
+            has_room = take_sets(rays, T_map_camera, notes.doubts_m, terms);
             break;
         case DepthUpdate::robust:
             has_room = take_means(rays, terms);
@@ -231,14 +231,16 @@ void DepthIntegrator::add_bricks(const KeyBox& box, const CertainView& view, con
 /// The paper's sets: a hit wins over any number of passing rays, and the largest hit counts. A hit with a
 /// term of 0 (too near to be reliable) is still a hit: it never becomes a miss.
 bool DepthIntegrator::take_sets(const ProjectedImage& rays, const Eigen::Isometry3d& T_map_camera,
-                                Evidence& terms) {
+                                std::span<const float> doubts_m, Evidence& terms) {
     HitBricks& hits = workspace_->hits;
     RangePyramid& reach = workspace_->reach;
     const KeyBox box = box_of(rays, lattice_);
     reach.begin(rays);
     bool has_room = false;
     pool_->work(3, [&](std::size_t part) {
-        if (part == 0) has_room = hits.take(rays, box, config_.model.depth, config_.depth_box_voxels_max);
+        if (part == 0)
+            has_room = hits.take(rays, {doubts_m, lattice_.resolution_m()}, box, config_.model.depth,
+                                 config_.depth_box_voxels_max);
         if (part == 1) reach.take_shortest(rays);
         if (part == 2) reach.take_longest(rays);
     });

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_frame.hpp"
@@ -34,6 +35,13 @@ struct DepthUpdates {
     DepthPixelCounts pixels;
 };
 
+/// What is known of one image beside its depths.
+struct ImageNotes {
+    std::optional<float> miss_log_odds = {};  ///< of a voxel that is only passed, if not the configured one
+    /// As of DepthDenoiser; empty: no end is in doubt. With `denoised` and `paper`.
+    std::span<const float> doubts_m = {};
+};
+
 /// Reuses its working memory between frames; not for concurrent use by two threads.
 class DepthIntegrator {
   public:
@@ -56,18 +64,17 @@ class DepthIntegrator {
     /// those of OctoMap's `computeUpdate` without discretisation, with the maximum range `depth_range_max_m`;
     /// DepthUpdate defines the terms. O(pixels * range / resolution). Throws std::bad_alloc; the next image
     /// is not affected.
-    /// `miss_log_odds`: the term of a voxel that is only passed, if not the configured one.
-    [[nodiscard]] Result<DepthUpdates, DepthRejection> integrate(
-        const DepthImage& image, const Eigen::Isometry3d& T_map_camera,
-        std::optional<float> miss_log_odds = std::nullopt);
+    [[nodiscard]] Result<DepthUpdates, DepthRejection> integrate(const DepthImage& image,
+                                                                 const Eigen::Isometry3d& T_map_camera,
+                                                                 const ImageNotes& notes = {});
 
   private:
     [[nodiscard]] Result<DepthUpdates, DepthRejection> updates_of(const DepthImage& image,
                                                                   const Eigen::Isometry3d& T_map_camera,
-                                                                  float miss_log_odds);
+                                                                  const ImageNotes& notes);
     /// Each returns false if the rays span too many voxels.
     [[nodiscard]] bool take_sets(const ProjectedImage& rays, const Eigen::Isometry3d& T_map_camera,
-                                 Evidence& terms);
+                                 std::span<const float> doubts_m, Evidence& terms);
     [[nodiscard]] bool take_walked(const ProjectedImage& rays, const KeyBox& box, Evidence& terms);
     [[nodiscard]] bool take_means(const ProjectedImage& rays, Evidence& terms);
     [[nodiscard]] bool take_nearest(const ProjectedImage& rays, const CertainView& view, Evidence& terms);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include "host/core/depth/denoised_row.hpp"
 #include "host/core/voxels/morton.hpp"
@@ -14,14 +15,18 @@ MortonCode code_of(const EndMemory::End& end) {
                       static_cast<std::uint16_t>(end.key_z)});
 }
 
+/// Below all log-odds: nothing is left of what it is added to.
+constexpr float kTakesAll = std::numeric_limits<float>::lowest();
+
 }  // namespace
 
 void EndMemory::find(const ProjectedImage& image, std::span<const std::uint8_t> changes,
                      const Evidence& terms, Evidence& retracted) {
     assert(changes.size() == image.pixels());
     retracted.clear();
-    retracted.rule = EvidenceRule::retract;
+    retracted.rule = EvidenceRule::weaken;
     retracted.sensor = SensorKind::camera;
+    retracted.miss = kTakesAll;
     const Changed changed = find_changed(image, changes);
     take_codes(changed.left, left_);
     if (!left_.empty()) {

@@ -31,10 +31,10 @@ class EndMemory {
         friend bool operator==(const End&, const End&) = default;
     };
 
-    /// Replaces `retracted` with EvidenceRule::retract for the voxels that an image from the same place as
-    /// the remembered ones retracts. `terms`: the image's evidence. `changes`: as of DepthDenoiser, one
-    /// entry for each pixel (asserted), likewise for `keep`. About 1.2 ms for 512 x 424. Throws
-    /// std::bad_alloc.
+    /// Replaces `retracted` with EvidenceRule::weaken, by all that they have, for the voxels that an image
+    /// from the same place as the remembered ones retracts. `terms`: the image's evidence. `changes`: as of
+    /// DepthDenoiser, one entry for each pixel (asserted), likewise for `keep`. About 1.2 ms for 512 x 424.
+    /// Throws std::bad_alloc.
     void find(const ProjectedImage& image, std::span<const std::uint8_t> changes, const Evidence& terms,
               Evidence& retracted);
     /// Remembers the ends of an image, but for those that are in doubt. Throws std::bad_alloc if it has no

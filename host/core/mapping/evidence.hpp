@@ -31,8 +31,9 @@ enum class EvidenceRule : std::uint8_t {
     withdraw,
     /// VoxelRules::clear: `voxels` that are occupied become free.
     clear,
-    /// VoxelRules::retract: the camera's evidence that `voxels` are occupied was of an earlier estimate.
-    retract,
+    /// VoxelRules::weaken for `voxels`, by `miss`: the measurement contradicts that they are occupied, and
+    /// does not show that they are free.
+    weaken,
 };
 
 /// Everything that a measurement states about one brick.
@@ -89,7 +90,8 @@ struct EvidenceOptions {
     /// For `clear`: selects voxels that stay unchanged because another measurement sees them. Called for
     /// occupied voxels only.
     const std::function<bool(VoxelKey)>* spares = nullptr;
-    /// Gets the change of each voxel's log-odds; not for `image` and `terms`, whose evidence contains it.
+    /// Gets the change of each voxel's log-odds; not for `image` and `terms`, whose evidence contains it, and
+    /// not of a voxel that becomes unknown.
     std::vector<VoxelUpdate>* changes = nullptr;
 };
 

@@ -8,8 +8,8 @@
 #include "host/core/mapping/brick_editor.hpp"
 #include "host/core/mapping/count_writer.hpp"
 #include "host/core/mapping/image_writer.hpp"
-#include "host/core/mapping/retraction_writer.hpp"
 #include "host/core/mapping/term_writer.hpp"
+#include "host/core/mapping/weakening_writer.hpp"
 
 namespace octoskin {
 
@@ -30,7 +30,7 @@ BrickEditor FusedMap::editor() noexcept {
 void FusedMap::apply(const Evidence& evidence, const EvidenceOptions& options) {
     BrickEditor editor = this->editor();
     if (evidence.rule == EvidenceRule::image) return ImageWriter(editor).write(evidence);
-    if (evidence.rule == EvidenceRule::retract) return RetractionWriter(editor).write(evidence);
+    if (evidence.rule == EvidenceRule::weaken) return WeakeningWriter(editor, options).write(evidence);
     if (evidence.rule == EvidenceRule::terms) return TermWriter(editor).write(evidence);
     CountWriter(editor, options).write(evidence);
 }

@@ -44,6 +44,8 @@ MappingConfig denoised_mapping() {
     config.depth_update = DepthUpdate::denoised;
     config.map.log_odds_hit_min = 0.0F;
     config.map.log_odds_passed_max = 2.5F;
+    config.map.counts.misses_min = 3.0F;
+    config.ray_end_sigmas = 2.0;
     config.depth_filter.is_enabled = false;
     return config;
 }

@@ -41,6 +41,9 @@ struct MappingConfig {
     MapConfig map;
     UpdateModel model;
     RangeUpdate range_update = RangeUpdate::ray;
+    /// Of a ray: its surface may be so many sigmas before the measured range. There a miss takes from what is
+    /// occupied and frees nothing. 0: the ray passes all up to its end, as in the paper.
+    double ray_end_sigmas = 0.0;
     ConeModel cone = {};            ///< for sensors that see all of their cone at a time, or more than half
     ConeModel zone = zone_model();  ///< for a zone of at most half of its array's SPADs
     StationaryModel standing = {};  ///< for both, while they are stationary

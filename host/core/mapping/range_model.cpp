@@ -7,7 +7,8 @@ namespace octoskin {
 Status<BeamRejection> RangeModel::integrate_ray(const Beam& beam, EvidenceSink& sink) {
     const auto evidence = ray_.find(beam);
     if (!evidence) return unexpected(evidence.error());
-    sink.apply(**evidence, nullptr);
+    sink.apply((*evidence)->terms, nullptr);
+    if (!(*evidence)->weakened.empty()) sink.apply((*evidence)->weakened, nullptr);
     if (sees_any_cone_) stationary_.take_ray(beam);
     return Done{};
 }

@@ -112,10 +112,12 @@ void VoxelRules::clear(VoxelState& voxel) const noexcept {
     fuse(voxel);
 }
 
-void VoxelRules::retract(VoxelState& voxel) const noexcept {
+void VoxelRules::weaken(VoxelState& voxel, float term) const noexcept {
     if (!is_occupied(voxel.prior)) return;
-    voxel.prior = kUnknownLogOdds;
-    voxel.log_odds = log_odds_of(voxel, false);
+    const float weaker = clamped(voxel.prior + term);
+    const bool is_left = is_occupied(weaker);
+    voxel.prior = is_left ? weaker : kUnknownLogOdds;
+    voxel.log_odds = log_odds_of(voxel, is_left);
 }
 
 void VoxelRules::fuse(VoxelState& voxel) const noexcept {

@@ -47,9 +47,10 @@ class VoxelRules {
     void withdraw(VoxelState& voxel) const noexcept;
     /// Makes the voxel free, without hits and without the camera's earlier evidence that it is occupied.
     void clear(VoxelState& voxel) const noexcept;
-    /// Removes the camera's evidence that the voxel is occupied. Without counts of range sensors that suffice
-    /// to know it, it becomes unknown.
-    void retract(VoxelState& voxel) const noexcept;
+    /// Adds a term below 0 to the evidence, other than counts, that the voxel is occupied. When that no
+    /// longer marks the voxel, all of it is removed: without counts that suffice to know the voxel, it
+    /// becomes unknown, never free.
+    void weaken(VoxelState& voxel, float term) const noexcept;
     /// Makes the voxel unknown, as if nothing had ever been measured there.
     static void expire(VoxelState& voxel) noexcept { voxel = {}; }
     /// Recomputes `log_odds` from the other members, for instance under other limits.

@@ -151,10 +151,11 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
         raw_ = image;
     }
     const std::uint64_t robot_pixels = denoiser_ ? denoise(image, frame, robot) : filter(image, frame, robot);
-    const bool is_moving = denoiser_ && frame.T_map_camera;
+    ImageNotes notes;
+    if (denoiser_) notes.doubts_m = denoiser_->doubts_m();
+    if (denoiser_ && frame.T_map_camera) notes.miss_log_odds = config_.moving_miss_log_odds;
     Result<DepthUpdates, DepthRejection> updates =
-        integrator_.integrate(image, T_map_camera_of(frame),
-                              is_moving ? std::optional(config_.moving_miss_log_odds) : std::nullopt);
+        integrator_.integrate(image, T_map_camera_of(frame), notes);
     if (!updates) {
         return unexpected(reason_of(updates.error()));
     }

@@ -15,7 +15,9 @@ constexpr double kFilterDepth_m = 2.5;
 
 NamedNoise kinect(const std::string& name) {
     const sim::KinectNoise noise;
-    return {name, {noise}, {noise.sigma_min_m, noise.sigma_growth_per_m, noise.sigma_min_at_m}};
+    return {name,
+            {noise},
+            {noise.sigma_min_m, noise.sigma_growth_per_m, noise.sigma_min_at_m, noise.bias_growth_per_m}};
 }
 
 std::optional<double> sigma_of(const std::string& text) {
@@ -29,7 +31,8 @@ std::optional<double> sigma_of(const std::string& text) {
 
 Result<MappingConfig, AppError> given_noise(MappingConfig mapping, const DepthNoiseLaw& law, double factor) {
     mapping.removes_robot_from_depth = false;
-    mapping.depth_denoiser.noise = {factor * law.constant_m, factor * law.quadratic_per_m, law.from_m};
+    mapping.depth_denoiser.noise = {factor * law.constant_m, factor * law.quadratic_per_m, law.from_m,
+                                    law.bias_per_m};
     mapping.depth_filter.sigma_m = factor * law.sigma_m(kFilterDepth_m);
     const double gate_m = std::max(mapping.depth_filter.gate_m(), mapping.depth_filter.mean_gate_m());
     if (mapping.depth_filter.is_enabled && gate_m > DepthFilterConfig::kGateMax_m) {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <random>
 #include <vector>
@@ -67,9 +68,10 @@ class VoxelByVoxel {
                     [](DatedVoxel&, float) {});
             case EvidenceRule::clear:
                 return clear(evidence, spares);
-            case EvidenceRule::retract:
+            case EvidenceRule::weaken:
                 return for_each(
-                    evidence, [&](DatedVoxel& voxel) { retract(voxel); }, [](DatedVoxel&, float) {});
+                    evidence, [&](DatedVoxel& voxel) { weaken(voxel, evidence.miss); },
+                    [](DatedVoxel&, float) {});
         }
     }
 
@@ -151,8 +153,8 @@ class VoxelByVoxel {
         };
         for_each(evidence, mark, [](DatedVoxel&, float) {});
     }
-    void retract(DatedVoxel& voxel) const {
-        rules_.retract(voxel.state);
+    void weaken(DatedVoxel& voxel, float term) const {
+        rules_.weaken(voxel.state, term);
         const bool has_counts = voxel.state.hits > 0.0F || voxel.state.misses > 0.0F;
         if (std::isnan(voxel.state.log_odds) && !has_counts) voxel = {};
     }
@@ -184,13 +186,15 @@ class RandomEvidence {
         evidence.rule = static_cast<EvidenceRule>(below(7));
         if (evidence.rule == EvidenceRule::withdraw && !withdraws) evidence.rule = EvidenceRule::counts;
         const bool is_image = evidence.rule == EvidenceRule::image;
-        const bool is_of_camera = is_image || evidence.rule == EvidenceRule::retract;
+        const bool is_of_camera = is_image || (evidence.rule == EvidenceRule::weaken && below(2) == 0);
         evidence.sensor = is_of_camera ? SensorKind::camera : SensorKind::range;
         if (evidence.rule == EvidenceRule::terms && below(4) == 0)
             evidence.sensor = below(2) == 0 ? SensorKind::camera : SensorKind::none;
         evidence.prefers_occupied = below(2) == 0;
         const bool is_counts = evidence.rule == EvidenceRule::counts;
         evidence.miss = is_counts ? 0.37F : -0.4F;
+        if (evidence.rule == EvidenceRule::weaken && below(2) == 0)
+            evidence.miss = std::numeric_limits<float>::lowest();
         evidence.hit = is_counts ? 1.0F : 2.0F;
         // An image has each brick once, in order; others may come back to one.
         const std::size_t bricks = 1 + below(is_image ? kBricks : 6);

@@ -59,7 +59,7 @@ class PassesOfReadings final : public CommitListener {
             for (auto& [zone, passes] : of_zone_)
                 for (const CapVoxel& voxel : voxels->cap) passes.erase(voxel.key);
         } else {
-            for_each_term(*rays_.find(beam).value(), [&](const VoxelUpdate& term) {
+            for_each_term(rays_.find(beam).value()->terms, [&](const VoxelUpdate& term) {
                 if (term.log_odds < 0.0F) passed.insert(term.key);
             });
         }

@@ -132,8 +132,9 @@ INSTANTIATE_TEST_SUITE_P(Updates, Clearing,
 /// As a pixel has it that ended in the voxel and now ends behind it.
 void see_through(FusedMap& map) {
     Evidence retracted;
-    retracted.rule = EvidenceRule::retract;
+    retracted.rule = EvidenceRule::weaken;
     retracted.sensor = SensorKind::camera;
+    retracted.miss = std::numeric_limits<float>::lowest();
     put_in(retracted.last(brick_of(kKey)).voxels, cell_of(kKey));
     feed(map, retracted);
     feed(map, kPassing);

@@ -62,7 +62,7 @@ std::vector<MortonCode> found_by(EndMemory& memory, const Places& now,
     retracted.rule = EvidenceRule::terms;
     retracted.bricks.resize(3);  // is replaced
     memory.find(image_of(now), changes, terms_of(now, passed), retracted);
-    EXPECT_EQ(retracted.rule, EvidenceRule::retract);
+    EXPECT_EQ(retracted.rule, EvidenceRule::weaken);
     EXPECT_EQ(retracted.sensor, SensorKind::camera);
     EXPECT_TRUE(retracted.cells.empty());
     EXPECT_TRUE(std::ranges::is_sorted(retracted.bricks, std::ranges::less_equal{}, &BrickEvidence::first));

@@ -32,11 +32,11 @@ VoxelUpdate update_at(int x, float log_odds) {
 }
 
 /// In the order of the ray.
-std::vector<VoxelUpdate> terms_of(const Result<const Evidence*, BeamRejection>& evidence) {
-    EXPECT_EQ((*evidence)->rule, EvidenceRule::terms);
-    EXPECT_EQ((*evidence)->sensor, SensorKind::range);
+std::vector<VoxelUpdate> terms_of(const Result<const RayEvidence*, BeamRejection>& evidence) {
+    EXPECT_EQ((*evidence)->terms.rule, EvidenceRule::terms);
+    EXPECT_EQ((*evidence)->terms.sensor, SensorKind::range);
     std::vector<VoxelUpdate> terms;
-    for_each_term(**evidence, [&](const VoxelUpdate& term) { terms.push_back(term); });
+    for_each_term((*evidence)->terms, [&](const VoxelUpdate& term) { terms.push_back(term); });
     return terms;
 }
 
@@ -46,6 +46,53 @@ TEST(RayModel, misses_what_it_passes_and_hits_its_endpoint_last) {
     ASSERT_TRUE(evidence.has_value());
     EXPECT_THAT(terms_of(evidence), ElementsAre(update_at(0, -0.4F), update_at(1, -0.4F), update_at(2, -0.4F),
                                                 update_at(3, 0.9916F)));
+}
+
+std::vector<VoxelUpdate> weakened_by(const Result<const RayEvidence*, BeamRejection>& evidence) {
+    EXPECT_EQ((*evidence)->weakened.rule, EvidenceRule::weaken);
+    EXPECT_EQ((*evidence)->weakened.sensor, SensorKind::range);
+    std::vector<VoxelUpdate> weakened;
+    for_each_term((*evidence)->weakened, [&](const VoxelUpdate& term) { weakened.push_back(term); });
+    return weakened;
+}
+
+TEST(RayModel, only_weakens_where_its_surface_may_be) {
+    MappingConfig config = paper_mapping();
+    config.ray_end_sigmas = 2.0;
+    RayModel model(config);
+    // The end is at 0.22 m. The voxels of 4 cm end at 0.04, 0.08 m ...: the third at 0.12 m.
+    Beam beam = beam_along_x(0.2);
+    const auto misses_at = [](std::initializer_list<int> voxels) {
+        std::vector<VoxelUpdate> misses;
+        for (const int x : voxels) misses.push_back(update_at(x, -0.4F));
+        return misses;
+    };
+    struct Case {
+        double sigma_m;
+        std::vector<VoxelUpdate> passed;
+        std::vector<VoxelUpdate> weakened;
+    };
+    for (const Case& c :
+         {Case{0.0, misses_at({0, 1, 2, 3, 4}), {}}, Case{0.0099, misses_at({0, 1, 2, 3, 4}), {}},
+          Case{0.0101, misses_at({0, 1, 2, 3}), misses_at({4})},
+          Case{0.0501, misses_at({0, 1}), misses_at({2, 3, 4})}, Case{0.5, {}, misses_at({0, 1, 2, 3, 4})}}) {
+        SCOPED_TRACE(c.sigma_m);
+        beam.sigma_m = c.sigma_m;
+        const auto evidence = model.find(beam);
+        ASSERT_TRUE(evidence.has_value());
+        std::vector<VoxelUpdate> terms = c.passed;
+        terms.push_back(update_at(5, 0.986F));
+        EXPECT_EQ(terms_of(evidence), terms);
+        EXPECT_EQ(weakened_by(evidence), c.weakened);
+    }
+    beam.range_m.reset();
+    beam.clear_limit_m = 0.12;
+    config.no_return_clear_m = 1.0;
+    RayModel clearing(config);
+    const auto without_end = clearing.find(beam);
+    ASSERT_TRUE(without_end.has_value());
+    EXPECT_EQ(terms_of(without_end), misses_at({0, 1, 2}));
+    EXPECT_THAT(weakened_by(without_end), IsEmpty());
 }
 
 TEST(RayModel, leaves_out_a_hit_of_zero_but_not_the_misses_before_it) {

@@ -39,7 +39,9 @@ TEST(DenoiserKeys, are_refused_out_of_their_range) {
           Range{"noise_from_m", "0", "-0.01", "10", "10.1"}, Range{"gate_sigmas", "0.1", "0", "100", "101"},
           Range{"step_sigmas", "0.1", "0", "100", "101"}, Range{"drift_sigmas", "0.1", "0", "100", "101"},
           Range{"drift_memory", "0", "-0.01", "0.99", "1"}, Range{"count_max", "1", "0", "10000", "10001"},
-          Range{"pair_sigmas", "0.1", "0", "100", "101"}, Range{"min_support", "0", "-1", "24", "25"}}) {
+          Range{"pair_sigmas", "0.1", "0", "100", "101"}, Range{"min_support", "0", "-1", "24", "25"},
+          Range{"bias_per_m", "0", "-0.01", "0.1", "0.11"},
+          Range{"doubt_sigmas", "0", "-0.1", "100", "101"}}) {
         const std::string key = std::string("depth_denoiser.") + range.key;
         const auto text = [&](const char* value) {
             return std::string("depth_denoiser:\n  ") + range.key + ": " + value + "\n";

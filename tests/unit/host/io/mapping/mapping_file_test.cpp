@@ -103,10 +103,11 @@ TEST(MappingFile, reads_every_key) {
         "miss_log_odds: -0.5\ndepth_update: paper\n"
         "depth_filter: {is_enabled: false, window_px: 3, sigma_m: 0.01, gate_sigmas: 5, mean_sigmas: 2, "
         "min_support: 4}\n"
-        "depth_denoiser: {noise_m: 0.0025, noise_per_m: 0.0019, noise_from_m: 0.5, gate_sigmas: 4.5, "
+        "depth_denoiser: {noise_m: 0.0025, noise_per_m: 0.0019, noise_from_m: 0.5, bias_per_m: 0.0625, "
+        "gate_sigmas: 4.5, "
         "step_sigmas: 5.5, drift_sigmas: 2.5, drift_memory: 0.75, count_max: 33, pair_sigmas: 2.25, "
-        "min_support: 7}\nmoving_miss_log_odds: -0.125\n"
-        "range_update: ray\n"
+        "min_support: 7, doubt_sigmas: 1.75}\nmoving_miss_log_odds: -0.125\n"
+        "range_update: ray\nray_end_sigmas: 1.5\n"
         "cone: {hit_range_max_m: 2, cap_half_thickness_m: 0.25, cap_sigmas: 1.5, core_weight_min: 0.75, "
         "core_margin_voxels: 0.125, hit_mass: 1.25, miss_mass: 0.625, cap_angle_share: 0.75}\n"
         "zone: {hit_range_max_m: 3, cap_half_thickness_m: 0.5, cap_sigmas: 2.5, core_weight_min: 0.875, "
@@ -147,6 +148,7 @@ TEST(MappingFile, reads_every_key) {
              .depth = {.offset = 0.75, .slope_per_m = 0.5, .range_min_m = 1.5, .is_min_exclusive = false},
              .miss_log_odds = -0.5F},
         .range_update = RangeUpdate::ray,
+        .ray_end_sigmas = 1.5,
         .cone = {.hit_range_max_m = 2.0,
                  .cap_half_thickness_m = 0.25,
                  .cap_sigmas = 1.5,
@@ -171,14 +173,16 @@ TEST(MappingFile, reads_every_key) {
                          .gate_sigmas = 5.0,
                          .mean_sigmas = 2.0,
                          .min_support = 4},
-        .depth_denoiser = {.noise = {.constant_m = 0.0025, .quadratic_per_m = 0.0019, .from_m = 0.5},
-                           .gate_sigmas = 4.5,
-                           .step_sigmas = 5.5,
-                           .drift_sigmas = 2.5,
-                           .drift_memory = 0.75,
-                           .count_max = 33,
-                           .pair_sigmas = 2.25,
-                           .support_min = 7},
+        .depth_denoiser =
+            {.noise = {.constant_m = 0.0025, .quadratic_per_m = 0.0019, .from_m = 0.5, .bias_per_m = 0.0625},
+             .gate_sigmas = 4.5,
+             .step_sigmas = 5.5,
+             .drift_sigmas = 2.5,
+             .drift_memory = 0.75,
+             .count_max = 33,
+             .pair_sigmas = 2.25,
+             .support_min = 7,
+             .doubt_sigmas = 1.75},
         .moving_miss_log_odds = -0.125F,
         .depth_range_max_m = 3.5,
         .removes_robot_from_depth = false,
@@ -334,8 +338,8 @@ TEST(MappingFile, expects_of_each_key_what_the_table_of_keys_declares) {
 
 TEST(MappingFile, writes_each_key_of_the_table_once_and_no_other) {
     const auto values = values_by_path(mapping_text(denoised_mapping()));
-    EXPECT_EQ(values.size(), 76U);
-    EXPECT_EQ(mapping_keys().size(), 76U);
+    EXPECT_EQ(values.size(), 79U);
+    EXPECT_EQ(mapping_keys().size(), 79U);
     for (const MappingKey& key : mapping_keys()) {
         ASSERT_TRUE(values.contains(std::string(key.path))) << key.path;
         EXPECT_EQ(values.at(std::string(key.path)), value_text(key, denoised_mapping())) << key.path;

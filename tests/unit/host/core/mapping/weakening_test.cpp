@@ -1,4 +1,4 @@
-// VoxelRules::retract for every kind of voxel, and RetractionWriter, which does the same in a map.
+// VoxelRules::weaken for every kind of voxel, and WeakeningWriter, which does the same in a map.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -16,6 +16,7 @@ namespace {
 
 constexpr VoxelKey kKey{32768, 32768, 32768};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kAll = std::numeric_limits<float>::lowest();
 
 std::uint32_t bits_of(float value) {
     return std::isnan(value) ? 0x7FC0'0000U : std::bit_cast<std::uint32_t>(value);
@@ -57,12 +58,12 @@ Occupancy by_counts_alone(const CountModel& model, float hits, float misses) {
     return misses > model.misses_min ? Occupancy::free : Occupancy::unknown;
 }
 
-TEST(Retraction, leaves_what_range_sensors_have_counted) {
+TEST(Weakening, leaves_what_range_sensors_have_counted) {
     for (const MapConfig& config : configurations()) {
         const VoxelRules rules(config);
         for (const VoxelState& before : states(config, true)) {
             VoxelState after = before;
-            rules.retract(after);
+            rules.weaken(after, kAll);
             EXPECT_EQ(after.hits, before.hits);
             EXPECT_EQ(after.misses, before.misses);
             if (!(before.prior >= config.log_odds_occupied)) {
@@ -79,6 +80,24 @@ TEST(Retraction, leaves_what_range_sensors_have_counted) {
             rules.fuse(anew);
             EXPECT_EQ(bits_of(after.log_odds), bits_of(anew.log_odds));
         }
+    }
+}
+
+TEST(Weakening, takes_from_what_is_occupied_until_it_is_unknown_and_nothing_from_others) {
+    const VoxelRules rules(denoised_mapping().map);
+    VoxelState voxel{.log_odds = 0.9F, .prior = 0.9F};
+    for (const float left : {0.9F - 0.4F, 0.9F - 0.4F - 0.4F}) {
+        rules.weaken(voxel, -0.4F);
+        EXPECT_EQ(voxel.log_odds, left);
+        EXPECT_EQ(voxel.prior, left);
+    }
+    rules.weaken(voxel, -0.4F);
+    EXPECT_EQ(rules.occupancy(voxel.log_odds), Occupancy::unknown);
+    EXPECT_TRUE(std::isnan(voxel.prior));
+    for (const float prior : {kNan, -0.4F}) {
+        VoxelState other{.log_odds = prior, .prior = prior};
+        rules.weaken(other, -0.4F);
+        EXPECT_EQ(bits_of(other.log_odds), bits_of(prior));
     }
 }
 
@@ -106,25 +125,26 @@ FusedMap map_of(const MapConfig& config, const std::vector<VoxelState>& states, 
 }
 
 /// All of the first `voxels` voxels from kKey's brick on.
-Evidence all_of(std::size_t voxels) {
+Evidence all_of(std::size_t voxels, float term) {
     Evidence evidence;
-    evidence.rule = EvidenceRule::retract;
+    evidence.miss = term;
+    evidence.rule = EvidenceRule::weaken;
     for (std::size_t i = 0; i < voxels; ++i)
         put_in(evidence.last(brick_of(kKey) + i / kBrickVoxels * kBrickVoxels).voxels, i % kBrickVoxels);
     return evidence;
 }
 
-void expect_retracted(const MapConfig& config, bool has_counts) {
+void expect_weakened(const MapConfig& config, bool has_counts, float term) {
     const VoxelRules rules(config);
     const std::vector<VoxelState> before = states(config, has_counts);
     FusedMap map = map_of(config, before, has_counts);
-    map.apply(all_of(before.size()));
+    map.apply(all_of(before.size(), term));
     std::size_t known = 0;
     std::size_t changed = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
         SCOPED_TRACE(i);
         VoxelState expected = before[i];
-        rules.retract(expected);
+        rules.weaken(expected, term);
         const VoxelKey key = key_of_morton(brick_of(kKey) + i);
         const MapLayers& layers = map.layers();
         EXPECT_EQ(bits_of(layers.log_odds.find(brick_of(key)).at(cell_of(key))), bits_of(expected.log_odds));
@@ -146,16 +166,19 @@ void expect_retracted(const MapConfig& config, bool has_counts) {
     EXPECT_EQ(map.known_voxels(), known);
     EXPECT_EQ(map.counters().applied, changed);
     EXPECT_EQ(map.counters().refused(), 0U);
-    // Nothing is left to retract.
+    if (term != kAll) return;
+    // Nothing is left to take.
     const FusedMap first = map.copy();
-    map.apply(all_of(before.size()));
+    map.apply(all_of(before.size(), term));
     EXPECT_EQ(map.counters(), first.counters());
 }
 
-TEST(Retraction, is_written_as_the_rule_says_for_voxels_of_every_kind) {
+TEST(Weakening, is_written_as_the_rule_says_for_voxels_of_every_kind) {
     for (const MapConfig& config : configurations()) {
-        expect_retracted(config, false);
-        expect_retracted(config, true);
+        for (const float term : {kAll, -0.4F}) {
+            expect_weakened(config, false, term);
+            expect_weakened(config, true, term);
+        }
     }
 }
 
@@ -166,22 +189,22 @@ Evidence image_of(std::vector<VoxelUpdate> updates) {
     return terms;
 }
 
-TEST(Retraction, gives_the_memory_of_a_brick_back_when_nothing_of_it_is_known) {
+TEST(Weakening, gives_the_memory_of_a_brick_back_when_nothing_of_it_is_known) {
     FusedMap map(denoised_mapping().map);
     map.advance_time(HostTime{0});
     map.apply(image_of({{kKey, 0.8F}, {key_of_morton(morton_of(kKey) + 3), 0.8F}}));
     EXPECT_EQ(map.known_voxels(), 2U);
     EXPECT_EQ(map.bricks().size(), 1U);
-    map.apply(all_of(1));
+    map.apply(all_of(1, kAll));
     EXPECT_EQ(map.known_voxels(), 1U);
     EXPECT_EQ(map.bricks().size(), 1U);
-    map.apply(all_of(512));
+    map.apply(all_of(512, kAll));
     EXPECT_EQ(map.known_voxels(), 0U);
     EXPECT_TRUE(map.bricks().empty());
     EXPECT_EQ(map.layers().log_odds.memory_bytes(), 0U);
 }
 
-TEST(Retraction, lets_counts_without_effect_expire) {
+TEST(Weakening, lets_counts_without_effect_expire) {
     MapConfig config = denoised_mapping().map;
     config.age = {.stale_after_s = 1, .unknown_after_s = 10};
     FusedMap map(config);
@@ -193,7 +216,7 @@ TEST(Retraction, lets_counts_without_effect_expire) {
     model.hit_mass = 0.5F;  // below hits_min
     feed(map, cone, model);
     EXPECT_EQ(map.occupancy(kKey), Occupancy::occupied);
-    map.apply(all_of(1));
+    map.apply(all_of(1, kAll));
     EXPECT_EQ(map.occupancy(kKey), Occupancy::unknown);
     EXPECT_EQ(map.layers().counts.hits.bricks(), 1U);
     map.advance_time(HostTime{11'000'000'000});
@@ -201,11 +224,11 @@ TEST(Retraction, lets_counts_without_effect_expire) {
     EXPECT_EQ(map.layers().counts.hits.bricks(), 0U);
 }
 
-TEST(Retraction, leaves_a_copy_of_the_map_as_it_was) {
+TEST(Weakening, leaves_a_copy_of_the_map_as_it_was) {
     FusedMap map(denoised_mapping().map);
     map.apply(image_of({{kKey, 0.8F}}));
     const FusedMap copy = map.copy();
-    map.apply(all_of(1));
+    map.apply(all_of(1, kAll));
     EXPECT_EQ(copy.occupancy(kKey), Occupancy::occupied);
     EXPECT_EQ(copy.known_voxels(), 1U);
     EXPECT_EQ(map.known_voxels(), 0U);
