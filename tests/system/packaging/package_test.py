@@ -11,7 +11,8 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
 HELPERS = "usr/libexec/octoskin"
 PROGRAMS = {"usr/bin/octoskin", "usr/bin/octoskin-node", f"{HELPERS}/octoskin-camera",
-            f"{HELPERS}/octoskin-film", f"{HELPERS}/octoskin-oni-read", f"{HELPERS}/octoskin-oni-write"}
+            f"{HELPERS}/octoskin-film", f"{HELPERS}/octoskin-mesh-read", f"{HELPERS}/octoskin-oni-read",
+            f"{HELPERS}/octoskin-oni-write"}
 LAB_PROGRAMS = {"usr/bin/octoskin-lab", f"{HELPERS}/octoskin-world-read"}
 LINKS = {"usr/share/doc/octoskin/hw", f"{HELPERS}/openni2/libOpenNI2.so.0", f"{HELPERS}/openni2/OpenNI2/Drivers/libOniFile.so.0"}
 SETTINGS = {"etc/default/octoskin", "etc/default/octoskin-node"}
