@@ -137,5 +137,15 @@ TEST(MeshFile, refuses_other_endings_and_damaged_content) {
         EXPECT_FALSE(read_mesh(folder.write("cut.stl", whole.substr(0, bytes)))) << bytes;
 }
 
+TEST(MeshPolygons, that_cannot_be_cut_into_triangles_are_refused) {
+    const testing_support::ScratchFolder folder;
+    const auto file = folder.write("a.obj",
+                                   "v 0 0 0\nv 0.5 0.5 0\nv 0.5 0 0\nv 0 0.5 0\nv 0.2 0.9 0\nv 0.9 0.1 0\n"
+                                   "v 0.1 0.2 0\nv 0 0 1\nf 1 2 3 4 5 6 7\nf 1 2 8\n");
+    const auto mesh = read_mesh(file);
+    ASSERT_FALSE(mesh);
+    EXPECT_NE(mesh.error().find("3 of 6"), std::string::npos) << mesh.error();
+}
+
 }  // namespace
 }  // namespace octoskin
