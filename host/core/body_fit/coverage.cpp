@@ -83,11 +83,11 @@ std::optional<Triangle> first_uncovered(const SurfaceMesh& mesh, std::span<const
 void grow_to_cover(const SurfaceMesh& mesh, std::vector<PosedCapsule>& capsules, double grown_m,
                    double edge_m, FitWork* work) {
     assert(!capsules.empty());
-    constexpr double kRounding_m = 1e-9;
+    constexpr double kMore_m = 1e-9;
     walk(mesh, capsules, grown_m, edge_m, work, [&](const Triangle& piece) {
         const auto nearest = std::ranges::min_element(
             capsules, {}, [&](const PosedCapsule& capsule) { return lacking_m(capsule, piece); });
-        nearest->radius_m += std::max(0.0, lacking_m(*nearest, piece) - grown_m) + kRounding_m;
+        nearest->radius_m += std::max(0.0, lacking_m(*nearest, piece) - grown_m) + kMore_m;
         return true;
     });
 }
