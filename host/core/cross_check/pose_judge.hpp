@@ -29,8 +29,8 @@ class PoseJudge {
     /// Call after all comparisons with one image, made at `now`. About 20 us for 34 sensors.
     void decide(HostTime now);
 
-    /// Set when one of the two judges has had an error for 3 s: the error of the one that has explained clearly
-    /// more for 3 s, otherwise both.
+    /// Set when one of the two judges has had an error for 3 s: the error of the one that has explained
+    /// clearly more for 3 s, otherwise both.
     [[nodiscard]] const std::optional<PoseFault>& fault() const noexcept { return fault_; }
     /// True if an error of either is so likely that no sensor may be reported.
     [[nodiscard]] bool is_suspect() const noexcept { return camera_.is_suspect() || joints_.is_suspect(); }
