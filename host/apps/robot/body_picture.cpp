@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "host/core/body_fit/bounding_box.hpp"
+#include "host/core/text/markup.hpp"
 #include "host/core/text/printable.hpp"
 
 namespace octoskin {
@@ -21,31 +23,8 @@ struct View {
 };
 constexpr std::array kViews{View{0, 2, "x, z"}, View{1, 2, "y, z"}, View{0, 1, "x, y"}};
 
-/// Text in XML.
-std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : printable(text)) {
-        if (c == '<') {
-            safe += "&lt;";
-        } else if (c == '&') {
-            safe += "&amp;";
-        } else {
-            safe += c;
-        }
-    }
-    return safe;
-}
-
-Eigen::AlignedBox3d box_of(const LinkBody& link) {
-    Eigen::AlignedBox3d box;
-    for (const PosedCapsule& capsule : link.fit->capsules) {
-        for (const Eigen::Vector3d& end : {capsule.p_a, capsule.p_b}) {
-            box.extend(Eigen::Vector3d(end.array() - capsule.radius_m));
-            box.extend(Eigen::Vector3d(end.array() + capsule.radius_m));
-        }
-    }
-    for (const Eigen::Vector3d& vertex : link.mesh.vertices) box.extend(vertex);
-    return box;
+Eigen::AlignedBox3d box_of_all(const LinkBody& link) {
+    return box_of(link.fit->capsules).merged(box_of(link.mesh));
 }
 
 /// A view of one link, with its corner at (x, y).
@@ -87,10 +66,10 @@ class Panel {
 };
 
 std::string row_of(const LinkBody& link, double top_px) {
-    const Eigen::AlignedBox3d box = box_of(link);
+    const Eigen::AlignedBox3d box = box_of_all(link);
     std::string row = fmt::format(
         "<text x=\"8\" y=\"{:.0f}\">{}: {} capsules; a panel is {:.0f} mm wide; {}; {}; {}</text>\n",
-        top_px + 18.0, escaped(link.link), link.fit->capsules.size(), 1e3 * box.sizes().maxCoeff(),
+        top_px + 18.0, escaped(printable(link.link)), link.fit->capsules.size(), 1e3 * box.sizes().maxCoeff(),
         kViews[0].name, kViews[1].name, kViews[2].name);
     for (std::size_t i = 0; i < kViews.size(); ++i) {
         const Panel panel(box, kViews[i], kSide_px * static_cast<double>(i), top_px + kHead_px);

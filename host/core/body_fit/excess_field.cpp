@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/core/body_fit/bounding_box.hpp"
+#include "host/core/body_fit/grid_flood.hpp"
 #include "host/core/body_fit/row_cut.hpp"
 
 namespace octoskin {
@@ -20,8 +22,7 @@ constexpr double kFarthest_m = 0.10;
 }  // namespace
 
 ExcessField::ExcessField(const SurfaceMesh& mesh, const MeshDistance& distance, const ConvexHull* hull) {
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+    Eigen::AlignedBox3d box = box_of(mesh);
     const double margin_m = std::clamp(kMarginShare * box.diagonal().norm(), kMarginMin_m, kMarginMax_m);
     box.min().array() -= margin_m;
     box.max().array() += margin_m;
@@ -35,7 +36,10 @@ ExcessField::ExcessField(const SurfaceMesh& mesh, const MeshDistance& distance, 
     });
     const auto width = static_cast<std::size_t>(size_.x());
     RowInterval in_hull;
-    const std::vector<bool> is_outside = reached_from_border(distances_m);
+    const auto wall_m = static_cast<float>(0.6 * side_m_);
+    // The margin connects all of the border.
+    const std::vector<bool> is_outside =
+        reached_from_corner(size_, [&](std::size_t voxel) { return distances_m[voxel] < wall_m; });
     for_each_voxel([&](std::size_t voxel, const Eigen::Vector3d& point) {
         if (hull != nullptr && voxel % width == 0) in_hull = hull->row(point.y(), point.z());
         float& weight = weights_[voxel];
@@ -60,27 +64,6 @@ void ExcessField::for_each_voxel(Use&& use) const {
             }
         }
     }
-}
-
-std::vector<bool> ExcessField::reached_from_border(const std::vector<float>& distances_m) const {
-    const auto wall_m = static_cast<float>(0.6 * side_m_);
-    std::vector<bool> is_reached(distances_m.size(), false);
-    std::vector<Eigen::Vector3i> open{Eigen::Vector3i::Zero()};  // the margin connects all of the border
-    is_reached[0] = true;
-    while (!open.empty()) {
-        const Eigen::Vector3i at = open.back();
-        open.pop_back();
-        for (int side = 0; side < 6; ++side) {
-            Eigen::Vector3i next = at;
-            next[side / 2] += side % 2 == 0 ? 1 : -1;
-            if ((next.array() < 0).any() || (next.array() >= size_.array()).any()) continue;
-            const std::size_t voxel = row_start(next.y(), next.z()) + static_cast<std::size_t>(next.x());
-            if (is_reached[voxel] || distances_m[voxel] < wall_m) continue;
-            is_reached[voxel] = true;
-            open.push_back(next);
-        }
-    }
-    return is_reached;
 }
 
 template <typename Use>

@@ -36,8 +36,6 @@ class ExcessField {
     void for_each_row(const PosedCapsule& capsule, Use&& use) const;
     template <typename Use>
     void for_each_voxel(Use&& use) const;
-    /// Whether a way leads from the border of the grid to the voxel without passing the mesh.
-    [[nodiscard]] std::vector<bool> reached_from_border(const std::vector<float>& distances_m) const;
     [[nodiscard]] std::size_t row_start(int y, int z) const {
         return static_cast<std::size_t>(z * size_.y() + y) * static_cast<std::size_t>(size_.x());
     }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "host/core/body_fit/body_search.hpp"
+#include "host/core/body_fit/bounding_box.hpp"
 #include "host/core/body_fit/coverage.hpp"
 #include "host/core/body_fit/spread_points.hpp"
 
@@ -17,12 +18,6 @@ constexpr double kExcessSmall = 0.08;  ///< of the hull's volume, weighted: more
 constexpr double kExcessMost = 0.42;
 constexpr double kProtrusionP99Most_m = 0.029;
 constexpr double kProtrusionMost_m = 0.048;
-
-double diagonal_m(const SurfaceMesh& mesh) {
-    Eigen::AlignedBox3d box;
-    for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
-    return box.diagonal().norm();
-}
 
 /// The worst measure by its limit: at most 1 if all are kept.
 double badness(const FitMeasures& measures) {
@@ -35,7 +30,7 @@ class LinkFit {
   public:
     explicit LinkFit(const SurfaceMesh& mesh)
         : mesh_(mesh),
-          diagonal_m_(diagonal_m(mesh)),
+          diagonal_m_(box_of(mesh).diagonal().norm()),
           distance_(mesh, &work_),
           hull_(ConvexHull::around(mesh.vertices)),
           field_(mesh, distance_, hull_ ? &*hull_ : nullptr),

@@ -27,10 +27,9 @@ struct BodyFit {
 /// Capsules that cover the surface within kCoveredWithin_m, which first_uncovered() (coverage.hpp) confirms.
 /// At most kCapsulesFew, unless these exceed 42 % of the hull's volume outside of it, or 29 mm from the mesh
 /// on more than 1 % of their outer surface, or 48 mm anywhere: then 12, 16, 24 or kCapsulesMost, the first
-/// number that keeps these limits, or the best one. None if that
-/// needs more work than FitWork::kMost: about ten seconds, for many large triangles that cross. `mesh` has a
-/// triangle; all coordinates are finite. The same result on each processor for one build. About a second for
-/// a link of 30,000 triangles, 3 s at most.
+/// number that keeps these limits, or the best one. None if that needs more work than FitWork::kMost, about
+/// ten seconds, as for many large triangles that cross. `mesh` has a triangle; all coordinates are finite.
+/// The same result on each processor for one build. About a second for a link of 30,000 triangles.
 [[nodiscard]] std::optional<BodyFit> fit_capsules(const SurfaceMesh& mesh);
 
 }  // namespace octoskin

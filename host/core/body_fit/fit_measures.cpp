@@ -6,33 +6,26 @@
 #include <utility>
 #include <vector>
 
+#include "host/core/body_fit/bounding_box.hpp"
 #include "host/core/body_fit/golden_turn.hpp"
+#include "host/core/body_fit/grid_flood.hpp"
+#include "host/core/body_fit/row_cut.hpp"
 
 namespace octoskin {
 namespace {
 
 constexpr double kSpacing_m = 0.004;
-constexpr double kPointsMost =
-    60'000.0;  ///< of a capsule: the spacing is larger on one of over a square metre
+/// Of a capsule: on one of over a square metre, the spacing is larger.
+constexpr double kPointsMost = 60'000.0;
 constexpr double kRows = 8'000.0;
 constexpr double kVoxelsAround = 60'000.0;
 constexpr double kMeasuredUpTo_m = 1.0;
-
-Eigen::AlignedBox3d box_around(std::span<const PosedCapsule> capsules) {
-    Eigen::AlignedBox3d box;
-    for (const PosedCapsule& capsule : capsules) {
-        const Eigen::Vector3d radius = Eigen::Vector3d::Constant(capsule.radius_m);
-        box.extend(capsule.p_a.cwiseMin(capsule.p_b) - radius);
-        box.extend(capsule.p_a.cwiseMax(capsule.p_b) + radius);
-    }
-    return box;
-}
 
 /// The space around the set that a way leads to from far away.
 class Surroundings {
   public:
     explicit Surroundings(std::span<const PosedCapsule> capsules) {
-        Eigen::AlignedBox3d box = box_around(capsules);
+        Eigen::AlignedBox3d box = box_of(capsules);
         side_m_ = std::cbrt(box.volume() / kVoxelsAround);
         box.min().array() -= 2.0 * side_m_;
         box.max().array() += 2.0 * side_m_;
@@ -40,7 +33,7 @@ class Surroundings {
         size_ = (box.sizes() / side_m_).array().ceil().cast<int>();
         is_closed_.resize(index(0, 0, size_.z()));
         for (const PosedCapsule& capsule : capsules) fill(RowCut(capsule));
-        flood();
+        is_reached_ = reached_from_corner(size_, [&](std::size_t voxel) { return is_closed_[voxel]; });
     }
 
     /// Whether a voxel beside the point is reached.
@@ -67,25 +60,6 @@ class Surroundings {
                 const auto first = static_cast<int>(std::ceil((row.from - origin_m_.x()) / side_m_ - 0.5));
                 for (int x = first; origin_m_.x() + (x + 0.5) * side_m_ < row.to; ++x)
                     is_closed_[index(x, y, z)] = true;
-            }
-        }
-    }
-
-    void flood() {
-        is_reached_.resize(is_closed_.size());
-        is_reached_[0] = true;
-        std::vector<Eigen::Vector3i> open{Eigen::Vector3i::Zero()};
-        while (!open.empty()) {
-            const Eigen::Vector3i at = open.back();
-            open.pop_back();
-            for (int side = 0; side < 6; ++side) {
-                Eigen::Vector3i next = at;
-                next[side / 2] += side % 2 == 0 ? 1 : -1;
-                if ((next.array() < 0).any() || (next.array() >= size_.array()).any()) continue;
-                const std::size_t voxel = index(next.x(), next.y(), next.z());
-                if (is_reached_[voxel] || is_closed_[voxel]) continue;
-                is_reached_[voxel] = true;
-                open.push_back(next);
             }
         }
     }
@@ -122,7 +96,7 @@ double length_outside(std::vector<RowInterval>& taken, const RowInterval& hull) 
 
 /// Volume of the set outside the hull.
 double excess_m3(std::span<const PosedCapsule> capsules, const ConvexHull& hull) {
-    const Eigen::AlignedBox3d box = box_around(capsules);
+    const Eigen::AlignedBox3d box = box_of(capsules);
     const double side_m = std::sqrt(box.sizes().y() * box.sizes().z() / kRows);
     const auto rows_y = static_cast<int>(std::ceil(box.sizes().y() / side_m));
     const auto rows_z = static_cast<int>(std::ceil(box.sizes().z() / side_m));

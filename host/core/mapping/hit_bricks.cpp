@@ -242,7 +242,7 @@ std::uint64_t HitBricks::beside_certain(std::uint32_t place, std::size_t face) c
     const std::size_t bit = std::size_t{1} << axis;
     const auto steps = static_cast<std::ptrdiff_t>(word_grid_of(box_).steps[axis]);
     const std::size_t brick = place / kBrickWords;
-    const std::size_t across = axis == 0 ? 1 : axis == 1 ? box_.edge(0) : box_.edge(0) * box_.edge(1);
+    const std::size_t across = static_cast<std::size_t>(steps) / kBrickWords;
     const std::size_t along = brick / across % box_.edge(axis);
     const bool is_high = (place & bit) != 0;
     const bool is_last = is_above ? is_high && along + 1 == box_.edge(axis) : !is_high && along == 0;

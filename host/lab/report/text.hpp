@@ -5,12 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include "host/core/text/markup.hpp"
 #include "host/lab/evaluation/aggregate.hpp"
 
 namespace octoskin::report {
-
-/// Safe inside HTML and SVG, as text and as a quoted attribute; bytes that are not UTF-8 become U+FFFD.
-[[nodiscard]] std::string escaped(std::string_view text);
 
 /// "27 510" with narrow no-break spaces; rounded to the nearest; a minus is U+2212.
 [[nodiscard]] std::string count_text(double count);
