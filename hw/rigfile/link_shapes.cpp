@@ -8,13 +8,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <locale>
 #include <span>
-#include <sstream>
 #include <utility>
 
 #include "hw/rigfile/element_fault.hpp"
 #include "hw/rigfile/urdf_document.hpp"
+#include "hw/rigfile/urdf_numbers.hpp"
 #include "hw/rigfile/urdf_rotation.hpp"
 #include "hw/rigfile/urdf_xml.hpp"
 
@@ -30,18 +29,6 @@ constexpr std::array kKinds{std::pair{"mesh", ShapeKind::mesh}, std::pair{"box",
 std::string text_of(const Element& element, const char* name) {
     const char* const text = element.Attribute(name);
     return text == nullptr ? "" : text;
-}
-
-/// Empty unless the attribute has exactly as many finite numbers.
-template <int Count>
-std::optional<Eigen::Matrix<double, Count, 1>> numbers_of(const Element& element, const char* name) {
-    std::istringstream stream(text_of(element, name));
-    stream.imbue(std::locale::classic());
-    Eigen::Matrix<double, Count, 1> numbers;
-    for (int i = 0; i < Count; ++i)
-        if (!(stream >> numbers[i]) || !std::isfinite(numbers[i])) return std::nullopt;
-    stream >> std::ws;
-    return stream.eof() ? std::optional(numbers) : std::nullopt;
 }
 
 std::optional<Eigen::Isometry3d> place_of(const Element* origin) {

@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <locale>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "hw/rigfile/element_fault.hpp"
+#include "hw/rigfile/urdf_numbers.hpp"
 #include "hw/rigfile/urdf_rotation.hpp"
 #include "hw/rigfile/xacro_remedy.hpp"
 
@@ -42,30 +41,19 @@ void keep_children(Element& parent, Names names) {
     }
 }
 
-/// Whether an attribute has exactly `count` finite numbers.
-bool has_numbers(const Element& element, const char* name, std::size_t count) {
-    const char* const text = element.Attribute(name);
-    std::istringstream numbers(text == nullptr ? "" : text);
-    numbers.imbue(std::locale::classic());
-    std::size_t found = 0;
-    for (double number = 0.0; numbers >> number; ++found)
-        if (!std::isfinite(number)) return false;
-    return numbers.eof() && found == count;
-}
-
 bool has_known_size(const Element* geometry) {
     const Element* const shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
     if (shape == nullptr) return false;
     const std::string_view name = shape->Name();
-    if (name == "box") return has_numbers(*shape, "size", 3);
-    if (name == "sphere") return has_numbers(*shape, "radius", 1);
-    return name == "cylinder" && has_numbers(*shape, "radius", 1) && has_numbers(*shape, "length", 1);
+    if (name == "box") return numbers_of<3>(*shape, "size").has_value();
+    if (name == "sphere") return numbers_of<1>(*shape, "radius").has_value();
+    return name == "cylinder" && numbers_of<1>(*shape, "radius") && numbers_of<1>(*shape, "length");
 }
 
 bool has_known_place(const Element* origin) {
     if (origin == nullptr) return true;
     const auto is_sound = [&](const char* name) {
-        return origin->Attribute(name) == nullptr || has_numbers(*origin, name, 3);
+        return origin->Attribute(name) == nullptr || numbers_of<3>(*origin, name);
     };
     return is_sound("xyz") && is_sound("rpy");
 }
@@ -118,7 +106,7 @@ std::optional<ElementFault> find_shape_fault(const std::filesystem::path& file, 
                           "expected a cylinder, a sphere or a capsule as its <collision>",
                           fmt::format("a <{}>", name), "replace it by one that encloses it, or remove it"});
         }
-        if (name == "capsule" && !(has_numbers(*shape, "radius", 1) && has_numbers(*shape, "length", 1)))
+        if (name == "capsule" && !(numbers_of<1>(*shape, "radius") && numbers_of<1>(*shape, "length")))
             return fault({ErrorCode::bad_value,
                           "expected a <capsule> with a radius and a length, each a finite number of metres"});
     }
@@ -129,13 +117,10 @@ std::optional<ElementFault> find_shape_fault(const std::filesystem::path& file, 
 /// there is an `rpy`, too.
 bool make_rpy(Element& origin) {
     constexpr double kUnit = 1e-3;
-    const char* const text = origin.Attribute("quat_xyzw");
-    if (text == nullptr) return true;
-    if (origin.Attribute("rpy") != nullptr || !has_numbers(origin, "quat_xyzw", 4)) return false;
-    std::istringstream numbers(text);
-    numbers.imbue(std::locale::classic());
-    Eigen::Quaterniond rotation;
-    numbers >> rotation.x() >> rotation.y() >> rotation.z() >> rotation.w();
+    if (origin.Attribute("quat_xyzw") == nullptr) return true;
+    const auto quat = numbers_of<4>(origin, "quat_xyzw");
+    if (origin.Attribute("rpy") != nullptr || !quat) return false;
+    const Eigen::Quaterniond rotation((*quat)[3], (*quat)[0], (*quat)[1], (*quat)[2]);
     if (std::abs(rotation.norm() - 1.0) > kUnit) return false;
     const Eigen::Vector3d rpy = rpy_of(rotation.normalized().toRotationMatrix());
     origin.SetAttribute("rpy", fmt::format("{:.17g} {:.17g} {:.17g}", rpy[0], rpy[1], rpy[2]).c_str());
