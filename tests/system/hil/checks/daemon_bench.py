@@ -176,6 +176,13 @@ class Bench:
         self.end_with_us(daemon.process)
         return daemon
 
+    def without_weakening(self):
+        """Arguments of a daemon whose readings make no known voxel unknown: the count of known voxels never falls, so that it shows
+        how old a saved map is."""
+        configuration = self.folder / "without_weakening.yaml"
+        configuration.write_text("base: denoised\nray_end_sigmas: 0\n")
+        return "--configuration", configuration
+
     def listener(self):
         listener = Listener(self.folder / "heard.log")
         self.end_with_us(listener.process)

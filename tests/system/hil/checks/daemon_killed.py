@@ -85,6 +85,7 @@ class Lane:
 
     def __init__(self, bench, name, random_numbers):
         self.bench, self.name, self.random = bench, name, random_numbers
+        self.configuration = bench.without_weakening()
         # On a disk, where a write takes its time, and of a map that has some bytes: so that a save is long enough to be hit.
         self.maps = bench.folder_on_disk() / name
         self.maps.mkdir()
@@ -94,7 +95,7 @@ class Lane:
         self.oldest_s = 0.0
 
     def start(self):
-        return self.bench.daemon(self.name, "--listen-only", "--save-every", str(SAVE_PERIOD_S), maps=self.maps)
+        return self.bench.daemon(self.name, "--listen-only", "--save-every", str(SAVE_PERIOD_S), *self.configuration, maps=self.maps)
 
     def measure_save(self):
         daemon = self.start()

@@ -2,6 +2,7 @@
 """Recorded traffic, played by canplayer, becomes the daemon's map, and a second daemon that records has the same frames and the
 same map. What they accept and refuse is what `octoskin replay` accepts and refuses of the recorded log, to the last reading: also
 if the emulated processor, or its host, was so busy that frames came late."""
+import itertools
 import json
 import subprocess
 import time
@@ -54,7 +55,9 @@ def check(bench):
     expect("frames on the bus", log, listener.stop())
     expect("frames recorded", log, frames_of(recorded / "can.log"))
     voxels = [status["map"]["known_voxels"] for status in during]
-    claim(voxels == sorted(voxels) and len(set(voxels)) > 1, f"a map that grows: {voxels}")
+    # A reading may make a voxel unknown that lies just before its end. Such voxels are few.
+    most = list(itertools.accumulate(voxels, max))
+    claim(len(set(voxels)) > 1 and all(now >= 0.95 * before for now, before in zip(voxels, most)), f"a map that grows: {voxels}")
     late_s = bench.lateness(RECORDING / "can.log", listener.log)
     if late_s < 0.1:
         claim(any(status["problems"] == [] for status in during), f"no problems at work: {during[-1]['problems']}")

@@ -24,7 +24,7 @@ def until_cut(bench):
     if not (MAPS / "fused.ot").exists():
         map_file.write_cube(MAPS / "fused.ot", 4)  # a save is more than one block
         os.sync()
-    daemon = bench.daemon("cut", "--listen-only", "--save-every", "1", maps=MAPS)
+    daemon = bench.daemon("cut", "--listen-only", "--save-every", "1", *bench.without_weakening(), maps=MAPS)
     daemon.await_start()
     bench.start("canplayer", f"{daemon_bench.CAN}=can0", "-l", "i", "-I", str(RECORDING / "can.log"))
     daemon.await_status("a save", lambda status: status["map"]["saved"] > 0)
