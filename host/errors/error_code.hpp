@@ -87,7 +87,9 @@ inline constexpr std::array kErrorMeanings = {
     ErrorMeaning{ErrorCode::not_found, "not_found", "the file or folder does not exist"},
     ErrorMeaning{ErrorCode::link, "link", "a symbolic link is below the named folder"},
     ErrorMeaning{ErrorCode::outside_folder, "outside_folder", "the name leads out of the folder"},
-    ErrorMeaning{ErrorCode::foreign_owner, "foreign_owner", "the folder to write to belongs to another user"},
+    ErrorMeaning{ErrorCode::foreign_owner, "foreign_owner",
+                 "the folder to write to belongs to another user, or others may change a file that only its "
+                 "owner may change"},
     ErrorMeaning{ErrorCode::wrong_kind_of_file, "wrong_kind_of_file",
                  "a folder, pipe, device or socket in place of a file, or a file in place of a folder"},
     ErrorMeaning{ErrorCode::already_exists, "already_exists", "the output exists already"},

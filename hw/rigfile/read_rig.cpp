@@ -31,6 +31,9 @@ UrdfDocument read_robot(const Table& robot, const std::filesystem::path& urdf_in
     // Absolute, so that it stays valid if this process changes its working directory.
     if (rig.urdf.folder() == nullptr)
         rig.urdf = FilePlace(std::filesystem::absolute(rig.urdf.name()).lexically_normal());
+    auto text = read_urdf_text(rig.urdf);
+    if (!text) throw text.error();
+    rig.urdf = FilePlace::held(*std::move(text), rig.urdf);
     auto document = UrdfDocument::read(rig.urdf);
     if (!document) throw document.error();
     return std::move(document).value();

@@ -115,7 +115,7 @@ inline constexpr double kRangeSelfMarginDefault_m = 0.12;
 struct Rig {
     std::vector<FilePlace> extended_files;  ///< the files that its file extends, the nearest first
     std::string name;
-    FilePlace urdf;  ///< absolute, or below the folder of a recording
+    FilePlace urdf;  ///< absolute, or below the folder of a recording; holds the text that was read
     std::string base_link;
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
     std::map<std::string, double> link_padding_m;  ///< added to the capsules of a link

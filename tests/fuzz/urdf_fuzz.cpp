@@ -1,9 +1,16 @@
 // A robot description: read, or refused with its file and a reason; a robot that is read has a pose at every
 // position, and capsules of finite size.
+#include <algorithm>
 #include <cassert>
+#include <map>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "host/io/robot/body_shapes.hpp"
 #include "host/io/urdf/urdf_robot.hpp"
+#include "hw/rigfile/fitted_urdf.hpp"
+#include "hw/rigfile/link_shapes.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/urdf_document.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
@@ -43,12 +50,39 @@ void check_robot(const std::filesystem::path& file) {
     }
 }
 
+/// Its meshes and boxes replaced by a capsule: what is written is read again, with that capsule on each link
+/// that had one.
+void check_fitted(const std::filesystem::path& file, std::string_view text) {
+    const auto shapes = rig::read_link_shapes(file, "");
+    if (!shapes) {
+        assert(!shapes.error().what.empty() && shapes.error().file == file);
+        return;
+    }
+    std::map<std::string, rig::FittedBody> bodies;
+    for (const rig::ShapedLink& link : shapes->links) {
+        rig::FittedBody& body = bodies[link.name];
+        body.is_of_visual = source_of(link) == BodySource::visual;
+        if (std::ranges::any_of(body_shapes(link), is_fitted))
+            body.capsules = {{link.name, {0, 0, -0.1}, {0, 0, 0.1}, 0.05}};
+    }
+    const auto fitted = rig::urdf_with_bodies(file, std::string(text), bodies);
+    assert(fitted);
+    const FilePlace again = FilePlace::held(*fitted, file);
+    const auto read = rig::read_link_shapes(again, "");
+    if (!read) return;  // longer than the limit of a URDF
+    assert(read->links.size() == shapes->links.size());
+    for (const rig::ShapedLink& link : read->links) assert(std::ranges::none_of(link.collisions, is_fitted));
+}
+
 }  // namespace
 }  // namespace octoskin
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace octoskin;
     static const fuzz::InputDirectory directory;
-    check_robot(directory.write("input.urdf", fuzz::text_of({data, size})));
+    const auto text = fuzz::text_of({data, size});
+    const auto file = directory.write("input.urdf", text);
+    check_robot(file);
+    check_fitted(file, text);
     return 0;
 }

@@ -99,6 +99,26 @@ CLI::Validator existing_path() {
             "PATH"};
 }
 
+void add_package_paths(CLI::App& command, std::vector<PackagePath>& packages) {
+    const auto add = [&packages](const std::string& text) {
+        auto package = package_path_of(text);
+        if (!package) throw CommandFailure(ExitCode::usage, package.error());
+        packages.push_back(*std::move(package));
+    };
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--package-path",
+            [add](const std::vector<std::string>& texts) { std::ranges::for_each(texts, add); },
+            "Folder of a ROS package that has meshes of the robot; may be given several times")
+        ->type_name("NAME=DIR")
+        ->allow_extra_args(false);
+}
+
+void add_robot_options(CLI::App& command, GivenRobot& robot, const std::string& robot_help) {
+    command.add_option("--robot", robot.urdf, robot_help)->check(existing_file());
+    add_package_paths(command, robot.packages);
+}
+
 CLI::Validator seed() {
     return {is_seed, "SEED"};
 }

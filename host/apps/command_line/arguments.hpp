@@ -10,6 +10,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "host/apps/robot/given_robot.hpp"
 #include "host/io/socketcan/can_socket.hpp"
 
 namespace octoskin::app {
@@ -18,6 +19,10 @@ namespace octoskin::app {
 [[nodiscard]] CLI::Validator existing_file();
 /// As existing_file(), for a file or a directory.
 [[nodiscard]] CLI::Validator existing_path();
+/// --robot, a file that must exist, and --package-path. `robot` has to outlive `command`.
+void add_robot_options(CLI::App& command, GivenRobot& robot, const std::string& robot_help);
+/// --package-path alone. `packages` has to outlive `command`.
+void add_package_paths(CLI::App& command, std::vector<PackagePath>& packages);
 /// A seed: a whole number from 0 to 2^64 - 1.
 [[nodiscard]] CLI::Validator seed();
 /// A number of type T from `min` to `max`.

@@ -1,9 +1,6 @@
 #include "host/apps/daemon/settings.hpp"
 
-#include <sys/stat.h>
-
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,33 +8,13 @@
 #include "host/apps/profile/rig_pipeline.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
+#include "host/apps/robot/fitted_robot.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin {
 
 namespace {
-
-constexpr int kReadingsMax = 5;
-
-/// Identity of a file, and the time of its last change.
-struct FileStamp {
-    dev_t device = 0;
-    ino_t number = 0;
-    std::int64_t written_ns = 0;
-    std::int64_t changed_ns = 0;
-    friend bool operator==(const FileStamp&, const FileStamp&) = default;
-};
-
-std::optional<FileStamp> stamp_of(const FilePlace& file) {
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
-    const auto opened = file.open();
-    struct stat status {};
-    if (!opened || ::fstat(opened->descriptor(), &status) != 0) return std::nullopt;
-    return FileStamp{status.st_dev, status.st_ino,
-                     status.st_mtim.tv_sec * kSecond_ns + status.st_mtim.tv_nsec,
-                     status.st_ctim.tv_sec * kSecond_ns + status.st_ctim.tv_nsec};
-}
 
 /// The settings as text, for recordings.
 Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const MappingConfig& mapping,
@@ -74,26 +51,10 @@ Result<Settings, AppError> settings_of(const rig::Rig& rig, const DaemonRequest&
 
 }  // namespace
 
-/// The robot's file is read several times: for its links, its body, its joints and as text. It may be saved
-/// meanwhile: the result is valid only if it was the same file before and after all of it.
 Result<Settings, AppError> read_settings(const DaemonRequest& request) {
-    std::optional<std::string> text_before;
-    std::optional<FileStamp> stamp_before;
-    for (int attempt = 0; attempt < kReadingsMax; ++attempt) {
-        const auto rig = read_given_rig(request.rig, request.robot);
-        if (!rig) return unexpected(rig.error());
-        auto settings = settings_of(*rig, request);
-        if (!settings) return settings;
-        const auto stamp = stamp_of(rig->urdf);
-        if (stamp && stamp == stamp_before && settings->recorded.robot == text_before) return settings;
-        text_before = std::move(settings->recorded.robot);
-        stamp_before = stamp;
-    }
-    return fail(ExitCode::bad_config,
-                {.code = ErrorCode::in_use,
-                 .what = "its robot's URDF was saved again during each attempt to read it",
-                 .remedy = "let the other program end its work on that file",
-                 .file = request.rig});
+    const auto rig = read_rig_with_body(request.rig, request.robot, BodyFitting::kept_only);
+    if (!rig) return unexpected(rig.error());
+    return settings_of(*rig, request);
 }
 
 Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Settings& settings) {

@@ -9,6 +9,7 @@
 #include "common/result.hpp"
 #include "host/apps/daemon/recorder.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/apps/robot/given_robot.hpp"
 #include "host/core/mapping/mapping_config.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -18,7 +19,7 @@ namespace octoskin {
 
 struct DaemonRequest {
     std::filesystem::path rig;
-    std::filesystem::path robot;  ///< empty: the rig's
+    GivenRobot robot;
     std::string configuration =
         kDefaultMapping;  ///< how measurements become voxels: a built-in one, or a file
     std::string interface = "can0";

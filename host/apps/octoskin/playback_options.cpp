@@ -100,8 +100,7 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
             "How measurements become voxels (default: as recorded by the daemon, else denoised)"));
     command.add_option("--rig", options.rig, "Rig (YAML) in place of the recording's")
         ->check(existing_file());
-    command.add_option("--robot", options.robot, "Robot (URDF) in place of the recording's")
-        ->check(existing_file());
+    add_robot_options(command, options.robot, "Robot (URDF) in place of the recording's");
     command.add_option(
         "--camera", options.camera,
         "Of a data set or a lone .oni file without --rig: " + rig::joined(tum::kDataSetCameras) +

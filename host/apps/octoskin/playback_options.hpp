@@ -6,16 +6,17 @@
 #include <string>
 
 #include "host/apps/playback/playback.hpp"
+#include "host/apps/robot/given_robot.hpp"
 
 namespace octoskin::app {
 
 struct PlaybackOptions {
     std::filesystem::path recording;
-    std::filesystem::path rig;    ///< empty: the recording's
-    std::filesystem::path robot;  ///< empty: the recording's
-    std::string camera;           ///< of a data set without rig; empty: by its layout
-    std::string pose;             ///< of the camera of a lone .oni; empty: the rig's
-    std::string configuration;    ///< empty: the recording's own, or the default
+    std::filesystem::path rig;  ///< empty: the recording's
+    GivenRobot robot;
+    std::string camera;         ///< of a data set without rig; empty: by its layout
+    std::string pose;           ///< of the camera of a lone .oni; empty: the rig's
+    std::string configuration;  ///< empty: the recording's own, or the default
     bool is_by_capture_time = false;
 };
 

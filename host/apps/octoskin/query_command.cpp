@@ -25,8 +25,8 @@
 #include "host/apps/query/joint_lines.hpp"
 #include "host/apps/query/query_answer.hpp"
 #include "host/apps/query/query_request.hpp"
-#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
+#include "host/apps/robot/fitted_robot.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/rig.hpp"
@@ -48,6 +48,7 @@ struct QueryOptions {
     std::optional<std::string> map;  ///< empty: the daemon is asked
     std::optional<std::string> rig;
     std::optional<std::string> robot;
+    std::vector<PackagePath> packages;
     std::filesystem::path socket = default_control_socket();
     std::optional<std::string> joints;
     std::optional<std::string> stands;
@@ -91,7 +92,7 @@ void check_options(const CLI::App& command, const QueryOptions& options) {
                     {.code = ErrorCode::conflict, .what = why, .remedy = remedy, .key = name});
     };
     if (!options.map) {
-        refuse({"--rig", "--robot"}, "is for a map file, and a daemon uses its own",
+        refuse({"--rig", "--robot", "--package-path"}, "is for a map file, and a daemon uses its own",
                "leave it out, or name the map");
         refuse({"--stands"}, "is for a map file, and a daemon uses the arm's present posture",
                "leave it out, or name the map");
@@ -189,7 +190,8 @@ Json ask_map_file(const QueryOptions& options, const Question& question) {
                                                .what = "is required: a map file does not contain the robot",
                                                .remedy = "give the rig that the map was made with",
                                                .key = "--rig"});
-    const rig::Rig rig = value_or_fail(read_given_rig(*options.rig, options.robot.value_or("")));
+    const rig::Rig rig = value_or_fail(read_rig_with_body(
+        *options.rig, {options.robot.value_or(""), options.packages}, BodyFitting::if_needed));
     const auto setup = make_host_setup(rig);
     if (!setup) throw CommandFailure(reading_error(ExitCode::bad_config, setup.error()));
     MapReadLimits limits;
@@ -397,6 +399,7 @@ void add_query_command(CLI::App& app) {
         ->type_name("FILE");
     command->add_option("--robot", options->robot, "For a map file: URDF in place of the rig's")
         ->type_name("FILE");
+    add_package_paths(*command, options->packages);
     add_posture_options(*command, *options);
     add_pocket_options(*command, *options);
     command->add_option("--socket", options->socket, "Control socket of the daemon")

@@ -13,9 +13,9 @@
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/flashing/flashing.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
+#include "host/apps/robot/fitted_robot.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/i2c_load.hpp"
@@ -29,7 +29,7 @@ namespace {
 
 struct RigOptions {
     std::filesystem::path rig;
-    std::filesystem::path robot;
+    GivenRobot robot;
     bool prints_canonical = false;
     std::string node;
     std::filesystem::path block;
@@ -97,7 +97,7 @@ void write_block(const rig::Rig& rig, const RigOptions& options) {
 }
 
 void run(const RigOptions& options) {
-    const rig::Rig rig = value_or_fail(read_given_rig(options.rig, options.robot));
+    const rig::Rig rig = value_or_fail(read_rig_with_body(options.rig, options.robot, BodyFitting::if_needed));
     const auto host = make_host_setup(rig);
     if (!host) throw CommandFailure(reading_error(ExitCode::bad_config, host.error()));
     for (const std::string& warning : host->warnings) spdlog::warn("{}", warning);
@@ -117,8 +117,7 @@ void add_rig_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "rig", "Check a rig and its robot; print nodes, hashes, and the loads of CAN and I2C");
     command->add_option("rig", options->rig, "Rig (YAML)")->required()->check(existing_file());
-    command->add_option("--robot", options->robot, "Robot (URDF) in place of the rig's")
-        ->check(existing_file());
+    add_robot_options(*command, options->robot, "Robot (URDF) in place of the rig's");
     auto* const canonical = command->add_flag("--canonical", options->prints_canonical,
                                               "Print the rig in full, in its canonical form");
     auto* const node = command->add_option(

@@ -1,5 +1,6 @@
 // octoskin robot: fits capsules to the meshes of a URDF, and says how they fit.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -23,21 +24,11 @@ namespace {
 struct RobotOptions {
     std::filesystem::path urdf;
     std::string base_link;
-    std::vector<std::string> package_paths;
+    std::vector<PackagePath> packages;
     std::filesystem::path out;
     std::filesystem::path picture;
     bool prints_json = false;
 };
-
-MeshSearch search_of(const RobotOptions& options) {
-    std::vector<PackagePath> packages;
-    for (const std::string& text : options.package_paths) {
-        auto package = package_path_of(text);
-        if (!package) throw CommandFailure(ExitCode::usage, package.error());
-        packages.push_back(*std::move(package));
-    }
-    return mesh_search(std::move(packages));
-}
 
 void write(const std::filesystem::path& file, const std::string& text) {
     if (file.empty()) return;
@@ -45,12 +36,14 @@ void write(const std::filesystem::path& file, const std::string& text) {
 }
 
 void run(const RobotOptions& options) {
-    const MeshSearch search = search_of(options);
     for (const auto& file : {options.out, options.picture}) {
         if (file.empty()) continue;
         if (const auto place = check_text_place(file); !place) throw CommandFailure(place.error());
     }
-    const auto robot = fit_robot(confined_to_recording(options.urdf), options.base_link, search);
+    const auto text = read_robot_text(confined_to_recording(options.urdf), options.base_link);
+    if (!text) throw CommandFailure(reading_error(ExitCode::bad_config, text.error()));
+    const auto robot = fit_robot(*text, mesh_search(options.packages),
+                                 [](const std::string& link) { spdlog::info("fitting link {}", link); });
     if (!robot) throw CommandFailure(reading_error(ExitCode::bad_config, robot.error()));
     write(options.out, robot->urdf);
     write(options.picture, body_picture(*robot));
@@ -71,10 +64,7 @@ void add_robot_command(CLI::App& app) {
         app.add_subcommand("robot", "Fit capsules to the meshes of a robot, and say how they fit");
     command->add_option("robot", options->urdf, "Robot (URDF)")->required()->check(existing_file());
     command->add_option("--base", options->base_link, "Base link; default: the root");
-    command
-        ->add_option("--package-path", options->package_paths,
-                     "NAME=DIR: the folder of a ROS package; may be given several times")
-        ->type_name("NAME=DIR");
+    add_package_paths(*command, options->packages);
     command->add_option("--out", options->out, "Write the robot with capsules in place of meshes (URDF)");
     command->add_option("--picture", options->picture, "Write a picture of meshes and capsules (SVG)");
     command->add_flag("--json", options->prints_json, "Print JSON");

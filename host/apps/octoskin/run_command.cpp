@@ -68,8 +68,7 @@ void add_run_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "run", "Run the daemon: a live CAN interface and camera into a map, beside a robot");
     command->add_option("--rig", request->rig, "Rig (YAML)")->required()->check(existing_file());
-    command->add_option("--robot", request->robot, "Robot (URDF) in place of the rig's")
-        ->check(existing_file());
+    add_robot_options(*command, request->robot, "Robot (URDF) in place of the rig's");
     command
         ->add_option("--can", request->interface,
                      "CAN interface, or fd:N, an open socket that carries frames as one")

@@ -57,7 +57,7 @@ Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest&
 
 Status<AppError> check_options_of_camera(const PlaybackRequest& request, const std::filesystem::path& file,
                                          const std::string& kind) {
-    if (!request.robot.empty()) {
+    if (!request.robot.urdf.empty()) {
         return fail(ExitCode::usage, {.code = ErrorCode::bad_argument,
                                       .what = kind + " has no robot",
                                       .remedy = "omit --robot",

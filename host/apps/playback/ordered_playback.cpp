@@ -72,7 +72,7 @@ std::optional<std::uint32_t> placement_of(const rig::Rig& rig) {
 /// Whether the given rig or robot places measurements elsewhere than the recording's own. Then the daemon's
 /// earlier map does not fit.
 bool is_placed_otherwise(const PlaybackRequest& request, const rig::Rig& rig) {
-    if (request.rig.empty() && request.robot.empty()) return false;
+    if (request.rig.empty() && request.robot.urdf.empty()) return false;
     const auto own = read_given_rig(request.recording.rig());
     return !own || placement_of(*own) != placement_of(rig);
 }
@@ -126,7 +126,7 @@ std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
     if (!played.has_daemons_mapping && request.is_mapping_given) return "another configuration was given";
     if (outcome.depth_missing > 0)
         return fmt::format("{} depth frames that were recorded are missing", outcome.depth_missing);
-    return request.robot.empty() ? "" : "another robot description was given";
+    return request.robot.urdf.empty() ? "" : "another robot description was given";
 }
 
 /// For a map that must equal the daemon's and does not: the known differences.

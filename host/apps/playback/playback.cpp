@@ -11,10 +11,10 @@
 #include "host/apps/playback/losses.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
 #include "host/apps/profile/rig_pipeline.hpp"
-#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
+#include "host/apps/robot/fitted_robot.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/rig/sensor_text.hpp"
@@ -34,9 +34,10 @@ struct Setup {
 Result<Setup, AppError> read_setup(const PlaybackRequest& request) {
     const auto lock = lock_reading();
     const bool is_robot_absent =
-        request.rig.empty() && request.robot.empty() && !request.recording.robot().is_there();
-    auto rig = read_given_rig(request.rig.empty() ? request.recording.rig() : request.rig, request.robot,
-                              is_robot_absent ? ExitCode::no_input : ExitCode::bad_config);
+        request.rig.empty() && request.robot.urdf.empty() && !request.recording.robot().is_there();
+    auto rig = read_rig_with_body(request.rig.empty() ? request.recording.rig() : request.rig, request.robot,
+                                  BodyFitting::if_needed,
+                                  is_robot_absent ? ExitCode::no_input : ExitCode::bad_config);
     if (!rig) return unexpected(rig.error());
     auto host = make_host_setup(*rig);
     if (!host) return unexpected(reading_error(ExitCode::bad_config, host.error()));

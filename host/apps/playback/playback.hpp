@@ -14,6 +14,7 @@
 #include "host/apps/recording/app_error.hpp"
 #include "host/apps/recording/recording.hpp"
 #include "host/apps/recording/source_file.hpp"
+#include "host/apps/robot/given_robot.hpp"
 #include "host/core/counters/input_counters.hpp"
 #include "host/core/counters/loss.hpp"
 #include "host/core/ingest/node_summary.hpp"
@@ -36,7 +37,7 @@ struct PlaybackRequest {
     bool is_mapping_given = false;  ///< used in place of the recording's
     std::vector<MapFeed> maps = every_feed();
     std::filesystem::path rig;    ///< used in place of the recording's; empty: the recording's
-    std::filesystem::path robot;  ///< used in place of the recording's; empty: the recording's
+    GivenRobot robot;  ///< used in place of the recording's
     /// For a data set or an .oni file without a rig: one of tum::kDataSetCameras. Empty: the camera of the
     /// data set's layout, or the first one.
     std::string camera = {};

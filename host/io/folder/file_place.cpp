@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include "host/io/folder/memory_file.hpp"
+
 namespace octoskin {
 
 namespace fs = std::filesystem;
@@ -38,7 +40,13 @@ Result<OpenFolder, FolderError> NamedFolder::open() const {
     return *state_->opened;
 }
 
+FilePlace FilePlace::held(std::string content, FilePlace place) {
+    place.held_ = std::make_shared<const std::string>(std::move(content));
+    return place;
+}
+
 EntryKind FilePlace::kind() const {
+    if (held_) return EntryKind::file;
     if (folder_) {
         const auto folder = folder_->open();
         if (folder) return folder->kind_of(name_);
@@ -69,6 +77,11 @@ EntryKind FilePlace::kind() const {
 }
 
 Result<OpenFile, FolderError> FilePlace::open() const {
+    if (held_) {
+        auto file = MemoryFile::make(shown());
+        if (file && !file->write(*held_)) return unexpected(folder_error_of(errno, shown()));
+        return file ? std::move(*file).opened() : unexpected(file.error());
+    }
     if (folder_) {
         const auto folder = folder_->open();
         return folder ? folder->open_file(name_) : unexpected(folder.error());
@@ -80,6 +93,7 @@ Result<OpenFile, FolderError> FilePlace::open() const {
 
 FilePlace FilePlace::beside(const fs::path& other) const {
     FilePlace place(*this);
+    place.held_ = nullptr;
     // An absolute `other` replaces the whole path: allowed beside a typed file; below a folder it cannot be
     // opened.
     place.name_ = name_.parent_path() / other;
@@ -104,6 +118,7 @@ Result<MadeFolder, FolderError> FilePlace::make_folder() const {
 }
 
 Result<OpenFolder, FolderError> FilePlace::parent_to_write() const {
+    if (held_) return unexpected(folder_error_of(EROFS, shown()));
     const fs::path parent = name_.parent_path();
     if (!folder_) return OpenFolder::open(parent, FolderAccess::write);
     const auto opened = folder_->open();

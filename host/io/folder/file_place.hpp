@@ -47,6 +47,9 @@ class FilePlace {
         : folder_(std::move(folder)), name_(std::move(name)) {}
     FilePlace(OpenFolder folder, std::filesystem::path name)
         : FilePlace(NamedFolder(std::move(folder)), std::move(name)) {}
+    /// `place` with this content, which this process holds, whatever becomes of the file. It is not for
+    /// writing.
+    [[nodiscard]] static FilePlace held(std::string content, FilePlace place);
 
     [[nodiscard]] bool empty() const noexcept { return name_.empty(); }
     /// The path as the user knows it: for messages and provenance, never for opening.
@@ -89,6 +92,7 @@ class FilePlace {
   private:
     std::optional<NamedFolder> folder_;
     std::filesystem::path name_;
+    std::shared_ptr<const std::string> held_;
 };
 
 }  // namespace octoskin

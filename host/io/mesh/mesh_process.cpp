@@ -41,26 +41,21 @@ std::string read_all(int descriptor) {
 
 }  // namespace
 
-Result<TriangleMesh, Error> read_mesh_in_process(const FilePlace& file,
+Result<TriangleMesh, Error> read_mesh_in_process(const MeshCopy& mesh,
                                                  const std::optional<std::filesystem::path>& helper) {
-    const auto failed = [&file](Error error) { return unexpected(in_file(std::move(error), file.shown())); };
-    const auto opened = file.open();
-    if (!opened) return failed(to_error(opened.error()));
-    std::error_code ignored;
-    const auto size = std::filesystem::file_size(path_of_descriptor(opened->descriptor()), ignored);
-    if (ignored || size > kMeshBytesMax)
-        return failed(
-            {ErrorCode::too_large, "expected a mesh file of at most 256 MiB", std::to_string(size)});
+    const auto failed = [&mesh](Error error) {
+        return unexpected(in_file(std::move(error), mesh.bytes.shown()));
+    };
     const auto program = openni2::find_helper(kMeshReader, helper);
     if (!program) return failed({ErrorCode::no_program, program.error()});
-    auto process = HelperProcess::start(*program, {file.filename()}, openni2::HelperPipe::its_output,
-                                        openni2::HelperComplaints::kept, opened->descriptor());
+    auto process = HelperProcess::start(*program, {mesh.name}, openni2::HelperPipe::its_output,
+                                        openni2::HelperComplaints::kept, mesh.bytes.descriptor());
     if (!process) return failed({ErrorCode::no_program, process.error()});
     const std::string bytes = read_all(process->descriptor());
     const auto end = process->wait(kEndPatience);
     const std::string complaint = process->complaint();
-    auto mesh = end ? std::nullopt : mesh_of(bytes);
-    if (mesh) return *std::move(mesh);
+    auto triangles = end ? std::nullopt : mesh_of(bytes);
+    if (triangles) return *std::move(triangles);
     const std::string reason =
         complaint.empty() ? std::string(kMeshReader) + ": " + end.value_or("no mesh") : complaint;
     return failed({ErrorCode::foreign_format, "not a mesh that can be read: " + reason, "",

@@ -6,20 +6,18 @@
 
 #include "common/result.hpp"
 #include "host/errors/error.hpp"
-#include "host/io/folder/file_place.hpp"
+#include "host/io/mesh/mesh_copy.hpp"
 #include "hw/mesh/triangle_mesh.hpp"
 
 namespace octoskin {
 
 /// The name of the helper program.
 inline constexpr const char* kMeshReader = "octoskin-mesh-read";
-inline constexpr std::uintmax_t kMeshBytesMax = std::uintmax_t{256} << 20U;
 
 /// The triangles of an STL, OBJ or COLLADA file, metres before URDF's `scale` (hw/mesh/mesh_file.hpp). The
-/// helper reads this file only: a material file beside it is not needed. Errors name the file: those of
-/// FilePlace::open, too_large, foreign_format with assimp's sentence, no_program. `helper`: replaces the
-/// installed one.
+/// helper reads this file only: a material file beside it is not needed. Errors name the file: foreign_format
+/// with assimp's sentence, no_program. `helper`: replaces the installed one.
 [[nodiscard]] Result<TriangleMesh, Error> read_mesh_in_process(
-    const FilePlace& file, const std::optional<std::filesystem::path>& helper = {});
+    const MeshCopy& mesh, const std::optional<std::filesystem::path>& helper = {});
 
 }  // namespace octoskin

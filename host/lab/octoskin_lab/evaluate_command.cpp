@@ -16,6 +16,7 @@
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/text_file.hpp"
+#include "host/apps/robot/given_robot.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/lab/evaluation/results.hpp"
@@ -34,7 +35,7 @@ namespace {
 struct EvaluateOptions {
     std::filesystem::path input;
     std::filesystem::path rig;
-    std::filesystem::path robot;
+    GivenRobot robot;
     std::filesystem::path scenario;
     std::filesystem::path world;
     std::filesystem::path json;
@@ -176,7 +177,7 @@ rig::Rig rig_of_map(const EvaluateOptions& options, const MapProvenance& provena
              .remedy = "give --rig " + rig_to_give(provenance) + ", which has the map's shift (T_map_base)",
              .key = "--rig"});
     }
-    rig::Rig rig = value_or_fail(read_given_rig(options.rig, options.robot));
+    rig::Rig rig = value_or_fail(read_given_rig(options.rig, options.robot.urdf));
     doubt_rig(options, rig, provenance);
     return rig;
 }
@@ -281,8 +282,7 @@ void add_evaluate_command(CLI::App& app) {
             "Rig (YAML) in place of the recording's. For a map it is required: give RECORDING/rig.yaml, "
             "which has the seed's shift of the map's grid")
         ->check(existing_file());
-    command->add_option("--robot", options->robot, "Robot (URDF) in place of the rig's")
-        ->check(existing_file());
+    add_robot_options(*command, options->robot, "Robot (URDF) in place of the rig's");
     command->add_option(
         "--recording", options->recording,
         "For a map: the directory of the recording that it was made from; without it, the one "

@@ -61,8 +61,7 @@ void add_experiment_command(CLI::App& app) {
     command->add_option("--rig", request->inputs.rig, "Rig (YAML)")
         ->capture_default_str()
         ->check(existing_file());
-    command->add_option("--robot", request->inputs.robot, "Robot (URDF) in place of the rig's")
-        ->check(existing_file());
+    add_robot_options(*command, request->inputs.robot, "Robot (URDF) in place of the rig's");
     command->add_option("--scenario", request->inputs.scenario, "Motion, noise, seeds, judged region (YAML)")
         ->capture_default_str()
         ->check(existing_file());

@@ -91,8 +91,7 @@ void add_simulate_command(CLI::App& app) {
         app.add_subcommand("simulate", "Simulate the rig down to its sensors' registers; write a recording");
     command->add_option("out", options->out, "Directory of the recording")->required();
     command->add_option("--rig", request->rig, "Rig (YAML)")->capture_default_str()->check(existing_file());
-    command->add_option("--robot", request->robot, "Robot (URDF) in place of the rig's")
-        ->check(existing_file());
+    add_robot_options(*command, request->robot, "Robot (URDF) in place of the rig's");
     command->add_option("--scenario", request->scenario, "Motion, noise, seeds (YAML)")
         ->capture_default_str()
         ->check(existing_file());

@@ -2,11 +2,11 @@
 
 #include <optional>
 
-#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
 #include "host/apps/recording/text_file.hpp"
+#include "host/apps/robot/fitted_robot.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/io/candump/log_writer.hpp"
 #include "host/io/openni2/oni_writer.hpp"
@@ -32,7 +32,7 @@ Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     auto scene = read_scene(request.scenario, request.world);
     if (!scene) return unexpected(scene.error());
     report_world_warnings(request, scene->world);
-    auto rig = read_given_rig(request.rig, request.robot);
+    auto rig = read_rig_with_body(request.rig, request.robot, BodyFitting::if_needed);
     if (!rig) return unexpected(rig.error());
     auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
     if (!arm) return unexpected(reading_error(ExitCode::bad_config, arm.error()));

@@ -10,6 +10,7 @@
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
+#include "host/apps/robot/given_robot.hpp"
 #include "host/io/folder/file_place.hpp"
 #include "hw/sim/experiment/experiment.hpp"
 #include "hw/sim/world/world.hpp"
@@ -18,7 +19,7 @@ namespace octoskin {
 
 struct SimulationRequest {
     std::filesystem::path rig;
-    std::filesystem::path robot;  ///< URDF in place of the rig's; empty: the rig's
+    GivenRobot robot;
     std::filesystem::path scenario;
     std::filesystem::path world;  ///< SDF in place of the scenario's; empty: the scenario's
     std::uint64_t seed = 0;

@@ -211,7 +211,7 @@ std::string command_of(const StudyRequest& request) {
         if (!file.empty()) text += fmt::format(" {} {}", option, shell_word(file.string()));
     };
     add_file("--rig", request.inputs.rig);
-    add_file("--robot", request.inputs.robot);
+    add_file("--robot", request.inputs.robot.urdf);
     add_file("--scenario", request.inputs.scenario);
     add_file("--world", request.inputs.world);
     text += " --seeds";

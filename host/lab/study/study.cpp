@@ -41,7 +41,7 @@ Result<StudyWorld, AppError> read_world(const SimulationRequest& inputs, double 
     if (!scene) return unexpected(scene.error());
     if (const auto still = check_stands_still(*scene); !still) return unexpected(still.error());
     report_world_warnings(inputs, scene->world);
-    const auto rig = read_given_rig(inputs.rig, inputs.robot);
+    const auto rig = read_given_rig(inputs.rig, inputs.robot.urdf);
     if (!rig) return unexpected(rig.error());
     evaluation::TruthConfig truth = truth_config_of(scene->scenario, resolution_m);
     // Each seed shifts the map a little and is checked again. This check is for regions that no shift makes

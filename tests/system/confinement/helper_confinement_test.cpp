@@ -23,7 +23,8 @@ namespace octoskin {
 namespace {
 
 /// Whether the program that these words start gets a filter for its system calls within 10 s.
-bool gets_a_filter(std::vector<std::string> command) {
+/// `inherited`: its descriptor 3.
+bool gets_a_filter(std::vector<std::string> command, int inherited = -1) {
     std::array<int, 2> ends{-1, -1};
     EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
     std::vector<char*> words;
@@ -32,6 +33,10 @@ bool gets_a_filter(std::vector<std::string> command) {
     const pid_t process = ::fork();
     if (process == 0) {
         ::dup2(ends[1], STDOUT_FILENO);
+        if (inherited >= 0) {
+            ::dup2(inherited, openni2::HelperProcess::kInherited);
+            ::fcntl(openni2::HelperProcess::kInherited, F_SETFD, 0);  // also if it was that descriptor
+        }
         ::execv(words.front(), words.data());
         ::_exit(127);
     }
@@ -64,6 +69,22 @@ class HelperConfinementTest : public testing::Test {
 TEST_F(HelperConfinementTest, what_reads_worlds) {
     EXPECT_TRUE(gets_a_filter(
         {helper("octoskin-world-read"), "1024", "20", OCTOSKIN_SOURCE_DIR "/hw/worlds/cupboard.sdf"}));
+}
+
+TEST_F(HelperConfinementTest, what_reads_meshes) {
+    const testing_support::ScratchFolder scratch;
+    constexpr std::uint32_t kTriangles = 20'000;  // more than a pipe takes
+    std::string stl(80, ' ');
+    stl.append(reinterpret_cast<const char*>(&kTriangles), 4);
+    for (std::uint32_t i = 0; i < kTriangles; ++i) {
+        const auto height = static_cast<float>(i);
+        const std::array<float, 12> triangle{0, 0, 1, 0, 0, height, 1, 0, height, 0, 1, height};
+        stl.append(reinterpret_cast<const char*>(triangle.data()), 48).append(2, '\0');
+    }
+    const int mesh = ::open(scratch.write("a.stl", stl).c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_GE(mesh, 0);
+    EXPECT_TRUE(gets_a_filter({helper("octoskin-mesh-read"), "a.stl"}, mesh));
+    ::close(mesh);
 }
 
 TEST_F(HelperConfinementTest, what_reads_recordings) {

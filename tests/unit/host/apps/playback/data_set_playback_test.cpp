@@ -340,7 +340,7 @@ TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
     written_.add_pose("100", "0 0 0 0 0 0 1");
     written_.add_line("depth.txt", "100 depth/absent.png");
     PlaybackRequest robot = request();
-    robot.robot = "panda.urdf";
+    robot.robot.urdf = "panda.urdf";
     EXPECT_EQ(refused(robot).code, ErrorCode::bad_argument);
     EXPECT_EQ(refused(robot).key, "--robot");
     PlaybackRequest two = request();

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <string>
 #include <utility>
 
@@ -40,6 +41,21 @@ TEST_F(FilePlaceTest, a_typed_path_follows_links_and_one_below_a_folder_does_not
     EXPECT_TRUE(below.is_there());
     EXPECT_EQ(below.open().error().fault, FolderFault::link);
     EXPECT_EQ(*within("rig.yaml").open()->read(100), "rig");
+}
+
+TEST_F(FilePlaceTest, held_content_outlives_the_file_and_is_not_for_writing) {
+    const FilePlace held = FilePlace::held("text", scratch_ / "robot.urdf");
+    fs::remove(scratch_ / "robot.urdf");
+    EXPECT_EQ(held.shown(), scratch_ / "robot.urdf");
+    EXPECT_EQ(held.kind(), EntryKind::file);
+    EXPECT_EQ(*held.open()->read(100), "text");
+    EXPECT_EQ(*held.open()->read(100), "text");  // each from its begin
+    EXPECT_EQ(held.create_anew().error().error_number, EROFS);
+    EXPECT_FALSE(fs::exists(scratch_ / "robot.urdf"));
+    EXPECT_EQ(*held.beside("rec/rig.yaml").open()->read(100), "rig");
+    const FilePlace below = FilePlace::held("text", within("robot.urdf"));  // a link there
+    EXPECT_EQ(*below.open()->read(100), "text");
+    EXPECT_NE(below.folder(), nullptr);
 }
 
 TEST_F(FilePlaceTest, what_a_file_speaks_of_is_beside_it_and_stays_below_its_folder) {

@@ -32,6 +32,11 @@ std::string mesh(const std::string& tag, const std::string& file, const std::str
            "\" scale=\"0.2 0.2 0.2\"/></geometry></" + tag + ">";
 }
 
+Result<RobotFit, Error> fitted(const FilePlace& urdf, const std::string& base_link = {}) {
+    const auto robot = read_robot_text(urdf, base_link);
+    return robot ? fit_robot(*robot, {}) : unexpected(robot.error());
+}
+
 TEST(RobotFit, takes_collisions_and_the_visual_of_a_moving_link_without_one) {
     const testing_support::ScratchFolder folder;
     folder.write("a.stl", testing_support::wedge_stl());
@@ -44,7 +49,7 @@ TEST(RobotFit, takes_collisions_and_the_visual_of_a_moving_link_without_one) {
                               "<collision><geometry><sphere radius=\"0.05\"/></geometry></collision>") +
             link("fore", mesh("visual", "b.dae")) + link("tip", "") + joint("base", "upper", "revolute") +
             joint("upper", "fore", "fixed") + joint("fore", "tip", "fixed") + "</robot>");
-    const auto robot = fit_robot(urdf, "", {});
+    const auto robot = fitted(urdf);
     ASSERT_TRUE(robot) << robot.error().message();
     ASSERT_EQ(robot->links.size(), 4U);
     EXPECT_EQ(robot->links[0].source, BodySource::nothing);  // it does not move
@@ -79,7 +84,7 @@ TEST(RobotFit, names_all_meshes_that_are_missing_in_one_error) {
                                                    link("base", mesh("collision", "package://arm/a.stl")) +
                                                    link("upper", mesh("collision", "b.stl")) +
                                                    joint("base", "upper", "revolute") + "</robot>");
-    const auto robot = fit_robot(urdf, "", {});
+    const auto robot = fitted(urdf);
     ASSERT_FALSE(robot);
     EXPECT_EQ(robot.error().code, ErrorCode::not_found);
     EXPECT_EQ(robot.error().file, urdf);
@@ -96,7 +101,7 @@ TEST(RobotFit, refuses_a_mesh_in_millimetres) {
         folder.write("arm.urdf",
                      "<robot name=\"r\"><link name=\"l\"><collision><geometry><mesh filename=\"a.stl\" "
                      "scale=\"1000 1000 1000\"/></geometry></collision></link></robot>");
-    EXPECT_EQ(fit_robot(urdf, "", {}).error().code, ErrorCode::too_large);
+    EXPECT_EQ(fitted(urdf).error().code, ErrorCode::too_large);
 }
 
 TEST(RobotFit, refuses_a_mesh_that_is_scaled_twice_or_beyond_all_numbers) {
@@ -110,7 +115,7 @@ TEST(RobotFit, refuses_a_mesh_that_is_scaled_twice_or_beyond_all_numbers) {
             "<robot name=\"r\"><link name=\"l\"><collision><origin rpy=\"1 2 3\"/><geometry><mesh "
             "filename=\"a.stl\" scale=\"" +
                 three + "\"/></geometry></collision></link></robot>");
-        const auto robot = fit_robot(urdf, "", {});
+        const auto robot = fitted(urdf);
         ASSERT_FALSE(robot) << scale;
         EXPECT_EQ(robot.error().code, code) << scale;
         EXPECT_EQ(robot.error().key, "link l") << scale;
@@ -125,7 +130,7 @@ TEST(RobotFit, a_box_of_no_size_is_no_body_and_leaves_the_visual_to_be_compared)
                                                    link("upper", empty + mesh("visual", "a.stl")) +
                                                    link("frame", empty) + joint("base", "upper", "revolute") +
                                                    joint("upper", "frame", "fixed") + "</robot>");
-    const auto robot = fit_robot(urdf, "", {});
+    const auto robot = fitted(urdf);
     ASSERT_TRUE(robot) << robot.error().message();
     EXPECT_EQ(robot->links[1].source, BodySource::visual);
     EXPECT_EQ(robot->links[2].source, BodySource::nothing);
@@ -141,7 +146,7 @@ TEST(RobotFit, fits_a_box_and_leaves_cylinders_as_they_are) {
                      "<robot name=\"r\"><link name=\"l\"><collision><geometry><box size=\"0.1 0.1 0.3\"/>"
                      "</geometry></collision><collision><geometry><cylinder radius=\"0.1\" length=\"0.2\"/>"
                      "</geometry></collision></link></robot>");
-    const auto robot = fit_robot(urdf, "l", {});
+    const auto robot = fitted(urdf, "l");
     ASSERT_TRUE(robot) << robot.error().message();
     EXPECT_EQ(robot->links[0].kept, 1U);
     EXPECT_EQ(robot->links[0].triangles, 12U);
@@ -161,7 +166,7 @@ TEST(RobotFit, refuses_more_than_two_million_triangles_of_a_link_by_name) {
     const auto urdf = folder.write(
         "arm.urdf", "<robot name=\"r\">" +
                         link("l", mesh("collision", "a.stl") + mesh("collision", "a.stl")) + "</robot>");
-    const auto robot = fit_robot(urdf, "", {});
+    const auto robot = fitted(urdf);
     ASSERT_FALSE(robot);
     EXPECT_EQ(robot.error().code, ErrorCode::too_large);
     EXPECT_EQ(robot.error().key, "link l");
@@ -177,7 +182,7 @@ TEST(RobotFit, gives_the_same_box_elsewhere_the_same_fit) {
         folder.write("arm.urdf", "<robot name=\"r\">" + link("base", box("")) +
                                      link("upper", box("<origin xyz=\"0 0 1\" rpy=\"1 0 0\"/>")) +
                                      joint("base", "upper", "revolute") + "</robot>");
-    const auto robot = fit_robot(urdf, "", {});
+    const auto robot = fitted(urdf);
     ASSERT_TRUE(robot) << robot.error().message();
     ASSERT_EQ(robot->links[0].fit->capsules.size(), robot->links[1].fit->capsules.size());
     const Eigen::Isometry3d T_upper_box =
