@@ -73,7 +73,7 @@ TwoHomes::TwoHomes(SlowClockSpread slow_clocks)
       scenario_(read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value()),
       world_(World::read(scenario_.world).value()),
       arm_(Arm::read(rig_.urdf, rig_.base_link, rig_.joints.joints).value()),
-      capsules_(rig::read_capsules(rig_.urdf, {}).value()) {
+      body_(rig::read_capsules(rig_.urdf, {}).value()) {
     rig_.camera.reset();
     scenario_.rest_s = 2.0;
     scenario_.motion.ticks_per_revolution = 60;
@@ -91,7 +91,7 @@ Heard TwoHomes::run_core(const std::vector<BoardStart>& starts) const {
 Heard TwoHomes::run(const std::optional<EmulatedBoards>& emulated,
                     const std::vector<BoardStart>& starts) const {
     const ExperimentInput input{.rig = rig_,
-                                .capsules = capsules_,
+                                .body = body_,
                                 .world = world_,
                                 .arm = arm_,
                                 .scenario = scenario_,

@@ -59,7 +59,7 @@ class TwoHomes {
     Scenario scenario_;
     World world_;
     Arm arm_;
-    std::vector<rig::Capsule> capsules_;
+    Body body_;
 };
 
 }  // namespace octoskin::sim

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/recording/reading.hpp"
 #include "host/apps/recording/recording_draft.hpp"
@@ -10,11 +11,13 @@
 #include "host/apps/version/version.hpp"
 #include "host/io/candump/log_writer.hpp"
 #include "host/io/openni2/oni_writer.hpp"
+#include "host/io/robot/surface_reader.hpp"
 #include "host/lab/simulation/scene.hpp"
 #include "host/lab/simulation/scene_files.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
+#include "hw/sim/arm/body.hpp"
 
 namespace octoskin {
 namespace {
@@ -24,20 +27,40 @@ struct Inputs {
     Scene scene;
     rig::Rig rig;
     sim::Arm arm;
-    std::vector<rig::Capsule> body;  ///< the true body: without the rig's padding
+    sim::Body body;  ///< the true body: meshes where the rig has capsules fitted to them; no padding
 };
+
+/// `given`: the rig before its robot was fitted.
+Result<sim::Body, AppError> true_body(rig::Rig given, const std::vector<PackagePath>& packages) {
+    const auto robot = robot_to_fit(given);
+    if (!robot) return unexpected(robot.error());
+    std::vector<sim::LinkMesh> meshes;
+    if (*robot) {
+        auto surfaces = read_surfaces(**robot, mesh_search(packages));
+        if (!surfaces) return unexpected(reading_error(ExitCode::bad_config, surfaces.error()));
+        for (LinkSurface& surface : surfaces->meshes)
+            meshes.push_back({std::move(surface.link),
+                              {std::move(surface.mesh.vertices), std::move(surface.mesh.triangles)}});
+        given.urdf = FilePlace::held(std::move(surfaces->urdf), given.urdf);
+    }
+    auto capsules = rig::real_body(given);
+    if (!capsules) return unexpected(reading_error(ExitCode::bad_config, capsules.error()));
+    return sim::Body(*std::move(capsules), meshes);
+}
 
 Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     const auto lock = lock_reading();
     auto scene = read_scene(request.scenario, request.world);
     if (!scene) return unexpected(scene.error());
     report_world_warnings(request, scene->world);
-    auto rig = read_rig_with_body(request.rig, request.robot, BodyFitting::if_needed);
+    const auto given = read_given_rig(request.rig, request.robot.urdf);
+    if (!given) return unexpected(given.error());
+    auto rig = with_fitted_body(*given, request.robot.packages, BodyFitting::if_needed);
     if (!rig) return unexpected(rig.error());
     auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
     if (!arm) return unexpected(reading_error(ExitCode::bad_config, arm.error()));
-    auto body = rig::real_body(*rig);
-    if (!body) return unexpected(reading_error(ExitCode::bad_config, body.error()));
+    auto body = true_body(*given, request.robot.packages);
+    if (!body) return unexpected(body.error());
     rig->T_map_base.pretranslate(scene->scenario.map_shift_m(request.seed));
     return Inputs{std::move(*scene), std::move(*rig), std::move(*arm), std::move(*body)};
 }
@@ -129,7 +152,7 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
     if (!scene_crc32) return unexpected(scene_crc32.error());
 
     const sim::ExperimentInput input{.rig = inputs->rig,
-                                     .capsules = inputs->body,
+                                     .body = inputs->body,
                                      .world = inputs->scene.world,
                                      .arm = inputs->arm,
                                      .scenario = inputs->scene.scenario,

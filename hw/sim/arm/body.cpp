@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace octoskin::sim {
 namespace {
@@ -105,10 +106,54 @@ std::optional<double> cast_body(const std::vector<BodyCapsule>& body, const Eige
     return nearest;
 }
 
-std::optional<double> cast_robot(const std::vector<rig::Capsule>& capsules, const Arm::LinkPoses& poses,
-                                 const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                                 const std::vector<std::string>& ignored) {
-    return cast_body(posed_body(capsules, poses, ignored), origin, direction);
+MeshBody::MeshBody(const LinkMesh& surface) : link_(surface.link) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& vertex : surface.mesh.vertices) box.extend(vertex);
+    p_link_middle_ = box.center();
+    for (const Eigen::Vector3d& vertex : surface.mesh.vertices)
+        radius_m_ = std::max(radius_m_, (vertex - p_link_middle_).norm());
+    Solid solid{.name = surface.link, .model = {}, .vertices = {}, .triangles = {}, .is_closed = false};
+    solid.vertices = surface.mesh.vertices;
+    solid.triangles = surface.mesh.triangles;
+    rays_ = std::make_shared<const RayCaster>(std::vector{std::move(solid)});
+}
+
+void PosedMesh::cast_fan(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
+                         double t_max, std::span<TriangleHit> hits) const {
+    const Eigen::Isometry3d T_link_frame = T_frame_link.inverse();
+    std::vector<Eigen::Vector3d> directions_link;
+    directions_link.reserve(directions.size());
+    for (const Eigen::Vector3d& direction : directions)
+        directions_link.emplace_back(T_link_frame.linear() * direction);
+    mesh->rays().cast_fan(T_link_frame * origin, directions_link, t_max, hits);
+    for (TriangleHit& hit : hits) hit.normal = T_frame_link.linear() * hit.normal;
+}
+
+std::optional<double> PosedBody::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                      double t_max) const {
+    auto nearest = cast_body(capsules, origin, direction);
+    if (nearest && *nearest > t_max) nearest.reset();
+    for (const PosedMesh& mesh : meshes) {
+        TriangleHit hit;
+        mesh.cast_fan(origin, {&direction, 1}, t_max, {&hit, 1});
+        if (hit.t <= t_max) nearest = nearer(nearest, hit.t);
+    }
+    return nearest;
+}
+
+Body::Body(std::vector<rig::Capsule> capsules, const std::vector<LinkMesh>& meshes)
+    : capsules_(std::move(capsules)) {
+    for (const LinkMesh& mesh : meshes) meshes_.emplace_back(mesh);
+}
+
+PosedBody Body::at(const Arm::LinkPoses& poses, const std::vector<std::string>& ignored) const {
+    PosedBody body(posed_body(capsules_, poses, ignored));
+    for (const MeshBody& mesh : meshes_) {
+        const auto pose = poses.find(mesh.link());
+        if (pose != poses.end() && std::ranges::find(ignored, mesh.link()) == ignored.end())
+            body.meshes.push_back({&mesh, pose->second});
+    }
+    return body;
 }
 
 }  // namespace octoskin::sim

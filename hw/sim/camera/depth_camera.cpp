@@ -111,13 +111,30 @@ void DepthCamera::draw(const BodyCapsule& capsule, std::vector<double>& depth_m)
     }
 }
 
-std::vector<std::uint16_t> DepthCamera::render(const std::vector<BodyCapsule>& body,
-                                               std::uint32_t frame_index) const {
+void DepthCamera::draw(const PosedMesh& mesh, std::vector<double>& depth_m) const {
+    const Rectangle bounds = bounds_of({mesh.p_middle(), mesh.p_middle(), mesh.mesh->radius_m()});
+    if (bounds.u_begin >= bounds.u_end) return;
+    std::vector<Eigen::Vector3d> directions;
+    std::vector<TriangleHit> hits(bounds.u_end - bounds.u_begin);
+    for (std::uint32_t v = bounds.v_begin; v < bounds.v_end; ++v) {
+        directions.clear();
+        for (std::uint32_t u = bounds.u_begin; u < bounds.u_end; ++u)
+            directions.push_back(direction_camera(u, v));
+        mesh.cast_fan(Eigen::Vector3d::Zero(), directions, rig::kDepthLargest_m, hits);
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            double& nearest = depth_m[std::size_t{v} * camera_.width + bounds.u_begin + i];
+            nearest = std::min(nearest, hits[i].t);
+        }
+    }
+}
+
+std::vector<std::uint16_t> DepthCamera::render(const PosedBody& body, std::uint32_t frame_index) const {
     std::vector<double> depth_m = background_m_;
     const Eigen::Isometry3d T_camera_base = camera_.T_base_camera.inverse();
-    for (const BodyCapsule& capsule : body) {
+    for (const BodyCapsule& capsule : body.capsules) {
         draw({T_camera_base * capsule.p_base_a, T_camera_base * capsule.p_base_b, capsule.radius_m}, depth_m);
     }
+    for (const PosedMesh& mesh : body.meshes) draw({mesh.mesh, T_camera_base * mesh.T_frame_link}, depth_m);
     return measured_mm(noise_, {camera_.width, camera_.height, depth_m},
                        {camera_.depth_min_m, camera_.depth_max_m}, seed_, frame_index);
 }

@@ -21,8 +21,7 @@ class DepthCamera {
     /// Depth along the optical axis in millimetres, height x width row-major; 0 where no depth between
     /// depth_min_m and depth_max_m is measured. A ray goes through a pixel's centre. `body`: the robot at the
     /// instant of the frame. Noise as in measured_mm(). About 5 ms more than it for 512 x 424.
-    [[nodiscard]] std::vector<std::uint16_t> render(const std::vector<BodyCapsule>& body,
-                                                    std::uint32_t frame_index) const;
+    [[nodiscard]] std::vector<std::uint16_t> render(const PosedBody& body, std::uint32_t frame_index) const;
 
   private:
     /// Pixels [u_begin, u_end) x [v_begin, v_end).
@@ -37,6 +36,7 @@ class DepthCamera {
     [[nodiscard]] Eigen::Vector3d direction_camera(std::uint32_t u, std::uint32_t v) const;
     [[nodiscard]] Rectangle bounds_of(const BodyCapsule& capsule_camera) const;
     void draw(const BodyCapsule& capsule_camera, std::vector<double>& depth_m) const;
+    void draw(const PosedMesh& mesh_camera, std::vector<double>& depth_m) const;
 
     rig::Camera camera_;
     std::vector<RaySlope> rays_;  ///< row-major; empty for a pinhole

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "hw/rigfile/zone.hpp"
-#include "hw/sim/arm/body.hpp"
 #include "hw/sim/camera/cone_view.hpp"
 #include "hw/sim/noise/noise.hpp"
 #include "hw/sim/vl53l1x/ranging_result.hpp"
@@ -56,8 +55,8 @@ struct RayScene {
         const Eigen::Isometry3d T_base_sensor = poses.at(mount.link) * mount.T_link_sensor;
         const Eigen::Vector3d origin = T_base_sensor.translation();
         const Eigen::Vector3d direction = T_base_sensor.linear() * rig::zone_direction(roi);
-        auto nearest =
-            cast_robot(surroundings.capsules, poses, origin, direction, surroundings.ignored_links);
+        auto nearest = surroundings.body.at(poses, surroundings.ignored_links)
+                           .cast(origin, direction, surroundings.optics.max_m);
         const auto hit = surroundings.at(time).cast(origin, direction, surroundings.optics.max_m);
         if (hit && (!nearest || hit->range_m < *nearest)) {
             nearest = hit->range_m;
@@ -69,13 +68,13 @@ struct RayScene {
 /// Where a sensor and the robot are at one instant.
 struct Instant {
     Eigen::Isometry3d T_base_sensor;
-    std::vector<BodyCapsule> body;  ///< the parts of the robot that the sensor may see
+    PosedBody body;  ///< the parts of the robot that the sensor may see
 };
 
 Instant instant_of(const SensorSurroundings& surroundings, const SensorMount& mount, SimTime time) {
     const auto poses = surroundings.arm.forward(surroundings.trajectory.at(time));
     return {poses.at(mount.link) * mount.T_link_sensor,
-            posed_body(surroundings.capsules, poses, surroundings.ignored_links)};
+            surroundings.body.at(poses, surroundings.ignored_links)};
 }
 
 /// A cone of sub-rays.
@@ -136,8 +135,10 @@ struct ConeScene {
     void hide_behind_body(const Instant& instant, const std::vector<Eigen::Vector3d>& directions,
                           std::vector<RayHit>& hits) const {
         const Eigen::Vector3d origin = instant.T_base_sensor.translation();
-        for (const BodyCapsule& capsule : instant.body) {
-            if (!may_see(instant.T_base_sensor, capsule)) continue;
+        for (const BodyCapsule& capsule : instant.body.capsules) {
+            const Eigen::Vector3d middle = 0.5 * (capsule.p_base_a + capsule.p_base_b);
+            const double half_length = 0.5 * (capsule.p_base_b - capsule.p_base_a).norm();
+            if (!may_see(instant.T_base_sensor, middle, half_length + capsule.radius_m)) continue;
             for (std::size_t i = 0; i < hits.size(); ++i) {
                 const auto t = cast_capsule(capsule, origin, directions[i]);
                 if (!t || *t >= hits[i].range_m) continue;
@@ -145,13 +146,22 @@ struct ConeScene {
                 hits[i].normal = outward_normal(capsule, origin + *t * directions[i]);
             }
         }
+        std::vector<TriangleHit> mesh_hits(directions.size());
+        for (const PosedMesh& mesh : instant.body.meshes) {
+            if (!may_see(instant.T_base_sensor, mesh.p_middle(), mesh.mesh->radius_m())) continue;
+            mesh.cast_fan(origin, directions, surroundings.optics.max_m, mesh_hits);
+            for (std::size_t i = 0; i < hits.size(); ++i) {
+                if (!(mesh_hits[i].t < hits[i].range_m)) continue;
+                hits[i].range_m = mesh_hits[i].t;
+                hits[i].normal = mesh_hits[i].normal;
+            }
+        }
     }
 
-    /// False only if the ball about a capsule lies outside the cone.
-    [[nodiscard]] bool may_see(const Eigen::Isometry3d& T_base_sensor, const BodyCapsule& capsule) const {
-        const Eigen::Vector3d to_middle =
-            0.5 * (capsule.p_base_a + capsule.p_base_b) - T_base_sensor.translation();
-        const double radius = 0.5 * (capsule.p_base_b - capsule.p_base_a).norm() + capsule.radius_m;
+    /// False only if the ball lies outside the cone.
+    [[nodiscard]] bool may_see(const Eigen::Isometry3d& T_base_sensor, const Eigen::Vector3d& p_base_middle,
+                               double radius) const {
+        const Eigen::Vector3d to_middle = p_base_middle - T_base_sensor.translation();
         const double distance = to_middle.norm();
         if (distance <= radius) return true;
         const double cos_middle = T_base_sensor.linear().col(2).dot(to_middle) / distance;

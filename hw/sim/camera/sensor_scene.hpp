@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "hw/rigfile/rig.hpp"
-#include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
+#include "hw/sim/arm/body.hpp"
 #include "hw/sim/arm/trajectory.hpp"
 #include "hw/sim/scenario/scenario.hpp"
 #include "hw/sim/vl53l1x/scene.hpp"
@@ -24,7 +24,7 @@ struct SensorSurroundings {
     const World& world;
     const Arm& arm;
     const Trajectory& trajectory;
-    const std::vector<rig::Capsule>& capsules;
+    const Body& body;
     /// Links that no sensor sees (their own mount). They must be the rig's links_ignored_by_sensors.
     std::vector<std::string> ignored_links;
     RangeOptics optics;

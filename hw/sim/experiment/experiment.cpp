@@ -62,7 +62,7 @@ class RigInOneProcess {
           surroundings_{.world = input.world,
                         .arm = input.arm,
                         .trajectory = trajectory,
-                        .capsules = input.capsules,
+                        .body = input.body,
                         .ignored_links = input.rig.links_ignored_by_sensors,
                         .optics = input.scenario.ranges,
                         .seed = input.seed,
@@ -229,8 +229,7 @@ Result<ExperimentSummary, Error> run(const ExperimentInput& input, const Experim
             output.on_depth(
                 SimulatedHostClock(kHostAtStart).at(captured), input.rig.camera->width,
                 input.rig.camera->height,
-                camera->render(posed_body(input.capsules, input.arm.forward(trajectory->at(captured))),
-                               frames));
+                camera->render(input.body.at(input.arm.forward(trajectory->at(captured))), frames));
             ++frames;
             if (output.on_progress) {
                 output.on_progress(static_cast<double>(captured.us) / static_cast<double>(end.us));

@@ -12,8 +12,8 @@
 #include "common/time.hpp"
 #include "common/wire/can_frame.hpp"
 #include "hw/rigfile/rig.hpp"
-#include "hw/rigfile/robot_description.hpp"
 #include "hw/sim/arm/arm.hpp"
+#include "hw/sim/arm/body.hpp"
 #include "hw/sim/experiment/emulated_board.hpp"
 #include "hw/sim/experiment/rig_board.hpp"
 #include "hw/sim/scenario/scenario.hpp"
@@ -24,7 +24,7 @@ namespace octoskin::sim {
 
 struct ExperimentInput {
     const rig::Rig& rig;
-    const std::vector<rig::Capsule>& capsules;  ///< of the robot, without the rig's padding: the true body
+    const Body& body;  ///< the true one: without the rig's padding
     const World& world;
     const Arm& arm;
     const Scenario& scenario;

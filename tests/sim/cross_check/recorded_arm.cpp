@@ -70,14 +70,14 @@ sim::Trajectory revolutions_of(const sim::Arm& arm, sim::Scenario& scenario, std
 struct Stage {
     Stage(const rig::Rig& rig, const KeptChoice& choice)
         : arm(needed(sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints))),
-          capsules(needed(rig::read_capsules(rig.urdf, {}))),
+          body(needed(rig::read_capsules(rig.urdf, {}))),
           scenario(needed(sim::read_scenario(kHw / ".." / choice.scenario))),
           world(needed(sim::World::read(scenario.world))),
           trajectory(revolutions_of(arm, scenario, choice.revolutions)),
           camera(world, *rig.camera, scenario.depth_noise, choice.seed) {}
 
     sim::Arm arm;
-    std::vector<rig::Capsule> capsules;
+    sim::Body body;
     sim::Scenario scenario;
     sim::World world;
     sim::Trajectory trajectory;
@@ -125,7 +125,7 @@ class Rig {
         run.rig.camera->T_base_camera = reported(setup_.rig.camera->T_base_camera, choice.camera_error);
         std::uint32_t noise_id = 0;
         const auto scene_of = [&](const rig::Sensor& sensor, const Eigen::Isometry3d& T_link_sensor) {
-            return sim::ranging_scene({stage.world, stage.arm, stage.trajectory, stage.capsules,
+            return sim::ranging_scene({stage.world, stage.arm, stage.trajectory, stage.body,
                                        rig.links_ignored_by_sensors, stage.scenario.ranges, choice.seed},
                                       {sensor.link, T_link_sensor, noise_id, sensor.cone});
         };
@@ -261,9 +261,8 @@ std::vector<KeptRun> keep_runs(const std::vector<std::string>& names, std::uint3
         const RobotPose robot = rigs.front()->robot_at(stage, us);
         DepthImage world = needed(to_depth_image(
             {HostTime{1'000 * us}, camera->intrinsics.width, camera->intrinsics.height,
-             stage.camera.render(
-                 sim::posed_body(stage.capsules, stage.arm.forward(stage.trajectory.at(sim::SimTime{us}))),
-                 image)},
+             stage.camera.render(stage.body.at(stage.arm.forward(stage.trajectory.at(sim::SimTime{us}))),
+                                 image)},
             {host.camera->depth_min_m, host.camera->depth_max_m}));
         for (float& depth_m : world.depth_m) depth_m /= static_cast<float>(choice.camera_error.depth_scale);
         SeenImages& seen = camera->images.emplace_back();

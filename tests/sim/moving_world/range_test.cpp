@@ -107,7 +107,7 @@ class BoxBeforeRangeSensor : public testing::TestWithParam<Tested> {
     [[nodiscard]] std::optional<double> range_m(const rig::Sensor& sensor, std::uint32_t noise_id,
                                                 const sim::World& world, std::uint32_t index,
                                                 const Roi& zone) const {
-        const std::vector<rig::Capsule> no_robot;
+        const sim::Body no_robot({});
         const auto scene = sim::ranging_scene(
             {world, arm_, trajectory_, no_robot, rig_.links_ignored_by_sensors, scenario_.ranges, 1},
             {sensor.link, sensor.T_link_sensor, noise_id, sensor.cone});

@@ -242,12 +242,11 @@ struct RangeOutcome {
 };
 
 /// Every sensor of a rig, 30 times a second while the arm moves.
-RangeOutcome ranges_of(const std::filesystem::path& rig_file, const sim::Arm& arm,
-                       const std::vector<rig::Capsule>& capsules, const sim::World& world,
-                       const sim::Scenario& scenario, const sim::Trajectory& trajectory, double late_s,
-                       double padding_m) {
+RangeOutcome ranges_of(const std::filesystem::path& rig_file, const sim::Arm& arm, const sim::Body& true_body,
+                       const sim::World& world, const sim::Scenario& scenario,
+                       const sim::Trajectory& trajectory, double late_s, double padding_m) {
     constexpr double kSame_m = 0.05;
-    const std::vector<rig::Capsule> no_robot;
+    const sim::Body no_robot({});
     rig::Rig rig = rig::read_rig(rig_file).value();
     // Across the beam only padding helps: the margin is one along it.
     for (const std::string& link : arm.links()) rig.link_padding_m[link] = padding_m;
@@ -265,11 +264,11 @@ RangeOutcome ranges_of(const std::filesystem::path& rig_file, const sim::Arm& ar
         for (std::size_t i = 0; i < node.sensors.size(); ++i, ++noise_id) {
             const rig::Sensor& sensor = node.sensors[i];
             const sim::SensorMount mount{sensor.link, sensor.T_link_sensor, noise_id, sensor.cone};
-            const auto scene = [&](const std::vector<rig::Capsule>& robot) {
+            const auto scene = [&](const sim::Body& robot) {
                 return sim::ranging_scene(
                     {world, arm, trajectory, robot, rig.links_ignored_by_sensors, scenario.ranges, 1}, mount);
             };
-            const auto with = scene(capsules);
+            const auto with = scene(true_body);
             const auto without = scene(no_robot);
             for (std::uint32_t index = 0; index < 100; ++index) {
                 const sim::SimTime time{trajectory.start().us + 33'333 * index};
@@ -301,8 +300,8 @@ RangeOutcome ranges_of(const std::filesystem::path& rig_file, const sim::Arm& ar
 TEST_F(MovingRobot, ranges_of_it_are_dropped_and_those_of_the_world_are_used) {
     for (const char* file : {"rigs/experiment.yaml", "rigs/experiment_cone.yaml"}) {
         for (const double late_s : {0.02, -0.02}) {
-            const RangeOutcome outcome =
-                ranges_of(kHw / file, arm_, capsules_, world_, scenario_, trajectory_, late_s, 0.04);
+            const RangeOutcome outcome = ranges_of(kHw / file, arm_, sim::Body(capsules_), world_, scenario_,
+                                                   trajectory_, late_s, 0.04);
             std::printf("%s, %+.2f s: %zu of %zu ranges of the robot used, %zu of %zu of the world dropped\n",
                         file, late_s, outcome.of_robot_used, outcome.of_robot, outcome.of_world_dropped,
                         outcome.of_world);

@@ -11,13 +11,13 @@ std::vector<StampedFrame> experiment_log(rig::Rig rig, std::uint64_t seed, std::
         sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
     const auto world = sim::World::read(scenario.world).value();
     const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints).value();
-    const auto capsules = rig::read_capsules(rig.urdf, {}).value();
+    const sim::Body body(rig::read_capsules(rig.urdf, {}).value());
     rig.camera.reset();
     scenario.rest_s = 2.0;
     scenario.motion.revolutions = revolutions;
     std::vector<StampedFrame> log;
     const sim::ExperimentInput input{.rig = rig,
-                                     .capsules = capsules,
+                                     .body = body,
                                      .world = world,
                                      .arm = arm,
                                      .scenario = scenario,

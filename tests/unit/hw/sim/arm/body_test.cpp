@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+
+#include "hw/sim/world/shapes.hpp"
 
 namespace octoskin::sim {
 namespace {
@@ -78,15 +81,54 @@ TEST(CastCapsule, finds_the_first_surface_point_of_random_capsules) {
     EXPECT_GT(hits, 2000);
 }
 
+TEST(CastRobot, meets_a_mesh_where_its_planes_are) {
+    const Eigen::Isometry3d T_base_link =
+        Eigen::Translation3d(2, 0, 0) * Eigen::AngleAxisd(0.5, Eigen::Vector3d(3, 1, 2).normalized());
+    const Body body({{"link", {0.5, 0, 0}, {0.5, 0, 0}, 0.1}}, {{"link", box_mesh({0.2, 0.4, 0.6})}});
+    const PosedBody posed = body.at({{"link", T_base_link}});
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> number(-1.0, 1.0);
+    const auto draw = [&] {
+        const double x = number(random);
+        const double y = number(random);
+        return Eigen::Vector3d(x, y, number(random));
+    };
+    int hits = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Eigen::Vector3d origin = draw();
+        const Eigen::Vector3d direction = (T_base_link * (0.5 * draw()) - origin).normalized();
+        // The slabs of the box, in its own frame.
+        const Eigen::Vector3d o = T_base_link.inverse() * origin;
+        const Eigen::Vector3d d = T_base_link.linear().transpose() * direction;
+        double enters = 0.0, leaves = 9.0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double half = std::array{0.1, 0.2, 0.3}[static_cast<std::size_t>(axis)];
+            const double a = (-half - o[axis]) / d[axis], b = (half - o[axis]) / d[axis];
+            enters = std::max(enters, std::min(a, b));
+            leaves = std::min(leaves, std::max(a, b));
+        }
+        if (std::abs(enters - leaves) < 1e-4) continue;  // along an edge
+        std::optional<double> expected = enters < leaves ? std::optional(enters) : std::nullopt;
+        const auto ball = cast_capsule(posed.capsules[0], origin, direction);
+        if (ball && (!expected || *ball < *expected)) expected = ball;
+        const auto found = posed.cast(origin, direction, 9.0);
+        ASSERT_EQ(found.has_value(), expected.has_value()) << "seed 7, case " << i;
+        if (!found) continue;
+        ++hits;
+        EXPECT_NEAR(*found, *expected, 1e-6) << "seed 7, case " << i;
+        EXPECT_FALSE(posed.cast(origin, direction, *expected - 1e-3)) << "seed 7, case " << i;
+    }
+    EXPECT_GT(hits, 500);
+}
+
 TEST(CastRobot, takes_the_nearest_link_that_is_not_ignored) {
-    const std::vector<rig::Capsule> capsules = {{"near", {0, 0, -1}, {0, 0, 1}, 0.1},
-                                                {"far", {0, 0, -1}, {0, 0, 1}, 0.2}};
+    const Body body({{"near", {0, 0, -1}, {0, 0, 1}, 0.1}, {"far", {0, 0, -1}, {0, 0, 1}, 0.2}});
     Arm::LinkPoses poses = {{"near", Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0))},
                             {"far", Eigen::Isometry3d(Eigen::Translation3d(2, 0, 0))}};
-    EXPECT_NEAR(*cast_robot(capsules, poses, {0, 0, 0}, {1, 0, 0}), 0.9, 1e-14);
-    EXPECT_NEAR(*cast_robot(capsules, poses, {0, 0, 0}, {1, 0, 0}, {"near"}), 1.8, 1e-14);
-    EXPECT_FALSE(cast_robot(capsules, poses, {0, 0, 0}, {1, 0, 0}, {"near", "far"}));
-    EXPECT_FALSE(cast_robot(capsules, poses, {0, 0, 0}, {0, 1, 0}));
+    EXPECT_NEAR(*body.at(poses).cast({0, 0, 0}, {1, 0, 0}, 9), 0.9, 1e-14);
+    EXPECT_NEAR(*body.at(poses, {"near"}).cast({0, 0, 0}, {1, 0, 0}, 9), 1.8, 1e-14);
+    EXPECT_FALSE(body.at(poses, {"near", "far"}).cast({0, 0, 0}, {1, 0, 0}, 9));
+    EXPECT_FALSE(body.at(poses).cast({0, 0, 0}, {0, 1, 0}, 9));
 }
 
 }  // namespace

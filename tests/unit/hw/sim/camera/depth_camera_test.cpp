@@ -47,6 +47,28 @@ TEST(DepthCamera, measures_depth_along_the_optical_axis_not_along_the_ray) {
     }
 }
 
+TEST(DepthCamera, sees_a_mesh_of_a_link_as_the_same_solid_of_the_world) {
+    const Eigen::Isometry3d T_base_link =
+        Eigen::Translation3d(1.2, 0.1, -0.2) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
+    const TriangleMesh mesh = box_mesh({0.2, 0.3, 0.4});
+    const TriangleMesh posed = transformed(mesh, T_base_link);
+    const World with_box(std::vector<Solid>{box_at({0.2, 20, 20}, {2.1, 0, 0}),
+                                            {"b/b/b", "b", posed.vertices, posed.triangles, true}});
+    const World without = wall();
+    const Body body({}, {{"link", mesh}, {"ignored", mesh}});
+    const auto posed_body = body.at({{"link", T_base_link}, {"ignored", T_base_link}}, {"ignored"});
+    ASSERT_EQ(posed_body.meshes.size(), 1U);
+    const auto expected = DepthCamera(with_box, camera_at({0, 0, 0}), {}, 0).render({}, 0);
+    const auto found = DepthCamera(without, camera_at({0, 0, 0}), {}, 0).render(posed_body, 0);
+    std::size_t on_box = 0, other = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        on_box += expected[i] < 1990 ? 1U : 0U;
+        other += std::abs(found[i] - expected[i]) > 1 ? 1U : 0U;
+    }
+    EXPECT_GT(on_box, 5000U);
+    EXPECT_LE(other, 5U);  // single precision at the outline
+}
+
 TEST(DepthCamera, sends_its_rays_through_the_middles_of_the_pixels) {
     // A box of 1 m x 1 m x 0.6 m (depth x width x height) whose front is 1 m ahead, shifted so that it covers
     // y in (-0.2, 0.8) and z in (-0.5, 0.1). At depth 1 a pixel (u, v) looks at y = -(u + 0.5 - 256) / 365
@@ -165,7 +187,8 @@ TEST(DepthCamera, has_noise_that_depends_on_seed_frame_and_pixel_alone) {
     EXPECT_NE(other_frame, first);
     EXPECT_NE(DepthCamera(world, camera_at({0, 0, 0}), gaussian_noise(0.03), 12).render({}, 4), first);
     // A body in some pixels leaves the noise of all others.
-    const auto with_body = camera.render({{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.1}}, 4);
+    const auto with_body =
+        camera.render(std::vector<BodyCapsule>{{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.1}}, 4);
     EXPECT_EQ(at(with_body, 5, 5), at(first, 5, 5));
     EXPECT_NE(at(with_body, 256, 212), at(first, 256, 212));
 }
@@ -175,7 +198,8 @@ TEST(DepthCamera, gives_the_same_bytes_for_a_seed_as_in_earlier_versions) {
     const World world = wall();
     const DepthCamera camera(world, camera_at({0, 0, 0}), gaussian_noise(0.03), 11);
     std::vector<std::uint8_t> bytes;
-    for (const std::uint16_t depth_mm : camera.render({{{1.0, -0.2, -0.1}, {1.4, 0.3, 0.2}, 0.08}}, 4)) {
+    const std::vector<BodyCapsule> body{{{1.0, -0.2, -0.1}, {1.4, 0.3, 0.2}, 0.08}};
+    for (const std::uint16_t depth_mm : camera.render(body, 4)) {
         bytes.push_back(static_cast<std::uint8_t>(depth_mm & 0xFF));
         bytes.push_back(static_cast<std::uint8_t>(depth_mm >> 8));
     }
@@ -192,7 +216,7 @@ TEST(DepthCamera, measures_world_and_robot_with_the_noise_of_a_kinect) {
     EXPECT_EQ(std::ranges::count(empty, 0), 0);
     for (const std::uint16_t depth_mm : empty) ASSERT_NEAR(depth_mm, 2000, 60);
     // The outline of a robot in front of the wall is an edge.
-    const auto robot = camera.render({{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.1}}, 4);
+    const auto robot = camera.render(std::vector<BodyCapsule>{{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 0.1}}, 4);
     EXPECT_NEAR(at(robot, 256, 212), 900, 15);
     EXPECT_GT(std::ranges::count(robot, 0), 200);
     EXPECT_EQ(at(robot, 5, 5), at(empty, 5, 5));

@@ -34,7 +34,7 @@ class ExperimentSensor : public testing::Test {
         return {.world = world_,
                 .arm = arm_,
                 .trajectory = trajectory_,
-                .capsules = capsules_,
+                .body = body_,
                 .ignored_links = kMount,
                 .optics = {sigma_m, 0.04, 4.0},
                 .seed = seed};
@@ -63,7 +63,7 @@ class ExperimentSensor : public testing::Test {
                                      {"panda_joint1", "panda_joint2", "panda_joint3", "panda_joint4",
                                       "panda_joint5", "panda_joint6", "panda_joint7"}));
     Trajectory trajectory_ = expect_read(Trajectory::circle(arm_, scenario_.motion, kStart));
-    std::vector<rig::Capsule> capsules_ = expect_read(rig::read_capsules(kHw / "robots/panda.urdf", {}));
+    Body body_ = Body(expect_read(rig::read_capsules(kHw / "robots/panda.urdf", {})));
 };
 
 }  // namespace octoskin::sim

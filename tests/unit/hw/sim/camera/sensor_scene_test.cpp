@@ -27,6 +27,34 @@ TEST_F(ExperimentSensor, looking_ahead_sees_the_panel) {
     EXPECT_NEAR(*scene(looking({1, 0, 0}))(0, {0}, Roi{}).range_m, 1.165 - 0.45, 1e-6);
 }
 
+TEST_F(ExperimentSensor, a_mesh_of_the_robot_is_seen_as_the_same_solid_of_the_world) {
+    const World floor(std::vector<Solid>{box_at({10, 10, 0.1}, {0, 0, -0.07})});
+    const Solid panel = box_at({0.03, 0.845, 1.0}, {1.18, 0.5075, 0.48});
+    const Body body(expect_read(rig::read_capsules(kHw / "robots/panda.urdf", {})),
+                    {{"panda_link0", {panel.vertices, panel.triangles}}});
+    const SensorSurroundings of_world = surroundings(0.01, 3);
+    const SensorSurroundings of_body{.world = floor,
+                                     .arm = arm_,
+                                     .trajectory = trajectory_,
+                                     .body = body,
+                                     .ignored_links = kMount,
+                                     .optics = of_world.optics,
+                                     .seed = of_world.seed};
+    for (const auto& cone : {std::optional<rig::Cone>(), std::optional(rig::Cone{})}) {
+        const SensorMount mount{"panda_link8", looking({1, 0.3, 0}), 0, cone};
+        const auto expected = ranging_scene(of_world, mount);
+        const auto found = ranging_scene(of_body, mount);
+        for (std::uint32_t i = 0; i < 50; ++i) {
+            const SimTime time{200'000 * std::int64_t{i}};
+            const auto in_world = expected(i, time, Roi{});
+            const auto of_robot = found(i, time, Roi{});
+            ASSERT_EQ(in_world.range_m.has_value(), of_robot.range_m.has_value()) << i;
+            EXPECT_NEAR(of_robot.range_m.value_or(0.0), in_world.range_m.value_or(0.0), 1e-4) << i;
+            EXPECT_NEAR(of_robot.peak_signal_mcps, in_world.peak_signal_mcps, 1e-2) << i;
+        }
+    }
+}
+
 TEST_F(ExperimentSensor, looking_into_the_open_gets_no_return) {
     const auto seen = scene(looking({0, -1, 0}))(0, {0}, Roi{});
     EXPECT_FALSE(seen.range_m);
