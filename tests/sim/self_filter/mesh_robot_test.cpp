@@ -1,95 +1,15 @@
 // The true robot are meshes, the host has capsules fitted to them: the robot does not come into the map, and
 // the scene beside it stays.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstring>
-#include <numbers>
 
 #include "hw/sim/scenario/scenario.hpp"
 #include "tests/sim/self_filter/mesh_robot.hpp"
-#include "tests/support/scratch_folder.hpp"
+#include "tests/support/own_arm/own_arm.hpp"
 
 namespace octoskin {
 namespace {
-
-struct Ring {
-    double height_m;
-    double radius_m;
-};
-
-/// A solid of revolution about z with square flanks, like the housings of an arm, as binary STL.
-std::string turned_stl(const std::vector<Ring>& rings, double y_scale) {
-    constexpr int kSides = 24;
-    std::vector<std::array<Eigen::Vector3d, 3>> triangles;
-    const auto at = [&](const Ring& ring, int side) {
-        const double angle = 2.0 * std::numbers::pi * side / kSides;
-        return Eigen::Vector3d(ring.radius_m * std::cos(angle), y_scale * ring.radius_m * std::sin(angle),
-                               ring.height_m);
-    };
-    for (std::size_t i = 0; i + 1 < rings.size(); ++i) {
-        for (int side = 0; side < kSides; ++side) {
-            triangles.push_back({at(rings[i], side), at(rings[i], side + 1), at(rings[i + 1], side)});
-            triangles.push_back({at(rings[i], side + 1), at(rings[i + 1], side + 1), at(rings[i + 1], side)});
-        }
-    }
-    std::string bytes(80, ' ');
-    const auto add = [&bytes](const auto& value) {
-        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-    };
-    add(static_cast<std::uint32_t>(triangles.size()));
-    for (const auto& triangle : triangles) {
-        for (int i = 0; i < 3; ++i) add(0.0F);
-        for (const Eigen::Vector3d& corner : triangle)
-            for (const double value : corner) add(static_cast<float>(value));
-        add(std::uint16_t{0});
-    }
-    return bytes;
-}
-
-/// Four links: a pedestal, two arms with a wide shoulder and elbow, and a flat hand.
-class OwnArm {
-  public:
-    OwnArm() {
-        folder_.write("pedestal.stl",
-                      turned_stl({{0, 0}, {0, 0.1}, {0.05, 0.1}, {0.05, 0.06}, {0.3, 0.06}, {0.3, 0}}, 1));
-        folder_.write("arm.stl", turned_stl({{-0.07, 0},
-                                             {-0.07, 0.075},
-                                             {0.07, 0.075},
-                                             {0.1, 0.05},
-                                             {0.35, 0.045},
-                                             {0.38, 0.06},
-                                             {0.46, 0.06},
-                                             {0.46, 0}},
-                                            1.2));
-        folder_.write("hand.stl", turned_stl({{0, 0}, {0, 0.05}, {0.06, 0.09}, {0.1, 0.09}, {0.1, 0}}, 0.4));
-        std::string urdf = "<robot name=\"own\">";
-        for (const auto& [link, mesh] : {std::pair{"base", "pedestal"}, std::pair{"upper", "arm"},
-                                         std::pair{"fore", "arm"}, std::pair{"hand", "hand"}})
-            urdf += fmt::format(
-                "<link name=\"{}\"><collision><geometry><mesh "
-                "filename=\"{}.stl\"/></geometry></collision></link>",
-                link, mesh);
-        const auto joint = [&](const char* name, const char* parent, const char* child, const char* xyz,
-                               const char* axis) {
-            urdf += fmt::format(
-                "<joint name=\"{}\" type=\"revolute\"><parent link=\"{}\"/><child link=\"{}\"/><origin "
-                "xyz=\"{}\"/><axis xyz=\"{}\"/><limit lower=\"-1.4\" upper=\"1.4\" effort=\"1\" "
-                "velocity=\"3\"/></joint>",
-                name, parent, child, xyz, axis);
-        };
-        joint("shoulder", "base", "upper", "0 0 0.36", "0 1 0");
-        joint("elbow", "upper", "fore", "0 0.02 0.46", "1 0 0");
-        joint("wrist", "fore", "hand", "0 0 0.47", "0 1 0");
-        urdf_ = folder_.write("own.urdf", urdf + "</robot>");
-    }
-    [[nodiscard]] RobotText read() const { return read_robot_text(urdf_, "").value(); }
-
-  private:
-    testing_support::ScratchFolder folder_;
-    std::filesystem::path urdf_;
-};
 
 class MeshRobotTest : public testing::Test {
   protected:
@@ -97,8 +17,8 @@ class MeshRobotTest : public testing::Test {
         sim::World::read(
             sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value().world)
             .value();
-    OwnArm arm_;
-    MeshRobot robot_{arm_.read(), {}, world_};
+    testing_support::OwnArm arm_;
+    MeshRobot robot_{read_robot_text(arm_.urdf(), "").value(), {}, world_};
 };
 
 TEST_F(MeshRobotTest, is_removed_from_images_and_the_scene_beside_it_stays) {
