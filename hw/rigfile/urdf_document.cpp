@@ -7,6 +7,7 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -186,6 +187,20 @@ std::vector<std::string> UrdfDocument::moving_joints(const std::string& base_lin
             names.push_back(name);
     }
     return names;
+}
+
+std::vector<JointOfLink> UrdfDocument::moving_joints_outward(const std::string& base_link) const {
+    const auto depth_of = [this](const JointOfLink& joint) {
+        std::size_t depth = 0;
+        const urdf::Link* link = model_->links_.at(joint.child_link).get();
+        for (; link->getParent(); link = link->getParent().get()) ++depth;
+        return depth;
+    };
+    std::vector<JointOfLink> joints;
+    for (const std::string& name : moving_joints(base_link))
+        joints.push_back({name, model_->joints_.at(name)->child_link_name});
+    std::ranges::stable_sort(joints, {}, depth_of);
+    return joints;
 }
 
 }  // namespace octoskin::rig

@@ -22,6 +22,11 @@ namespace octoskin::rig {
 /// The file's text. Errors, for the user: it cannot be read, or is over 16 MiB.
 [[nodiscard]] Result<std::string, Error> read_urdf_text(const FilePlace& file);
 
+struct JointOfLink {
+    std::string joint;
+    std::string child_link;
+};
+
 class UrdfDocument {
   public:
     /// Errors: unreadable, in UTF-16, over 16 MiB, those of UrdfOutline and counted_urdf(), errors of urdfdom
@@ -39,6 +44,8 @@ class UrdfDocument {
     [[nodiscard]] std::vector<std::string> link_names(const std::string& base_link = {}) const;
     /// The joints below `base_link` that are not fixed, by name.
     [[nodiscard]] std::vector<std::string> moving_joints(const std::string& base_link) const;
+    /// The same joints from the base to the tips, each with the link that it carries.
+    [[nodiscard]] std::vector<JointOfLink> moving_joints_outward(const std::string& base_link) const;
     /// An error about one element ("joint", "panda_joint3"), with its line if the element exists.
     [[nodiscard]] Error error(std::string_view tag, std::string_view name, Error error) const {
         return outline_.error(tag, name, std::move(error));
