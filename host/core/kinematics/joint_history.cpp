@@ -82,7 +82,7 @@ JointPosition JointHistory::interpolate(const Sample& before, const Sample& afte
     const auto width = static_cast<double>((after.sampled - before.sampled).count());
     const double share = width > 0.0 ? static_cast<double>((instant - before.sampled).count()) / width : 0.0;
     for (std::size_t i = 0; i < position.count; ++i) {
-        position.values[i] = before.values[i] + share * (after.values[i] - before.values[i]);
+        position.values[i] = before.values[i] + share * limits_[i].way(before.values[i], after.values[i]);
     }
     return position;
 }

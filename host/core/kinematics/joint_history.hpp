@@ -66,7 +66,8 @@ class JointHistory {
     void forget() noexcept { size_ = 0; }
 
     /// The position at an instant: a sample's own, or interpolated linearly between the two samples around
-    /// it. A value equal to a limit of the configuration is within it. O(log capacity), no allocation.
+    /// it, for a continuous joint the shorter way round. A value equal to a limit of the configuration is
+    /// within it. O(log capacity), no allocation.
     [[nodiscard]] Result<JointPosition, JointLookup> at(HostTime instant) const;
 
     /// The samples around an instant for which `at` returns `gap` (asserted: there are two).

@@ -50,7 +50,7 @@ JointJump::Distance JointJump::distance(const Point& from, const Point& to) cons
     const Nanoseconds passed = std::chrono::abs(to.sampled - from.sampled);
     Distance largest;
     for (std::size_t joint = 0; joint < limits_.size(); ++joint) {
-        const double moved = std::abs(to.position.at(joint) - from.position.at(joint));
+        const double moved = std::abs(limits_[joint].way(from.position.at(joint), to.position.at(joint)));
         const double excess = moved / step_max(joint, passed);
         if (excess > largest.excess) largest = {excess, joint};
     }
@@ -61,7 +61,7 @@ JointJump::Distance JointJump::distance(const Point& from, const Point& to) cons
 double JointJump::seconds_between(const Point& from, const Point& to) const {
     double longest = 0.0;
     for (std::size_t joint = 0; joint < limits_.size(); ++joint) {
-        const double moved = std::abs(to.position.at(joint) - from.position.at(joint));
+        const double moved = std::abs(limits_[joint].way(from.position.at(joint), to.position.at(joint)));
         longest = std::max(longest, moved / limits_[joint].velocity_max);
     }
     return longest;

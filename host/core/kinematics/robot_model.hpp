@@ -3,8 +3,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,6 +29,12 @@ struct JointLimits {
     /// True if the position is within the limits or beyond them by at most `tolerance`; false for a NaN.
     [[nodiscard]] bool hold(double position, double tolerance) const noexcept {
         return position >= min - tolerance && position <= max + tolerance;
+    }
+    /// The movement from one position to another. A continuous joint, without limits, takes the shorter way
+    /// round: its sender may wrap it to +-pi.
+    [[nodiscard]] double way(double from, double to) const noexcept {
+        const double straight = to - from;
+        return std::isinf(min) ? std::remainder(straight, 2.0 * std::numbers::pi) : straight;
     }
 };
 

@@ -57,6 +57,28 @@ TEST(JointHistory, takes_the_two_samples_about_the_instant) {
     EXPECT_DOUBLE_EQ(history.at(at_ms(115))->values[1], 0.0);
 }
 
+TEST(JointHistory, a_continuous_joint_that_wraps_goes_the_shorter_way_round_for_ever) {
+    constexpr std::array<JointLimits, 2> kContinuous = {JointLimits{-kInfinity, kInfinity},
+                                                        JointLimits{-4.0, 4.0}};
+    const double turn = 2.0 * std::acos(-1.0);
+    JointHistory history(kContinuous);
+    // Ten turns at 0.3 rad in 10 ms, wrapped to +-pi; the other joint jumps as far and has limits.
+    for (int k = 0; k <= 210; ++k) {
+        const double wrapped = std::remainder(0.3 * k, turn);
+        ASSERT_TRUE(history.add(at_ms(10 * k), std::array{wrapped, wrapped}));
+    }
+    bool has_wrapped = false;
+    for (int k = 0; k < 210; ++k) {
+        const auto position = history.at(at_ms(10 * k + 4));
+        ASSERT_TRUE(position);
+        EXPECT_NEAR(std::remainder(position->values[0] - 0.3 * (k + 0.4), turn), 0.0, 1e-9) << k;
+        const double before = std::remainder(0.3 * k, turn), after = std::remainder(0.3 * (k + 1), turn);
+        EXPECT_NEAR(position->values[1], before + 0.4 * (after - before), 1e-12) << k;
+        has_wrapped = has_wrapped || after < before;
+    }
+    EXPECT_TRUE(has_wrapped);
+}
+
 TEST(JointHistory, never_extrapolates) {
     const JointHistory history = three_samples();
     EXPECT_EQ(history.at(HostTime{100'000'000 - 1}).error(), JointLookup::before_first);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace octoskin {
@@ -35,6 +37,16 @@ TEST(JointJump, takes_half_as_much_again_as_the_velocity_limit_and_the_times_all
     (void)judge(jump, 0, 0.0);
     EXPECT_EQ(judge(jump, 500, 1.569), SampleFit::fits) << "after a gap";
     EXPECT_EQ(judge(jump, 1'000, 1.569 + 1.571), SampleFit::jumped);
+}
+
+TEST(JointJump, is_none_where_a_continuous_joint_wraps) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    constexpr std::array<JointLimits, 2> kContinuous = {JointLimits{-kInfinity, kInfinity, 2.0}, kLimits[1]};
+    JointJump jump(kContinuous);
+    const double turn = 2.0 * std::acos(-1.0);
+    for (int k = 0; k < 1000; ++k)
+        EXPECT_EQ(judge(jump, 10 * k, std::remainder(0.02 * k, turn)), SampleFit::fits) << k;
+    EXPECT_EQ(judge(jump, 10'000, std::remainder(20.0 + 0.2, turn)), SampleFit::jumped);
 }
 
 TEST(JointJump, says_which_joint_went_how_far_in_which_time) {
