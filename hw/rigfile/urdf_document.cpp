@@ -183,8 +183,8 @@ std::vector<std::string> UrdfDocument::link_names(const std::string& base_link) 
 std::vector<std::string> UrdfDocument::moving_joints(const std::string& base_link) const {
     std::vector<std::string> names;
     for (const auto& [name, joint] : model_->joints_) {
-        if (joint->type != urdf::Joint::FIXED && is_below(base_link, joint->parent_link_name))
-            names.push_back(name);
+        const bool is_its_own = joint->type != urdf::Joint::FIXED && !joint->mimic;
+        if (is_its_own && is_below(base_link, joint->parent_link_name)) names.push_back(name);
     }
     return names;
 }

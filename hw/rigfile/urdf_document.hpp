@@ -42,7 +42,7 @@ class UrdfDocument {
     [[nodiscard]] bool is_below(const std::string& base_link, const std::string& link) const;
     /// At or below `base_link`, by name; all of them if that is empty.
     [[nodiscard]] std::vector<std::string> link_names(const std::string& base_link = {}) const;
-    /// The joints below `base_link` that are not fixed, by name.
+    /// The joints below `base_link` with a position of their own, by name: neither fixed nor with a <mimic>.
     [[nodiscard]] std::vector<std::string> moving_joints(const std::string& base_link) const;
     /// The same joints from the base to the tips, each with the link that it carries.
     [[nodiscard]] std::vector<JointOfLink> moving_joints_outward(const std::string& base_link) const;

@@ -47,6 +47,8 @@ std::optional<RobotModelError> fault_of(const JointDescription& joint) {
     const bool are_sound = std::isfinite(joint.limits.min) && std::isfinite(joint.limits.max) &&
                            joint.limits.min <= joint.limits.max;
     if (has_limits && !are_sound) return RobotModelError::invalid_number;
+    if (joint.mimic && !(std::isfinite(joint.mimic->multiplier) && std::isfinite(joint.mimic->offset)))
+        return RobotModelError::invalid_number;
     return std::nullopt;
 }
 
@@ -65,6 +67,8 @@ struct Link {
     KDL::Segment axis_to_link;
     std::size_t parent = 0;
     std::size_t joint = kNoJoint;
+    double multiplier = 1.0;  ///< of that joint's position
+    double offset = 0.0;      ///< added to it
 };
 
 Link make_link(const JointDescription& description, std::size_t parent, std::size_t joint) {
@@ -75,7 +79,11 @@ Link make_link(const JointDescription& description, std::size_t parent, std::siz
     const Eigen::Isometry3d T_joint_axis = align_z(description.axis.normalized());
     const auto type = description.kind == JointKind::prismatic ? KDL::Joint::TransZ : KDL::Joint::RotZ;
     return {to_kdl(description.T_parent_joint * T_joint_axis),
-            KDL::Segment(KDL::Joint(type), to_kdl(T_joint_axis.inverse())), parent, joint};
+            KDL::Segment(KDL::Joint(type), to_kdl(T_joint_axis.inverse())),
+            parent,
+            joint,
+            description.mimic ? description.mimic->multiplier : 1.0,
+            description.mimic ? description.mimic->offset : 0.0};
 }
 
 using Fault = std::optional<RobotModelFault>;
@@ -100,7 +108,11 @@ Fault find_joint_fault(const std::string& base_link, std::span<const JointDescri
 Fault find_moved_fault(std::span<const JointDescription> joints, std::span<const std::string> moved) {
     std::set<std::string_view> movable;
     for (const JointDescription& joint : joints) {
-        if (joint.kind != JointKind::fixed) movable.insert(joint.name);
+        if (joint.kind != JointKind::fixed && !joint.mimic) movable.insert(joint.name);
+    }
+    for (const JointDescription& joint : joints) {
+        if (joint.mimic && !movable.contains(joint.mimic->joint))
+            return RobotModelFault{RobotModelError::bad_mimic, joint.name};
     }
     std::set<std::string_view> seen;
     for (const std::string& name : moved) {
@@ -121,12 +133,13 @@ struct RobotModel::Impl {
     std::vector<JointLimits> limits;
 
     void add(const JointDescription& description, std::size_t parent, std::span<const std::string> moved) {
-        const auto at = std::find(moved.begin(), moved.end(), description.name);
+        const std::string& name = description.mimic ? description.mimic->joint : description.name;
+        const auto at = std::find(moved.begin(), moved.end(), name);
         const auto joint = static_cast<std::size_t>(at - moved.begin());
         names.push_back(description.child_link);
         links.push_back(make_link(description, parent, joint));
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
-        if (description.kind == JointKind::fixed) return;
+        if (description.kind == JointKind::fixed || description.mimic) return;
         limits[joint] = description.limits;
         if (description.kind == JointKind::continuous) {
             limits[joint].min = -kInfinity;
@@ -199,7 +212,7 @@ void RobotModel::forward(std::span<const double> position,
     T_base_link[0].setIdentity();
     for (std::size_t i = 1; i < links.size(); ++i) {
         const Link& link = links[i];
-        const double q = link.joint == kNoJoint ? 0.0 : position[link.joint];
+        const double q = link.joint == kNoJoint ? 0.0 : link.multiplier * position[link.joint] + link.offset;
         T_base_link[i].makeAffine();
         to_eigen(to_kdl(T_base_link[link.parent]) * link.T_parent_axis * link.axis_to_link.pose(q),
                  T_base_link[i]);
@@ -218,8 +231,10 @@ void RobotModel::twists(LinkId link, std::span<const Eigen::Isometry3d> T_base_l
         to_eigen(to_kdl(T_base_link[moved.parent]) * moved.T_parent_axis, T_base_axis);
         const Eigen::Vector3d axis = T_base_axis.linear().col(2);
         const bool shifts = moved.axis_to_link.getJoint().getType() == KDL::Joint::TransZ;
-        twists[moved.joint] =
-            shifts ? JointTwist{.shift = axis} : JointTwist{axis, T_base_axis.translation().cross(axis)};
+        // A joint and those that mimic it may all be above the link.
+        JointTwist& twist = twists[moved.joint];
+        if (!shifts) twist.turn += moved.multiplier * axis;
+        twist.shift += moved.multiplier * (shifts ? axis : T_base_axis.translation().cross(axis).eval());
     }
 }
 
@@ -233,7 +248,8 @@ std::vector<double> RobotModel::levers_m(std::span<const double> farthest) const
         // The part below the first joint is not part of any lever.
         if (are_moved[link.parent]) levers_m[i] = levers_m[link.parent] + link.T_parent_axis.p.Norm();
         are_moved[i] = are_moved[link.parent] || link.joint != kNoJoint;
-        if (link.axis_to_link.getJoint().getType() == KDL::Joint::TransZ) levers_m[i] += farthest[link.joint];
+        if (link.axis_to_link.getJoint().getType() == KDL::Joint::TransZ)
+            levers_m[i] += std::abs(link.multiplier) * farthest[link.joint] + std::abs(link.offset);
     }
     return levers_m;
 }
@@ -254,6 +270,8 @@ const char* describe(RobotModelError error) noexcept {
             return "expected an axis of length 1";
         case RobotModelError::invalid_number:
             return "has a number that is not finite, an invalid rotation, or limits the wrong way round";
+        case RobotModelError::bad_mimic:
+            return "expected a <mimic> of a joint that moves by itself, below the base link";
         case RobotModelError::too_large:
             return "expected at most 1000 links";
     }

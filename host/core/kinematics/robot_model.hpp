@@ -38,6 +38,14 @@ struct JointLimits {
     }
 };
 
+/// A joint that moves with another: position = multiplier * (position of `joint`) + offset, radians or
+/// metres.
+struct JointMimic {
+    std::string joint;  ///< a moved joint
+    double multiplier = 1.0;
+    double offset = 0.0;
+};
+
 /// A joint of a robot description.
 struct JointDescription {
     std::string name;
@@ -47,6 +55,7 @@ struct JointDescription {
     Eigen::Isometry3d T_parent_joint = Eigen::Isometry3d::Identity();  ///< of the joint at position 0
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< joint frame, unit length; not for fixed
     JointLimits limits;                               ///< not for fixed and continuous
+    std::optional<JointMimic> mimic = {};             ///< it gets no position of its own; not for fixed
 };
 
 enum class RobotModelError : std::uint8_t {
@@ -57,6 +66,7 @@ enum class RobotModelError : std::uint8_t {
     unreachable,     ///< the link is not connected to the base link
     non_unit_axis,
     invalid_number,  ///< NaN, infinity, an invalid rotation, or reversed limits
+    bad_mimic,       ///< a joint moves with one that is not in the list of moved joints
     too_large,       ///< more than 1000 links
 };
 struct RobotModelFault {

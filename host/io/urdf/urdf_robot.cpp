@@ -69,12 +69,6 @@ std::optional<Refusal> refusal_of(const rig::UrdfDocument& document, const urdf:
                        name_of_other(joint)};
     }
     if (*kind == JointKind::fixed) return std::nullopt;  // a <mimic> on a fixed joint has no effect
-    if (joint.mimic) {
-        return Refusal{
-            {ErrorCode::unsupported, "expected a joint with a position of its own", "a mimic joint",
-             "make it type=\"fixed\", or remove <mimic> and name the joint in the rig"},
-            "mimic"};
-    }
     const bool needs_limits = *kind == JointKind::revolute || *kind == JointKind::prismatic;
     if (needs_limits && !joint.limits)
         return Refusal{{ErrorCode::missing_key, "expected <limit>, found none"}, "no limit"};
@@ -100,6 +94,9 @@ JointDescription to_description(const urdf::Joint& joint) {
     description.T_parent_joint.translation() << origin.position.x, origin.position.y, origin.position.z;
     description.axis << joint.axis.x, joint.axis.y, joint.axis.z;
     if (joint.limits) description.limits = {joint.limits->lower, joint.limits->upper, joint.limits->velocity};
+    const bool is_fixed = description.kind == JointKind::fixed;  // then a <mimic> has no effect
+    if (joint.mimic && !is_fixed)
+        description.mimic = {joint.mimic->joint_name, joint.mimic->multiplier, joint.mimic->offset};
     return description;
 }
 

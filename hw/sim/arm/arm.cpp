@@ -92,12 +92,13 @@ struct Arm::Builder {
     }
 
     void add_moving(const urdf::Joint& joint, Link& link) {
-        const auto named = std::find(joints.begin(), joints.end(), joint.name);
-        if (named == joints.end() || joint.mimic) {
+        const std::string& name = joint.mimic ? joint.mimic->joint_name : joint.name;
+        const auto named = std::find(joints.begin(), joints.end(), name);
+        if (named == joints.end()) {
             return fail(
                 "joint", joint.name,
                 {ErrorCode::missing_key, "moves, but the rig's joint states do not contain its position"},
-                joint.mimic ? "mimic" : "not named");
+                "not named");
         }
         const double length = link.axis.norm();
         if (!(std::abs(length - 1.0) <= 1e-6)) {
@@ -108,6 +109,11 @@ struct Arm::Builder {
         }
         link.axis /= length;
         link.joint = static_cast<std::size_t>(named - joints.begin());
+        if (joint.mimic) {
+            link.multiplier = joint.mimic->multiplier;
+            link.offset = joint.mimic->offset;
+            return;
+        }
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         const bool is_bounded = joint.limits && joint.type != urdf::Joint::CONTINUOUS;
         arm.joints_[link.joint] = {joint.name, is_bounded ? joint.limits->lower : -kInfinity,
@@ -162,17 +168,10 @@ bool Arm::has_link(const std::string& link) const {
 }
 
 Eigen::Isometry3d Arm::T_parent_link(const Link& link, const Eigen::VectorXd& position) {
-    switch (link.motion) {
-        case Motion::turning:
-            return link.T_parent_joint *
-                   Eigen::AngleAxisd(position[static_cast<Eigen::Index>(link.joint)], link.axis);
-        case Motion::sliding:
-            return link.T_parent_joint *
-                   Eigen::Translation3d(position[static_cast<Eigen::Index>(link.joint)] * link.axis);
-        case Motion::fixed:
-            break;
-    }
-    return link.T_parent_joint;
+    if (link.motion == Motion::fixed) return link.T_parent_joint;
+    const double q = link.multiplier * position[static_cast<Eigen::Index>(link.joint)] + link.offset;
+    if (link.motion == Motion::turning) return link.T_parent_joint * Eigen::AngleAxisd(q, link.axis);
+    return link.T_parent_joint * Eigen::Translation3d(q * link.axis);
 }
 
 Arm::LinkPoses Arm::forward(const Eigen::VectorXd& position) const {
@@ -209,11 +208,11 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> Arm::jacobian(std::size_t tip, const Ei
         const Eigen::Vector3d axis = T_base_link.linear() * links_[i].axis;
         const auto column = static_cast<Eigen::Index>(links_[i].joint);
         if (links_[i].motion == Motion::turning) {
-            jacobian.block<3, 1>(0, column) =
-                axis.cross(T_base_tip.translation() - T_base_link.translation());
-            jacobian.block<3, 1>(3, column) = axis;
+            jacobian.block<3, 1>(0, column) +=
+                links_[i].multiplier * axis.cross(T_base_tip.translation() - T_base_link.translation());
+            jacobian.block<3, 1>(3, column) += links_[i].multiplier * axis;
         } else if (links_[i].motion == Motion::sliding) {
-            jacobian.block<3, 1>(0, column) = axis;
+            jacobian.block<3, 1>(0, column) += links_[i].multiplier * axis;
         }
         T_link_tip = T_parent_link(links_[i], position) * T_link_tip;
     }

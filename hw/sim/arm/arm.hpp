@@ -62,7 +62,9 @@ class Arm {
         Motion motion = Motion::fixed;
         Eigen::Isometry3d T_parent_joint = Eigen::Isometry3d::Identity();
         Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-        std::size_t joint = 0;  ///< index into the joint vector, if it moves
+        std::size_t joint = 0;    ///< index into the joint vector, if it moves
+        double multiplier = 1.0;  ///< a <mimic>'s: of that joint's position
+        double offset = 0.0;      ///< likewise: added to it
     };
     struct Limits {
         std::string joint;

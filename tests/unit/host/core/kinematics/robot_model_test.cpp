@@ -105,16 +105,59 @@ TEST(RobotModel, every_kind_of_joint_and_axis_equals_the_product_of_transforms) 
     }
 }
 
+/// The tree with a leaf on `side` that turns with `spin`, and a jaw on `hand` that slides with `slide`.
+std::vector<JointDescription> tree_with_mimics() {
+    auto joints = tree();
+    JointDescription follow{"follow",
+                            "side",
+                            "leaf",
+                            JointKind::continuous,
+                            placed({0, 1, 0}, 0.2, {0.1, 0, 0}),
+                            Vector3d(2, 1, -2) / 3.0,
+                            {}};
+    follow.mimic = {"spin", -0.5, 0.2};
+    JointDescription jaw{
+        "jaw",     "hand", "jaw", JointKind::prismatic, placed({1, 0, 1}, -0.3, {0, 0, 0.05}),
+        {0, 0, 1}, {-2, 2}};
+    jaw.mimic = {"slide", 2.0, -0.1};
+    joints.insert(joints.begin(), {follow, jaw});
+    return joints;
+}
+
+TEST(RobotModel, a_joint_that_mimics_another_moves_with_it) {
+    const auto joints = tree_with_mimics();
+    const RobotModel model = built(joints);
+    ASSERT_EQ(model.joint_count(), 3U);
+    EXPECT_EQ(model.limits()[0].max, 0.5);  // of `slide` itself
+    std::mt19937 engine(4);
+    std::uniform_real_distribution<> uniform(-1.5, 1.5);
+    std::vector<Isometry3d> T_base_link(model.link_count());
+    for (int draw = 0; draw < 100; ++draw) {
+        const double slide = uniform(engine) / 3.0;
+        const double spin = 4.0 * uniform(engine);
+        model.forward(std::array{slide, uniform(engine), spin}, T_base_link);
+        const auto of = [&](const char* link) { return T_base_link[model.find_link(link).value()]; };
+        const Isometry3d leaf =
+            of("side") * joints[0].T_parent_joint * Eigen::AngleAxisd(-0.5 * spin + 0.2, joints[0].axis);
+        const Isometry3d jaw = of("hand") * joints[1].T_parent_joint *
+                               Eigen::Translation3d((2.0 * slide - 0.1) * joints[1].axis);
+        EXPECT_LE((of("leaf").matrix() - leaf.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_LE((of("jaw").matrix() - jaw.matrix()).cwiseAbs().maxCoeff(), 1e-14);
+    }
+    const auto levers_m = model.levers_m(std::array{0.4, 2.0, 3.0});
+    EXPECT_NEAR(levers_m.at(*model.find_link("jaw")), 0.2 + 0.4 + 0.05 + 2.0 * 0.4 + 0.1, 1e-12);
+}
+
 // Oracle: where a point of the link goes with a little of the joint.
 TEST(RobotModel, tells_how_a_link_moves_with_each_joint) {
-    const RobotModel model = built(tree());
+    const RobotModel model = built(tree_with_mimics());
     const std::array<double, 3> q = {0.2, -0.7, 1.3};
     constexpr double kLittle = 1e-6;
     const Vector3d p_link(0.3, -0.1, 0.2);
     std::vector<Isometry3d> T_base_link(model.link_count());
     std::vector<Isometry3d> moved(model.link_count());
     model.forward(q, T_base_link);
-    for (const char* const link : {"base", "arm", "hand", "side", "tool"}) {
+    for (const char* const link : {"base", "arm", "hand", "side", "tool", "leaf", "jaw"}) {
         const LinkId id = model.find_link(link).value();
         JointTwists twists;
         model.twists(id, T_base_link, twists);
@@ -171,7 +214,7 @@ TEST(RobotModel, each_error_has_words_of_its_own) {
     for (int error = 0; error <= static_cast<int>(RobotModelError::too_large); ++error) {
         words.insert(describe(static_cast<RobotModelError>(error)));
     }
-    EXPECT_EQ(words.size(), 8U);
+    EXPECT_EQ(words.size(), 9U);
     EXPECT_FALSE(words.contains("unknown error"));
 }
 
@@ -211,6 +254,26 @@ TEST(RobotModel, refuses_each_fault_by_name) {
          }},
         {RobotModelError::invalid_number, "turn",
          [](Joints& joints, Names&) { joints[3].limits.max = kNaN; }},
+        {RobotModelError::invalid_number, "spin",
+         [](Joints& joints, Names&) {
+             joints[2].mimic = {"turn", kNaN, 0.0};
+         }},
+        {RobotModelError::bad_mimic, "spin",
+         [](Joints& joints, Names&) {
+             joints[2].mimic = {"spin", 1.0, 0.0};
+         }},
+        {RobotModelError::bad_mimic, "spin",
+         [](Joints& joints, Names&) {
+             joints[2].mimic = {"glued", 1.0, 0.0};
+         }},
+        {RobotModelError::bad_mimic, "spin",
+         [](Joints& joints, Names&) {
+             joints[2].mimic = {"elsewhere", 1.0, 0.0};
+         }},
+        {RobotModelError::unknown_joint, "spin",
+         [](Joints& joints, Names&) {
+             joints[2].mimic = {"turn", 1.0, 0.0};
+         }},
     };
     for (const Refused& refused : cases) {
         auto joints = tree();

@@ -77,6 +77,37 @@ TEST(ArmForward, puts_the_upright_arm_where_its_link_lengths_add_up) {
                 1e-14);
 }
 
+TEST(ArmForward, a_joint_that_mimics_another_moves_with_it) {
+    const testing_support::ScratchFolder folder;
+    const auto urdf = folder.write(
+        "gripper.urdf",
+        "<robot name=\"gripper\"><link name=\"base\"/><link name=\"hand\"/><link name=\"left\"/><link "
+        "name=\"right\"/>"
+        "<joint name=\"turn\" type=\"revolute\"><parent link=\"base\"/><child link=\"hand\"/><axis xyz=\"0 0 "
+        "1\"/><limit lower=\"-2\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>"
+        "<joint name=\"open\" type=\"prismatic\"><parent link=\"hand\"/><child link=\"left\"/><axis xyz=\"0 "
+        "1 "
+        "0\"/><limit lower=\"0\" upper=\"0.1\" effort=\"1\" velocity=\"1\"/></joint>"
+        "<joint name=\"mirrored\" type=\"prismatic\"><parent link=\"hand\"/><child link=\"right\"/><axis "
+        "xyz=\"0 1 0\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/><mimic joint=\"open\" "
+        "multiplier=\"-1\" offset=\"-0.01\"/></joint></robot>");
+    const auto arm = Arm::read(urdf, "base", {"open", "turn"});
+    ASSERT_TRUE(arm) << arm.error().message();
+    EXPECT_EQ(arm->joint_count(), 2U);
+    const auto poses = arm->forward(Eigen::Vector2d(0.05, 1.0));
+    const Eigen::Vector3d across(-std::sin(1.0), std::cos(1.0), 0.0);
+    EXPECT_NEAR((poses.at("left").translation() - 0.05 * across).norm(), 0.0, 1e-15);
+    EXPECT_NEAR((poses.at("right").translation() + 0.06 * across).norm(), 0.0, 1e-15);
+    // The inverse goes through the joint that is followed.
+    Eigen::Isometry3d goal = Eigen::Isometry3d::Identity();
+    goal.linear() = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    goal.translation() = -0.08 * Eigen::Vector3d(-std::sin(0.5), std::cos(0.5), 0.0);
+    const auto position = arm->inverse("right", goal, Eigen::Vector2d(0.02, 0.3));
+    ASSERT_TRUE(position);
+    EXPECT_NEAR((*position)[0], 0.07, 1e-6);
+    EXPECT_NEAR((*position)[1], 0.5, 1e-6);
+}
+
 TEST(ArmForward, starts_at_the_base_link_it_is_given) {
     const auto arm = Arm::read(kPandaUrdf, "panda_link6", {"panda_joint7"});
     ASSERT_TRUE(arm) << arm.error().message();
