@@ -9,10 +9,14 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "hw/mesh/mesh_kinds.hpp"
+#include "hw/mesh/mesh_text.hpp"
 #include "hw/rigfile/file_kind.hpp"
 
 namespace octoskin {
@@ -39,20 +43,25 @@ void keep_readers_of_our_kinds(Assimp::Importer& importer) {
     }
 }
 
+/// The triangles and their corners: points and lines have no surface, and no part in the mesh's size.
 void append(const aiMesh& part, TriangleMesh& mesh) {
-    const int first = static_cast<int>(mesh.vertices.size());
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-        const aiVector3D& vertex = part.mVertices[i];
+    constexpr int kUnused = -1;
+    std::vector<int> number_of(part.mNumVertices, kUnused);
+    const auto number = [&](unsigned corner) {
+        int& known = number_of[corner];
+        if (known != kUnused) return known;
+        const aiVector3D& vertex = part.mVertices[corner];
+        known = static_cast<int>(mesh.vertices.size());
         mesh.vertices.emplace_back(static_cast<double>(vertex.x), static_cast<double>(vertex.y),
                                    static_cast<double>(vertex.z));
-    }
+        return known;
+    };
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
         const aiFace& face = part.mFaces[i];
-        if (face.mNumIndices == 3) {  // points and lines have no surface
-            mesh.triangles.emplace_back(first + static_cast<int>(face.mIndices[0]),
-                                        first + static_cast<int>(face.mIndices[1]),
-                                        first + static_cast<int>(face.mIndices[2]));
-        }
+        if (face.mNumIndices != 3) continue;
+        const int a = number(face.mIndices[0]);
+        const int b = number(face.mIndices[1]);
+        mesh.triangles.emplace_back(a, b, number(face.mIndices[2]));
     }
 }
 
@@ -84,6 +93,15 @@ class CheckedFiles final : public Assimp::DefaultIOSystem {
     const AllowedFiles& files_;
 };
 
+Result<MeshText, std::string> checked_text(const std::filesystem::path& file, const AllowedFiles* files) {
+    const auto path =
+        files == nullptr ? Result<std::filesystem::path, std::string>(file) : files->openable(file);
+    if (!path) return unexpected(std::string("cannot be opened"));
+    std::ifstream stream(*path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    return check_mesh_text(file.extension().string(), bytes);
+}
+
 }  // namespace
 
 Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, const AllowedFiles* files) {
@@ -101,9 +119,19 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
     Assimp::Importer importer;
     keep_readers_of_our_kinds(importer);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    const auto text = checked_text(file, files);
+    if (!text) return unexpected("mesh " + file.string() + " " + text.error());
     if (files != nullptr) importer.SetIOHandler(new CheckedFiles(*files));  // the importer owns it
     const aiScene* scene = importer.ReadFile(file.string(), 0);
     const std::size_t expected = scene == nullptr ? 0 : triangles_in(*scene);
+    if (scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
+        return unexpected("mesh " + file.string() + " is not complete");
+    if (scene != nullptr && text->triangles && *text->triangles != expected) {
+        return unexpected("mesh " + file.string() + " has " + std::to_string(*text->triangles) +
+                          " triangles in its text, and " + std::to_string(expected) +
+                          " are read: it is damaged, or of an unusual form; export it anew as binary STL");
+    }
     if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
     if (scene != nullptr && triangles_in(*scene) < expected) {
         return unexpected("mesh " + file.string() + " has polygons that cannot be cut into triangles: " +

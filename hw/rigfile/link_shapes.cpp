@@ -20,6 +20,8 @@
 namespace octoskin::rig {
 namespace {
 
+constexpr double kTurnMax_rad = 6.3;  ///< more are degrees
+
 using Element = tinyxml2::XMLElement;
 
 constexpr std::array kKinds{std::pair{"mesh", ShapeKind::mesh}, std::pair{"box", ShapeKind::box},
@@ -41,7 +43,7 @@ std::optional<Eigen::Isometry3d> place_of(const Element* origin) {
     }
     if (origin->Attribute("rpy") != nullptr) {
         const auto rpy = numbers_of<3>(*origin, "rpy");
-        if (!rpy) return std::nullopt;
+        if (!rpy || rpy->cwiseAbs().maxCoeff() > kTurnMax_rad) return std::nullopt;
         place.linear() = rotation_of_rpy(*rpy);
     } else if (origin->Attribute("quat_xyzw") != nullptr) {
         const auto quat = numbers_of<4>(*origin, "quat_xyzw");
@@ -113,7 +115,8 @@ void read_shapes(const Element& link, const char* name, const FilePlace& urdf, s
         }
         Error error{.code = ErrorCode::bad_value,
                     .what = fmt::format("expected a <{}> with a shape whose place and size are finite "
-                                        "numbers, and whose sizes are positive",
+                                        "numbers, turned by at most one turn of radians, and whose sizes are "
+                                        "positive",
                                         name),
                     .file = urdf.shown(),
                     .line = body->GetLineNum(),

@@ -115,9 +115,19 @@ void read_attached_capsules(const Table& robot, const UrdfDocument& document, Ri
     }
 }
 
-/// Whether the link's capsules are too few or too small for a body.
-bool is_without_body(const std::string& link, const Rig& rig) {
+bool has_mesh(const UrdfDocument& robot) {
+    return std::ranges::any_of(robot.model().links_, [](const auto& link) {
+        return std::ranges::any_of(link.second->collision_array, [](const auto& collision) {
+            return collision->geometry && collision->geometry->type == urdf::Geometry::MESH;
+        });
+    });
+}
+
+/// Whether the link's capsules are too few or too small for a body. True also if the robot has meshes: its
+/// bodies are not known before capsules are fitted to them.
+bool is_without_body(const std::string& link, const UrdfDocument& robot, const Rig& rig) {
     const auto body = padded_body(rig);
+    if (!body && has_mesh(robot)) return true;
     if (!body) throw body.error();
     const auto found = bodyless_links(rig, *body);
     if (!found) throw found.error();
@@ -147,7 +157,7 @@ void read_links_without_body(const Table& robot, const UrdfDocument& document, R
                  {ErrorCode::unknown_name, fmt::format("expected a link at or below {}", rig.base_link),
                   fmt::format("'{}'", link)});
         if (const std::string body = body_of(link, document, rig);
-            !body.empty() && !is_without_body(link, rig)) {
+            !body.empty() && !is_without_body(link, document, rig)) {
             fail(item, path,
                  {ErrorCode::conflict, "expected a link without a body",
                   fmt::format("'{}', which has {}", link, body), "remove it here"});

@@ -110,10 +110,8 @@ Result<std::string, Error> read_urdf_text(const FilePlace& file) {
         error.file = file.shown();
         return unexpected(std::move(error));
     };
-    const auto opened = file.open();
-    if (!opened) return failed(unopened_file(opened.error(), "URDF"));
-    auto text = opened->read(kFileBytesMax);
-    if (!text) return failed(to_error(text.error(), "cannot be read: "));
+    auto text = file.read(kFileBytesMax);
+    if (!text) return failed(unopened_file(text.error(), "URDF"));
     if (text->size() > kFileBytesMax) {
         return failed(
             {ErrorCode::too_large, fmt::format("expected at most {} bytes", kFileBytesMax), "more"});

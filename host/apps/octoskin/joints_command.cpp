@@ -29,8 +29,8 @@
 #include "host/apps/recording/permission.hpp"
 #include "host/core/ingest/local_joints.hpp"
 #include "host/core/kinematics/robot_model.hpp"
-#include "host/io/rig/host_rig_reader.hpp"
 #include "host/io/socketcan/can_socket.hpp"
+#include "host/io/urdf/urdf_robot.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin::app {
@@ -155,9 +155,9 @@ std::optional<rig::Rig> rig_of(const JointsOptions& options) {
 
 std::optional<RigJoints> joints_of(const std::optional<rig::Rig>& rig) {
     if (!rig) return std::nullopt;
-    const auto host = make_host_setup(*rig);
-    if (!host) throw CommandFailure(reading_error(ExitCode::bad_config, host.error()));
-    const auto limits = host->robot.limits();
+    const auto robot = read_robot_model(rig->urdf, rig->base_link, rig->joints.joints);
+    if (!robot) throw CommandFailure(reading_error(ExitCode::bad_config, robot.error()));
+    const auto limits = robot->limits();
     return RigJoints{rig->joints.joints, {limits.begin(), limits.end()}};
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,27 @@ void write(const std::filesystem::path& file, const std::string& text) {
     if (const auto written = write_text(file, text); !written) throw CommandFailure(written.error());
 }
 
+/// The URDF and its meshes are the only source of what is written.
+void refuse_outputs_over_inputs(const RobotOptions& options, const RobotFit& robot) {
+    std::vector<std::filesystem::path> taken{options.urdf};
+    for (const LinkBody& link : robot.links) taken.insert(taken.end(), link.files.begin(), link.files.end());
+    if (!options.out.empty()) taken.push_back(options.out);
+    const auto check = [](const std::filesystem::path& output, std::span<const std::filesystem::path> files) {
+        for (const std::filesystem::path& file : files) {
+            std::error_code ignored;
+            const bool is_same = output.lexically_normal() == file.lexically_normal() ||
+                                 std::filesystem::equivalent(output, file, ignored);
+            if (output.empty() || !is_same) continue;
+            throw CommandFailure(ExitCode::usage, {.code = ErrorCode::conflict,
+                                                   .what = "an output would replace this file",
+                                                   .remedy = "give another name",
+                                                   .file = file});
+        }
+    };
+    check(options.picture, taken);
+    check(options.out, std::span(taken).first(taken.size() - (options.out.empty() ? 0 : 1)));
+}
+
 void run(const RobotOptions& options) {
     for (const auto& file : {options.out, options.picture}) {
         if (file.empty()) continue;
@@ -45,6 +67,7 @@ void run(const RobotOptions& options) {
     const auto robot = fit_robot(*text, mesh_search(options.packages),
                                  [](const std::string& link) { spdlog::info("fitting link {}", link); });
     if (!robot) throw CommandFailure(reading_error(ExitCode::bad_config, robot.error()));
+    refuse_outputs_over_inputs(options, *robot);
     write(options.out, robot->urdf);
     write(options.picture, body_picture(*robot));
     if (options.prints_json) {

@@ -15,8 +15,7 @@ Result<rig::Rig, AppError> read_given_rig(const FilePlace& file, const std::file
 
 Result<std::string, AppError> robot_text(const rig::Rig& rig) {
     constexpr std::size_t kRobotBytesMax = std::size_t{16} << 20U;  // size limit of the file
-    const auto opened = rig.urdf.open();
-    auto robot = opened ? opened->read(kRobotBytesMax) : unexpected(opened.error());
+    auto robot = rig.urdf.read(kRobotBytesMax);
     if (robot) return std::move(*robot);
     return unexpected(
         reading_error(rig.urdf, {ExitCode::bad_config, to_error(robot.error(), "cannot be read: ")}));

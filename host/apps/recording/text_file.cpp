@@ -131,10 +131,8 @@ Status<AppError> check_text_place(const FilePlace& file) {
 
 Status<AppError> copy_file(const FilePlace& from, const FilePlace& to) {
     constexpr std::size_t kBytesMax = std::size_t{64} << 20U;  // four times the size limit of a robot file
-    const auto opened = from.open();
     const std::string before = fmt::format("cannot be copied to {}: ", to.shown().string());
-    if (!opened) return fail(ExitCode::cannot_create, to_error(opened.error(), before));
-    const auto bytes = opened->read(kBytesMax);
+    const auto bytes = from.read(kBytesMax);
     if (!bytes) return fail(ExitCode::cannot_create, to_error(bytes.error(), before));
     if (bytes->size() > kBytesMax) {
         return fail(ExitCode::cannot_create,

@@ -30,15 +30,15 @@ std::optional<std::string> kept_fit(const FitStore& store, const std::string& ke
 
 Unexpected<AppError> without_fit(const rig::Rig& rig, const FitStore& store) {
     const std::string urdf = rig.urdf.shown().string();
-    return refused({.code = ErrorCode::no_data,
-                    .what = "its links have meshes, and this user has no capsules fitted to them",
-                    .remedy = fmt::format("run `octoskin robot {} --base {} --out FITTED.urdf`, and use "
-                                          "FITTED.urdf in the rig",
-                                          urdf, rig.base_link),
-                    .file = urdf,
-                    .others = store.folder().empty()
-                                  ? std::string()
-                                  : fmt::format("Fits are kept in {}", store.folder().string())});
+    return refused(
+        {.code = ErrorCode::no_data,
+         .what = "its links have meshes, and this user has no capsules fitted to them",
+         .remedy = fmt::format("run `octoskin robot {} --base {} --out FITTED.urdf`, with the same "
+                               "--package-path, and use FITTED.urdf in the rig",
+                               urdf, rig.base_link),
+         .file = urdf,
+         .others = store.folder().empty() ? std::string()
+                                          : fmt::format("Fits are kept in {}", store.folder().string())});
 }
 
 Result<std::string, AppError> new_fit(const RobotText& robot, const MeshSearch& search,

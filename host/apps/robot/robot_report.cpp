@@ -63,28 +63,32 @@ std::string robot_text(const RobotFit& robot) {
         text += name + source_text(link);
         if (link.fit) text += ": " + fit_text(*link.fit);
         text += "\n";
+        for (const std::string& file : link.files) text += fmt::format("    {}\n", printable(file));
     }
     return text;
 }
 
 ordered_json robot_json(const RobotFit& robot) {
-    ordered_json json{{"base_link", robot.shapes.base_link},
+    ordered_json json{{"base_link", printable(robot.shapes.base_link)},
                       {"joints", ordered_json::array()},
                       {"links", ordered_json::array()},
                       {"missing", ordered_json::array()}};
     for (const rig::ShapedJoint& joint : robot.shapes.joints) {
-        json["joints"].push_back({{"name", joint.name},
+        json["joints"].push_back({{"name", printable(joint.name)},
                                   {"kind", joint.kind},
                                   {"lower", or_null(joint.lower)},
                                   {"upper", or_null(joint.upper)}});
     }
     for (const LinkBody& link : robot.links) {
-        if (is_missing(link)) json["missing"].push_back(link.link);
-        ordered_json entry{{"name", link.link},
+        if (is_missing(link)) json["missing"].push_back(printable(link.link));
+        ordered_json files = ordered_json::array();
+        for (const std::string& file : link.files) files.push_back(printable(file));
+        ordered_json entry{{"name", printable(link.link)},
                            {"moves", link.is_moving},
                            {"body", name_of(link.source)},
                            {"shapes", link.shapes},
                            {"kept", link.kept},
+                           {"files", std::move(files)},
                            {"triangles", link.triangles},
                            {"capsules", link.fit ? link.fit->capsules.size() : 0}};
         const FitMeasures measures = link.fit ? link.fit->measures : FitMeasures{};

@@ -10,6 +10,7 @@ namespace octoskin {
 namespace {
 
 constexpr double kFlat_m = 1e-5;
+constexpr std::uint64_t kComparisonsOfStep = 8;  ///< a comparison takes about 5 ns
 
 /// The same number from -1 to 1 in each run for the same index.
 double scatter(std::uint64_t index) {
@@ -25,7 +26,8 @@ double scatter(std::uint64_t index) {
 /// The faces while points are added, each with the points beyond it.
 class HullBuilder {
   public:
-    explicit HullBuilder(std::span<const Eigen::Vector3d> points) {
+    HullBuilder(std::span<const Eigen::Vector3d> points, double flat_m, FitWork* work)
+        : beyond_m_(std::max(flat_m, 1e-12)), work_(work) {
         points_.reserve(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Eigen::Vector3d shift(scatter(3 * i), scatter(3 * i + 1), scatter(3 * i + 2));
@@ -37,9 +39,10 @@ class HullBuilder {
         if (!start()) return false;
         // Each round makes one point a corner of the hull.
         for (std::size_t next = 0; next < faces_.size(); ++next) {
+            if (work_ != nullptr && work_->is_spent()) return false;
             if (faces_[next].is_alive && !faces_[next].beyond.empty()) extend(next);
         }
-        return true;
+        return work_ == nullptr || !work_->is_spent();
     }
 
     [[nodiscard]] ConvexHull result() const {
@@ -116,16 +119,19 @@ class HullBuilder {
 
     /// Gives each point to the first face from `from` on that it is beyond.
     void distribute(const std::vector<std::size_t>& points, std::size_t from) {
+        std::uint64_t steps = 0;
         for (const std::size_t point : points) {
             for (std::size_t i = from; i < faces_.size(); ++i) {
+                ++steps;
                 const double height_m = height(faces_[i], point);
-                if (!(height_m > 1e-12)) continue;
+                if (!(height_m > beyond_m_)) continue;
                 auto& beyond = faces_[i].beyond;
                 beyond.push_back(point);
                 if (height_m > height(faces_[i], beyond.front())) std::swap(beyond.front(), beyond.back());
                 break;
             }
         }
+        if (work_ != nullptr) (void)work_->spend(steps / kComparisonsOfStep + 1);
     }
 
     /// Replaces the faces that the point farthest beyond `seed` sees by faces from their border to it.
@@ -160,14 +166,17 @@ class HullBuilder {
         distribute(orphans, first_new);
     }
 
+    double beyond_m_;
+    FitWork* work_;
     std::vector<Eigen::Vector3d> points_;
     std::vector<Face> faces_;
     std::unordered_map<std::uint64_t, std::size_t> face_of_edge_;
     std::size_t first_ = 0;
 };
 
-std::optional<ConvexHull> ConvexHull::around(std::span<const Eigen::Vector3d> points) {
-    HullBuilder builder(points);
+std::optional<ConvexHull> ConvexHull::around(std::span<const Eigen::Vector3d> points, double flat_m,
+                                             FitWork* work) {
+    HullBuilder builder(points, flat_m, work);
     if (!builder.build()) return std::nullopt;
     return builder.result();
 }

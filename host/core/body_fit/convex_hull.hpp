@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "host/core/body_fit/fit_work.hpp"
 #include "host/core/body_fit/row_cut.hpp"
 
 namespace octoskin {
@@ -16,9 +17,12 @@ class ConvexHull {
     static constexpr double kTolerance_m = 1e-6;
 
     /// Quickhull (Barber 1996) of points that are moved by up to 1 micrometre, so that no four lie in a
-    /// plane: the moves are the same in each run. None if all points are within 10 micrometres of a plane.
+    /// plane: the moves are the same in each run. Points up to `flat_m` beyond the hull so far are left out:
+    /// on a smooth surface of many points nearly all. None if all points are within 10 micrometres of a
+    /// plane, and if it takes more than is left of `work`: a step for each point and face that are compared.
     /// O(n log n) for points in no special order.
-    [[nodiscard]] static std::optional<ConvexHull> around(std::span<const Eigen::Vector3d> points);
+    [[nodiscard]] static std::optional<ConvexHull> around(std::span<const Eigen::Vector3d> points,
+                                                          double flat_m = 0.0, FitWork* work = nullptr);
 
     [[nodiscard]] double volume_m3() const noexcept { return volume_m3_; }
     /// True up to kTolerance_m outside. O(faces).

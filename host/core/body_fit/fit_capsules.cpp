@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kExcessSmall = 0.08;  ///< of the hull's volume, weighted: more capsules are not worth it
 constexpr double kExcessMost = 0.42;
+constexpr double kHullFlat_m = 1e-4;  ///< the hull only measures
 constexpr double kProtrusionP99Most_m = 0.029;
 constexpr double kProtrusionMost_m = 0.048;
 
@@ -32,7 +33,7 @@ class LinkFit {
         : mesh_(mesh),
           diagonal_m_(box_of(mesh).diagonal().norm()),
           distance_(mesh, &work_),
-          hull_(ConvexHull::around(mesh.vertices)),
+          hull_(ConvexHull::around(mesh.vertices, kHullFlat_m, &work_)),
           field_(mesh, distance_, hull_ ? &*hull_ : nullptr),
           search_(points_of(mesh), field_) {}
 

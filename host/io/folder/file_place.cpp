@@ -91,6 +91,12 @@ Result<OpenFile, FolderError> FilePlace::open() const {
     return open_ordinary(path, name_);
 }
 
+Result<std::string, FolderError> FilePlace::read(std::size_t bytes_max) const {
+    if (held_) return held_->substr(0, bytes_max + 1);
+    const auto opened = open();
+    return opened ? opened->read(bytes_max) : unexpected(opened.error());
+}
+
 FilePlace FilePlace::beside(const fs::path& other) const {
     FilePlace place(*this);
     place.held_ = nullptr;

@@ -67,6 +67,8 @@ class FilePlace {
     [[nodiscard]] bool is_there() const { return kind() != EntryKind::absent; }
     /// Opens a regular file for reading. Errors: as OpenFolder::open_file.
     [[nodiscard]] Result<OpenFile, FolderError> open() const;
+    /// The content, at most `bytes_max` + 1 bytes, as OpenFile::read. Errors: those of open() and read().
+    [[nodiscard]] Result<std::string, FolderError> read(std::size_t bytes_max) const;
     /// The place of `other`, a file name in the text of this file, relative to this file. Below a named
     /// folder it stays inside, or cannot be opened (outside).
     [[nodiscard]] FilePlace beside(const std::filesystem::path& other) const;

@@ -56,6 +56,9 @@ Result<TriangleMesh, Error> read_mesh_in_process(const MeshCopy& mesh,
     const std::string complaint = process->complaint();
     auto triangles = end ? std::nullopt : mesh_of(bytes);
     if (triangles) return *std::move(triangles);
+    constexpr const char* kTooLong = "it takes more than a minute to read";
+    if (end && end->find("processor time") != std::string::npos)
+        return failed({ErrorCode::time_limit, kTooLong, "", "export it with fewer parts"});
     const std::string reason =
         complaint.empty() ? std::string(kMeshReader) + ": " + end.value_or("no mesh") : complaint;
     return failed({ErrorCode::foreign_format, "not a mesh that can be read: " + reason, "",

@@ -28,8 +28,7 @@ const std::vector<rig::LinkShape>& body_shapes(const rig::ShapedLink& link) {
 }
 
 bool is_fitted(const rig::LinkShape& shape) noexcept {
-    return rig::is_body(shape) &&
-           (shape.kind == rig::ShapeKind::mesh || shape.kind == rig::ShapeKind::box);
+    return rig::is_body(shape) && (shape.kind == rig::ShapeKind::mesh || shape.kind == rig::ShapeKind::box);
 }
 
 }  // namespace octoskin

@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kOctoskin = "octoskin";
+constexpr const char* kRobots = "robots";
 constexpr std::size_t kDigestLength = 64;
 constexpr std::size_t kBytesMax = std::size_t{16} << 20U;  // size limit of a URDF
 constexpr mode_t kOthersWrite = S_IWGRP | S_IWOTH;
@@ -57,12 +59,20 @@ Status<Error> check_private(int descriptor, const fs::path& path, bool has_one_n
     return Done{};
 }
 
-/// The URDF in a kept file: the first line is the digest of the rest.
-std::optional<std::string> urdf_in(std::string bytes) {
+/// The digest of a kept file: of its key, too, so that it is of no use under another one.
+std::string digest_of(const std::string& key, std::string_view urdf) {
+    Sha256 digest;
+    digest.add_field(key);
+    digest.add_field(urdf);
+    return digest.hexadecimal();
+}
+
+/// The URDF in a kept file: the first line is the digest.
+std::optional<std::string> urdf_in(const std::string& key, std::string bytes) {
     if (bytes.size() <= kDigestLength || bytes[kDigestLength] != '\n') return std::nullopt;
     const std::string digest = bytes.substr(0, kDigestLength);
     bytes.erase(0, kDigestLength + 1);
-    if (sha256_of(bytes) != digest) return std::nullopt;
+    if (digest_of(key, bytes) != digest) return std::nullopt;
     return bytes;
 }
 
@@ -79,31 +89,38 @@ Status<Error> write_all(int descriptor, std::string_view bytes, const fs::path& 
 }  // namespace
 
 FitStore FitStore::of_this_user() {
-    if (const fs::path cache = folder_in("XDG_CACHE_HOME"); !cache.empty())
-        return FitStore(cache / "octoskin" / "robots");
-    if (const fs::path home = folder_in("HOME"); !home.empty())
-        return FitStore(home / ".cache" / "octoskin" / "robots");
+    if (const fs::path cache = folder_in("XDG_CACHE_HOME"); !cache.empty()) return FitStore(cache);
+    if (const fs::path home = folder_in("HOME"); !home.empty()) return FitStore(home / ".cache");
     return FitStore(fs::path());
 }
 
-FitStore::FitStore(fs::path folder) : folder_(std::move(folder)) {}
+FitStore::FitStore(fs::path cache) : cache_(std::move(cache)) {}
+
+fs::path FitStore::folder() const {
+    return cache_.empty() ? fs::path() : cache_ / kOctoskin / kRobots;
+}
 
 Result<std::optional<std::string>, Error> FitStore::find(const std::string& key) const {
     const std::optional<std::string> none;
-    if (folder_.empty()) return none;
-    const auto folder = OpenFolder::open(folder_, FolderAccess::read);
-    if (!folder && folder.error().fault == FolderFault::absent) return none;
-    if (!folder) return refused(folder.error());
+    if (cache_.empty()) return none;
+    auto folder = OpenFolder::open(cache_, FolderAccess::read);
+    fs::path shown = cache_;
+    for (const char* const name : {kOctoskin, kRobots}) {
+        if (folder) folder = folder->open_folder(name);
+        if (!folder && folder.error().fault == FolderFault::absent) return none;
+        if (!folder) return refused(folder.error());
+        shown /= name;
+        if (const auto checked = check_private(folder->descriptor(), shown, false); !checked)
+            return unexpected(checked.error());
+    }
     const auto file = folder->open_file(name_of(key));
     if (!file && file.error().fault == FolderFault::absent) return none;
     if (!file) return refused(file.error());
-    if (const auto checked = check_private(folder->descriptor(), folder_, false); !checked)
-        return unexpected(checked.error());
     if (const auto checked = check_private(file->descriptor(), file->shown(), true); !checked)
         return unexpected(checked.error());
     auto bytes = file->read(kBytesMax);
     if (!bytes) return refused(bytes.error());
-    auto urdf = urdf_in(*std::move(bytes));
+    auto urdf = urdf_in(key, *std::move(bytes));
     if (urdf) return urdf;
     return unexpected(Error{.code = ErrorCode::damaged,
                             .what = "is cut or damaged",
@@ -111,21 +128,37 @@ Result<std::optional<std::string>, Error> FitStore::find(const std::string& key)
                             .file = file->shown()});
 }
 
+/// Opens the folder for writing; a new one is for this user alone.
+Result<OpenFolder, Error> FitStore::make_folder() const {
+    auto made = make_open_folder(cache_);
+    if (!made) return refused(made.error());
+    if (made->is_new && ::fchmod(made->folder.descriptor(), kOurs) != 0) return refused(errno, cache_);
+    OpenFolder folder = made->folder;
+    fs::path shown = cache_;
+    for (const char* const name : {kOctoskin, kRobots}) {
+        shown /= name;
+        auto below = FilePlace(folder, name).make_folder();
+        if (!below) return refused(below.error());
+        if (below->is_new && ::fchmod(below->folder.descriptor(), kOurs) != 0) return refused(errno, shown);
+        if (const auto checked = check_private(below->folder.descriptor(), shown, false); !checked)
+            return unexpected(checked.error());
+        folder = below->folder;
+    }
+    return folder;
+}
+
 Status<Error> FitStore::keep(const std::string& key, const std::string& urdf) const {
-    if (folder_.empty())
+    if (cache_.empty())
         return unexpected(Error{.code = ErrorCode::not_found,
                                 .what = "neither XDG_CACHE_HOME nor HOME names a folder",
                                 .remedy = "set one of them"});
-    const auto made = FilePlace(folder_).make_folder();
-    if (!made) return refused(made.error());
-    if (made->is_new && ::fchmod(made->folder.descriptor(), kOurs) != 0) return refused(errno, folder_);
-    if (const auto checked = check_private(made->folder.descriptor(), folder_, false); !checked)
-        return checked;
-    auto file = ReplacingFile::begin(FilePlace(made->folder, name_of(key)));
+    const auto folder = make_folder();
+    if (!folder) return unexpected(folder.error());
+    auto file = ReplacingFile::begin(FilePlace(*folder, name_of(key)));
     if (!file) return refused(file.error());
-    const fs::path shown = folder_ / name_of(key);
+    const fs::path shown = this->folder() / name_of(key);
     if (::fchmod(file->descriptor(), kOurFile) != 0) return refused(errno, shown);
-    if (auto written = write_all(file->descriptor(), sha256_of(urdf) + '\n' + urdf, shown); !written)
+    if (auto written = write_all(file->descriptor(), digest_of(key, urdf) + '\n' + urdf, shown); !written)
         return written;
     if (const auto done = file->commit(); !done) return refused(done.error());
     return Done{};

@@ -44,6 +44,21 @@ bool is_below(const fs::path& file, const fs::path& folder, fs::path& name) {
     return !name.empty() && *name.begin() != ".." && name != ".";
 }
 
+/// The <name> in the folder's package.xml; nullopt without such a file, empty without a name in it.
+std::optional<std::string> package_name_in(const fs::path& folder) {
+    constexpr std::size_t kPackageFileMax = 1U << 20U;
+    const auto opened = FilePlace(folder / "package.xml").open();
+    const auto text = opened ? opened->read(kPackageFileMax) : unexpected(opened.error());
+    if (!text) return std::nullopt;
+    const auto begin = text->find("<name>");
+    const auto end = text->find("</name>");
+    if (begin == std::string::npos || end == std::string::npos || end < begin + 6) return std::string();
+    const std::string name = text->substr(begin + 6, end - begin - 6);
+    const auto first = name.find_first_not_of(" \t\r\n");
+    return first == std::string::npos ? std::string()
+                                      : name.substr(first, name.find_last_not_of(" \t\r\n") + 1 - first);
+}
+
 Error not_found(const std::string& uri, const std::vector<fs::path>& tried, std::string remedy) {
     std::string folders;
     for (const fs::path& folder : tried) folders += (folders.empty() ? "" : ", ") + folder.string();
@@ -72,10 +87,16 @@ MeshSearch mesh_search(std::vector<PackagePath> packages) {
     return {std::move(packages), environment("ROS_PACKAGE_PATH"), environment("AMENT_PREFIX_PATH")};
 }
 
+/// Links in the path that the user typed are followed; those of a recording's folder are not.
+fs::path folder_of_urdf(const FilePlace& urdf) {
+    const fs::path folder = fs::absolute(urdf.shown()).lexically_normal().parent_path();
+    std::error_code error;
+    const fs::path real = urdf.folder() == nullptr ? fs::canonical(folder, error) : folder;
+    return error ? folder : real;
+}
+
 MeshPlaces::MeshPlaces(const FilePlace& urdf, MeshSearch search)
-    : urdf_folder_(fs::absolute(urdf.shown()).lexically_normal().parent_path()),
-      root_(urdf_folder_.parent_path()),
-      search_(std::move(search)) {
+    : urdf_folder_(folder_of_urdf(urdf)), root_(urdf_folder_.parent_path()), search_(std::move(search)) {
     if (urdf.folder() != nullptr) recording_ = *urdf.folder();
     std::error_code ignored;
     for (const fs::path& folder : folders_above(urdf_folder_)) {
@@ -86,17 +107,22 @@ MeshPlaces::MeshPlaces(const FilePlace& urdf, MeshSearch search)
     if (!root_.has_relative_path()) root_ = urdf_folder_;
 }
 
-std::vector<MeshPlaces::PackageFolder> MeshPlaces::folders_of(const std::string& package) const {
-    std::vector<PackageFolder> folders;
+/// The one that counts, as in ROS: another package of the same name may have other files of the same names.
+Result<std::optional<MeshPlaces::PackageFolder>, Error> MeshPlaces::folder_of(
+    const std::string& package) const {
     std::error_code ignored;
+    std::optional<PackageFolder> first;
     const auto add = [&](const fs::path& folder, const fs::path& below = {}) {
         const PackageFolder found{fs::absolute(folder).lexically_normal(), below};
-        if (fs::is_directory(found.folder / below, ignored) &&
-            std::ranges::find(folders, found) == folders.end())
-            folders.push_back(found);
+        if (!first && fs::is_directory(found.folder / below, ignored)) first = found;
     };
-    for (const PackagePath& given : search_.packages)
-        if (given.name == package) add(given.folder);
+    for (const PackagePath& given : search_.packages) {
+        if (given.name != package) continue;
+        add(given.folder);
+        if (first) return first;
+        return unexpected(Error{ErrorCode::not_found, "expected a folder", given.folder.string(),
+                                "correct --package-path " + package + "=DIR"});
+    }
     // The user names these folders; links to packages are usual in them.
     for (fs::path folder : split(search_.ros_package_path)) {
         if (!folder.has_filename()) folder = folder.parent_path();
@@ -111,12 +137,19 @@ std::vector<MeshPlaces::PackageFolder> MeshPlaces::folders_of(const std::string&
         const bool is_above = std::ranges::find(above, named) != above.end();
         if (!is_above || named == root_ || fs::exists(named / "package.xml", ignored)) add(folder, package);
     }
-    // A copy of the package under another name.
-    for (const fs::path& folder : above) {
-        add(folder);
+    return first;
+}
+
+/// Folders that may be a copy of the package under another name: none if their package.xml has another one.
+std::vector<fs::path> MeshPlaces::copies_of(const std::string& package) const {
+    const auto name = package_name_in(root_);
+    if (name && !name->empty() && *name != package) return {};
+    std::vector<fs::path> copies;
+    for (const fs::path& folder : folders_above(urdf_folder_)) {
+        copies.push_back(folder);
         if (folder == root_) break;
     }
-    return folders;
+    return copies;
 }
 
 /// Below the folder of the recording only: as a path from the URDF's folder, or for package://NAME/FILE as
@@ -154,12 +187,19 @@ Result<FilePlace, Error> MeshPlaces::find_in_package(const std::string& uri) con
     if (name.is_absolute() || *name.begin() == "..")
         return unexpected(
             Error{ErrorCode::outside_folder, "expected a file below the folder of the package", uri});
-    const auto folders = folders_of(package);
+    const auto folder = folder_of(package);
+    if (!folder) return unexpected(folder.error());
     std::vector<fs::path> tried;
-    for (const PackageFolder& folder : folders) {
-        FilePlace place(NamedFolder(folder.folder), folder.package / name);
+    if (*folder) {
+        FilePlace place(NamedFolder((*folder)->folder), (*folder)->package / name);
         if (place.is_there()) return place;
-        tried.push_back(folder.folder / folder.package);
+        tried.push_back((*folder)->folder / (*folder)->package);
+    } else {
+        for (const fs::path& copy : copies_of(package)) {
+            FilePlace place(NamedFolder(copy), name);
+            if (place.is_there()) return place;
+            tried.push_back(copy);
+        }
     }
     return unexpected(not_found(uri, tried, fmt::format("give --package-path {}=DIR", package)));
 }
@@ -169,9 +209,10 @@ Result<FilePlace, Error> MeshPlaces::find_below_roots(const fs::path& file, cons
     std::vector<fs::path> roots{root_};
     for (const PackagePath& given : search_.packages)
         roots.push_back(fs::absolute(given.folder).lexically_normal());
-    for (const fs::path& folder : split(search_.ros_package_path)) roots.push_back(folder.lexically_normal());
+    for (const fs::path& folder : split(search_.ros_package_path))
+        roots.push_back(fs::absolute(folder).lexically_normal());
     for (const fs::path& prefix : split(search_.ament_prefix_path))
-        roots.push_back((prefix / "share").lexically_normal());
+        roots.push_back(fs::absolute(prefix / "share").lexically_normal());
     for (fs::path& root : roots) {
         if (!root.has_filename()) root = root.parent_path();
         fs::path name;

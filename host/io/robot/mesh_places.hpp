@@ -38,17 +38,17 @@ class MeshPlaces {
     MeshPlaces(const FilePlace& urdf, MeshSearch search);
 
     /// The file of a <mesh filename="...">:
-    /// - package://NAME/FILE: below the folder of that package, the first of these that has the file: NAME of
-    ///   --package-path; NAME in, or at the end of, a folder of ROS_PACKAGE_PATH; share/NAME in a prefix of
-    ///   AMENT_PREFIX_PATH; NAME in a folder above the URDF, or the name of such a
-    ///   folder that has a package.xml or is that of relative paths; a folder from that of the URDF
-    ///   up to that of relative paths, whatever its name: a copy of the package.
+    /// - package://NAME/FILE: below the folder of that package, the first of these that exists: the one given
+    ///   with --package-path; NAME in, or at the end of, a folder of ROS_PACKAGE_PATH; share/NAME in a prefix
+    ///   of AMENT_PREFIX_PATH; NAME in a folder above the URDF, or the name of such a folder that has a
+    ///   package.xml or is that of relative paths. If there is none: the folders from that of the URDF up to
+    ///   that of relative paths, as a copy of the package, unless the package.xml there has another name.
     /// - file://FILE, and an absolute path: below one of these folders, or below that of relative paths.
     /// - a relative path: beside the URDF, below the nearest folder above it that has a package.xml, else
-    /// below the
-    ///   parent of its folder.
-    /// Symbolic links below these folders are not followed. Errors: not_found, with the folders that were
-    /// tried; outside_folder; unsupported (another scheme).
+    ///   below the parent of its folder.
+    /// Symbolic links below these folders are not followed; a package may be a link in ROS_PACKAGE_PATH or
+    /// AMENT_PREFIX_PATH. Errors: not_found, with the folder that was looked in, or for a given folder that
+    /// does not exist; outside_folder; unsupported (another scheme).
     [[nodiscard]] Result<FilePlace, Error> find(const std::string& uri) const;
 
   private:
@@ -62,7 +62,8 @@ class MeshPlaces {
     [[nodiscard]] Result<FilePlace, Error> find_in_package(const std::string& uri) const;
     [[nodiscard]] Result<FilePlace, Error> find_below_roots(const std::filesystem::path& file,
                                                             const std::string& uri) const;
-    [[nodiscard]] std::vector<PackageFolder> folders_of(const std::string& package) const;
+    [[nodiscard]] Result<std::optional<PackageFolder>, Error> folder_of(const std::string& package) const;
+    [[nodiscard]] std::vector<std::filesystem::path> copies_of(const std::string& package) const;
     [[nodiscard]] Result<FilePlace, Error> find_in_recording(const std::string& uri) const;
 
     std::filesystem::path urdf_folder_;  ///< absolute

@@ -7,11 +7,15 @@
 #include <map>
 #include <utility>
 
+#include "host/core/body_fit/fit_work.hpp"
 #include "host/io/robot/surface_reader.hpp"
 #include "hw/rigfile/fitted_urdf.hpp"
+#include "hw/rigfile/robot_description.hpp"
 
 namespace octoskin {
 namespace {
+
+constexpr std::uint64_t kRobotWorkMost = 20 * FitWork::kMost;
 
 using rig::LinkShape;
 using rig::ShapedLink;
@@ -76,8 +80,7 @@ class Fitting {
             static_cast<std::size_t>(std::ranges::count_if(body_shapes(link), [](const LinkShape& shape) {
                 return rig::is_body(shape) && !is_fitted(shape);
             }));
-        const bool has_work =
-            surfaces_.faults().empty() && std::ranges::any_of(body_shapes(link), is_fitted);
+        const bool has_work = surfaces_.faults().empty() && std::ranges::any_of(body_shapes(link), is_fitted);
         if (on_link_ && has_work) on_link_(link.name);
         const auto box = lone_box(link);
         const Eigen::Isometry3d T_link_surface = box ? box->T_link_shape : Eigen::Isometry3d::Identity();
@@ -85,6 +88,12 @@ class Fitting {
         // A robot that is refused is fitted no further, but all of its faults are named.
         if (!surface || surface->triangles.empty() || !surfaces_.faults().empty()) return body;
         body.triangles = surface->triangles.size();
+        for (const LinkShape& shape : body_shapes(link)) {
+            const auto file = surfaces_.mesh_files().find(shape.mesh);
+            if (shape.kind != ShapeKind::mesh || file == surfaces_.mesh_files().end()) continue;
+            if (std::ranges::find(body.files, file->second.string()) == body.files.end())
+                body.files.push_back(file->second.string());
+        }
         body.mesh = part_of(*surface, T_link_surface);
         const auto fit = box ? fit_of_box(box->size, *surface) : fit_capsules(*surface);
         if (!fit) {
@@ -98,6 +107,15 @@ class Fitting {
             return body;
         }
         body.fit = moved(*fit, T_link_surface);
+        work_ += fit->work;
+        if (work_ > kRobotWorkMost) {
+            surfaces_.fail(link,
+                           {.code = ErrorCode::too_large,
+                            .what = "expected a robot whose links can be fitted in a few minutes",
+                            .value = "more work up to this link",
+                            .remedy = "export its meshes with fewer triangles, or give links capsules"},
+                           "too much work");
+        }
         return body;
     }
 
@@ -112,6 +130,7 @@ class Fitting {
 
     SurfaceReader surfaces_;
     const OnLinkFit& on_link_;
+    std::uint64_t work_ = 0;  ///< of all links so far
     std::map<std::array<double, 3>, std::optional<BodyFit>> boxes_;
 };
 
@@ -138,6 +157,8 @@ Result<RobotFit, Error> fit_robot(const RobotText& robot, const MeshSearch& sear
     }
     auto fitted = rig::urdf_with_bodies(robot.file.shown(), robot.text, bodies);
     if (!fitted) return unexpected(fitted.error());
+    const FilePlace written = FilePlace::held(*fitted, robot.file);
+    if (const auto usable = rig::read_capsules(written, {}); !usable) return unexpected(usable.error());
     fit.urdf = *std::move(fitted);
     fit.made_of = {fit.shapes.base_link, robot.text, fitting.surfaces().mesh_sha256()};
     return fit;

@@ -20,11 +20,12 @@ struct LinkBody {
     std::string link;
     bool is_moving = false;
     BodySource source = BodySource::nothing;
-    std::string shapes = {};          ///< "2 meshes, 1 cylinder"
-    std::size_t kept = 0;             ///< cylinders, spheres and capsules, which stay as they are
-    std::size_t triangles = 0;        ///< of meshes and boxes
-    SurfaceMesh mesh = {};            ///< some of them, at most kDrawnTrianglesMax, link frame
-    std::optional<BodyFit> fit = {};  ///< to all of them; none without meshes and boxes
+    std::string shapes = {};              ///< "2 meshes, 1 cylinder"
+    std::size_t kept = 0;                 ///< cylinders, spheres and capsules, which stay as they are
+    std::vector<std::string> files = {};  ///< the meshes, each once
+    std::size_t triangles = 0;            ///< of meshes and boxes
+    SurfaceMesh mesh = {};                ///< some of them, at most kDrawnTrianglesMax, link frame
+    std::optional<BodyFit> fit = {};      ///< to all of them; none without meshes and boxes
 };
 
 struct RobotFit {
@@ -39,7 +40,8 @@ using OnLinkFit = std::function<void(const std::string& link)>;
 
 /// Reads each mesh in a process with limits, and fits each link. A link that does not move and has no
 /// <collision> gets no body. Errors: those of SurfaceReader; too_large for a link that fit_capsules() gives
-/// up. About a second for each link with a mesh.
+/// up, and for a robot of more work than twenty such links; what a rig would refuse of the result. About a
+/// second for each link with a mesh.
 [[nodiscard]] Result<RobotFit, Error> fit_robot(const RobotText& robot, const MeshSearch& search,
                                                 const OnLinkFit& on_link = {});
 

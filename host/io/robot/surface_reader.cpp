@@ -19,6 +19,7 @@ using rig::ShapeKind;
 
 constexpr double kReachMax_m = 5.0;
 constexpr double kExtentMin_m = 0.005;
+constexpr std::size_t kShapesMax = 1000;  ///< limit of a URDF for the rig
 constexpr std::size_t kLinkTrianglesMax = 2'000'000;
 constexpr std::size_t kRobotTrianglesMax = 8'000'000;
 
@@ -69,7 +70,7 @@ std::optional<Error> size_fault(const SurfaceMesh& surface, const Eigen::Isometr
                      .remedy = "is it written in millimetres? Then add scale=\"0.001 0.001 0.001\""};
     }
     const double extent_m = box.sizes().maxCoeff();
-    if (extent_m >= kExtentMin_m) return std::nullopt;
+    if (extent_m >= kExtentMin_m - 1e-9) return std::nullopt;
     return Error{
         .code = ErrorCode::out_of_range,
         .what = fmt::format("expected meshes and boxes of at least {} mm together", 1e3 * kExtentMin_m),
@@ -114,6 +115,12 @@ std::optional<Error> SurfaceReader::error() const {
 Result<SurfaceMesh, Error> SurfaceReader::append_all(const ShapedLink& link,
                                                      const Eigen::Isometry3d& T_link_surface) {
     SurfaceMesh surface;
+    if (body_shapes(link).size() > kShapesMax) {
+        return unexpected(Error{.code = ErrorCode::limit_exceeded,
+                                .what = fmt::format("expected at most {} shapes of a link", kShapesMax),
+                                .value = std::to_string(body_shapes(link).size()),
+                                .remedy = "merge its meshes"});
+    }
     for (const LinkShape& shape : body_shapes(link)) {
         if (!is_fitted(shape)) continue;
         const Eigen::Affine3d T_surface_shape(T_link_surface.inverse() * shape.T_link_shape);
@@ -165,8 +172,14 @@ Result<SurfaceMesh, Error> SurfaceReader::read_mesh(const LinkShape& shape) {
                                 .remedy = "try again",
                                 .file = place->shown()});
     }
+    if (const auto failed = unreadable_.find(place->shown()); failed != unreadable_.end())
+        return unexpected(failed->second);
     auto read = read_mesh_in_process(*copy);
-    if (!read) return unexpected(read.error());
+    if (!read) {
+        unreadable_.emplace(place->shown(), read.error());
+        return unexpected(read.error());
+    }
+    files_[shape.mesh] = place->shown();
     return SurfaceMesh{std::move(read->vertices), std::move(read->triangles)};
 }
 

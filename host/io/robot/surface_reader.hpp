@@ -30,10 +30,14 @@ class SurfaceReader {
     void fail(const rig::ShapedLink& link, Error error, const std::string& kind);
     [[nodiscard]] const std::vector<rig::ElementFault>& faults() const noexcept { return faults_; }
     /// All faults in one error: meshes that are missing or cannot be read; mismatch if a mesh changed
-    /// meanwhile; too_large beyond 5 m, beyond two million triangles of a link or eight of the robot;
-    /// out_of_range below 5 mm.
+    /// meanwhile; limit_exceeded beyond 1000 shapes of a link; too_large beyond 5 m, beyond two million
+    /// triangles of a link or eight of the robot; out_of_range below 5 mm.
     [[nodiscard]] std::optional<Error> error() const;
 
+    /// The file of each mesh so far, by its name in the URDF.
+    [[nodiscard]] const std::map<std::string, std::filesystem::path>& mesh_files() const noexcept {
+        return files_;
+    }
     /// The digests of all meshes so far, by their names in the URDF.
     [[nodiscard]] const std::map<std::string, std::string>& mesh_sha256() const noexcept { return sha256_; }
 
@@ -47,7 +51,9 @@ class SurfaceReader {
     MeshPlaces places_;
     std::map<std::string, std::optional<SurfaceMesh>> meshes_;  ///< of the link, and all that failed
     std::map<std::string, std::string> sha256_;
-    std::size_t triangles_ = 0;  ///< of all links so far
+    std::map<std::string, std::filesystem::path> files_;
+    std::map<std::filesystem::path, Error> unreadable_;  ///< by file: it may have several names
+    std::size_t triangles_ = 0;                          ///< of all links so far
     std::vector<rig::ElementFault> faults_;
 };
 

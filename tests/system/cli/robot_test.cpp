@@ -93,6 +93,48 @@ TEST_F(RobotTest, a_command_that_uses_no_body_needs_no_mesh) {
     std::filesystem::remove_all(directory_ / "arm");
     const Said said = program("mapping denoised --rig " + path("rig.yaml"));
     EXPECT_EQ(said.exit_code, 0) << said.output;
+    const Said joints =
+        program("joints --rig " + path("rig.yaml") + " --socket " + path("s") + " < /dev/null");
+    EXPECT_EQ(joints.exit_code, 0) << joints.output;
+}
+
+TEST_F(RobotTest, a_link_with_a_mesh_may_be_listed_as_one_without_a_body) {
+    write(path("listed.yaml"), "extends: rig.yaml\nrobot: {links_without_body: [upper]}\n");
+    const Said said = program("rig " + path("listed.yaml") + given());
+    EXPECT_EQ(said.exit_code, 0) << said.output;
+}
+
+TEST_F(RobotTest, a_package_that_the_user_places_wrongly_is_refused_although_another_has_the_file) {
+    write(path("upper.stl"), testing_support::wedge_stl());
+    for (const std::string& folder : {path("no_folder"), path("rig.yaml"), path("cache")}) {
+        std::filesystem::create_directory(path("cache"));
+        const Said said = program("rig " + path("rig.yaml") + " --package-path arm_description=" + folder);
+        EXPECT_EQ(said.exit_code, 78) << said.output;
+    }
+}
+
+TEST_F(RobotTest, its_names_and_files_are_in_the_json_whatever_their_bytes_are) {
+    write(path("latin.urdf"),
+          "<robot name=\"r\"><link name=\"\xe4\"><collision><geometry><mesh filename=\"arm/upper.stl\" "
+          "scale=\".1 .1 .1\"/></geometry></collision></link></robot>");
+    const Said said = program("robot " + path("latin.urdf") + " --json", "2>/dev/null");
+    ASSERT_EQ(said.exit_code, 0) << said.output;
+    const Json robot = Json::parse(said.output);
+    EXPECT_EQ(robot["links"].size(), 1U);
+    EXPECT_EQ(robot["links"][0]["files"], Json({path("arm/upper.stl")}));
+}
+
+TEST_F(RobotTest, its_files_are_not_replaced_by_what_is_made_of_them) {
+    const std::string mesh = content(path("arm/upper.stl"));
+    const std::string urdf = content(path("arm.urdf"));
+    for (const std::string& out :
+         {"--out " + path("arm.urdf"), "--out " + path("arm/upper.stl"), "--picture " + path("arm.urdf"),
+          "--out " + path("x") + " --picture " + path("x")}) {
+        const Said said = program("robot " + path("arm.urdf") + given() + out);
+        EXPECT_EQ(said.exit_code, 64) << out << said.output;
+    }
+    EXPECT_EQ(content(path("arm/upper.stl")), mesh);
+    EXPECT_EQ(content(path("arm.urdf")), urdf);
 }
 
 }  // namespace

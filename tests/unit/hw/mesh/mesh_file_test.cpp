@@ -115,6 +115,37 @@ TEST(MeshFile, of_collada_agrees_with_a_reader_that_is_not_assimp) {
     }
 }
 
+TEST(MeshFile, has_no_part_of_points_and_lines) {
+    const ScratchFolder folder;
+    const auto file = folder.write("a.obj", testing_support::wedge_obj() + "v 9 9 9\nv 8 8 8\nl 5 6\np 5\n");
+    const auto mesh = read_mesh(file);
+    ASSERT_TRUE(mesh) << mesh.error();
+    EXPECT_EQ(mesh->triangles.size(), 4U);
+    EXPECT_LE(mesh->vertices.size(), 12U);
+    for (const Vector3d& vertex : mesh->vertices) EXPECT_LT(vertex.cwiseAbs().maxCoeff(), 2.0);
+}
+
+TEST(MeshFile, is_not_read_in_part) {
+    const ScratchFolder folder;
+    const std::string stl = testing_support::wedge_ascii_stl();
+    const std::string dae = testing_support::wedge_dae("Z_UP", 0.001);
+    const auto with_node = [&](const std::string& node) {
+        std::string text = dae;
+        const auto at = text.find("</visual_scene>");
+        EXPECT_NE(at, std::string::npos);
+        return text.insert(at, "<node>" + node + "</node>");
+    };
+    for (const auto& [name, text] :
+         {std::pair{"cut.stl", stl.substr(0, stl.rfind("endsolid"))},
+          std::pair{"more.stl", stl + stl.substr(6)},
+          std::pair{"dots.obj", "v .5 0 0\n" + testing_support::wedge_obj()},
+          std::pair{"capitals.obj", testing_support::wedge_obj() + "F 1 2 3\n"},
+          std::pair{"other.dae", with_node("<instance_node url=\"other.dae#n\"/>")},
+          std::pair{"none.dae", with_node("<instance_geometry url=\"#none\"/>")}})
+        EXPECT_FALSE(read_mesh(folder.write(name, text))) << name;
+    ASSERT_TRUE(read_mesh(folder.write("whole.dae", with_node(""))));
+}
+
 TEST(MeshFile, opens_only_the_files_that_are_allowed) {
     class None final : public AllowedFiles {
         [[nodiscard]] Result<std::filesystem::path, std::string> openable(

@@ -50,6 +50,9 @@ TEST_F(FilePlaceTest, held_content_outlives_the_file_and_is_not_for_writing) {
     EXPECT_EQ(held.kind(), EntryKind::file);
     EXPECT_EQ(*held.open()->read(100), "text");
     EXPECT_EQ(*held.open()->read(100), "text");  // each from its begin
+    EXPECT_EQ(*held.read(100), "text");
+    EXPECT_EQ(*held.read(2), "tex");  // one more byte shows that there is more
+    EXPECT_EQ(*within("rig.yaml").read(2), "rig");
     EXPECT_EQ(held.create_anew().error().error_number, EROFS);
     EXPECT_FALSE(fs::exists(scratch_ / "robot.urdf"));
     EXPECT_EQ(*held.beside("rec/rig.yaml").open()->read(100), "rig");

@@ -27,7 +27,7 @@ class FitStoreTest : public testing::Test {
     }
 
     testing_support::ScratchFolder scratch_;
-    FitStore store_{scratch_ / "cache/octoskin/robots"};
+    FitStore store_{scratch_ / "cache"};
     std::string key_ = std::string(64, 'a');
     std::string urdf_ = "<robot name=\"r\"/>\n";
     fs::path file_;
@@ -49,12 +49,13 @@ TEST_F(FitStoreTest, only_its_owner_may_write_what_it_makes_whatever_the_umask_i
     ::umask(before);
     ASSERT_TRUE(kept);
     EXPECT_EQ(*open.find(key_), urdf_);
-    EXPECT_EQ(fs::status(open.folder()).permissions(), fs::perms(0700));
+    for (const fs::path& made : {open.folder(), scratch_ / "open/octoskin", scratch_ / "open"})
+        EXPECT_EQ(fs::status(made).permissions(), fs::perms(0700)) << made;
     EXPECT_EQ(fs::status(open.folder() / (key_ + ".fit")).permissions(), fs::perms(0600));
 }
 
 TEST_F(FitStoreTest, refuses_a_folder_or_file_that_others_may_write) {
-    for (const fs::path& path : {file_, store_.folder()}) {
+    for (const fs::path& path : {file_, store_.folder(), store_.folder().parent_path()}) {
         const fs::perms own = fs::status(path).permissions();
         for (const fs::perms others : {fs::perms::group_write, fs::perms::others_write}) {
             fs::permissions(path, own | others);
@@ -71,7 +72,7 @@ TEST_F(FitStoreTest, refuses_a_folder_or_file_that_others_may_write) {
 
 TEST_F(FitStoreTest, refuses_a_folder_or_file_of_another_user) {
     if (::geteuid() != 0) GTEST_SKIP() << "only root gives files away";
-    for (const fs::path& path : {file_, store_.folder()}) {
+    for (const fs::path& path : {file_, store_.folder(), store_.folder().parent_path()}) {
         ASSERT_EQ(::chown(path.c_str(), 4242, 4242), 0);
         EXPECT_EQ(refusal(), ErrorCode::foreign_owner) << path;
         ASSERT_EQ(::chown(path.c_str(), 0, 0), 0);
@@ -89,6 +90,25 @@ TEST_F(FitStoreTest, refuses_links_pipes_and_files_with_a_second_name) {
     fs::remove(file_);
     ASSERT_EQ(::mkfifo(file_.c_str(), 0600), 0);
     EXPECT_EQ(refusal(), ErrorCode::wrong_kind_of_file);
+}
+
+TEST_F(FitStoreTest, refuses_a_link_in_place_of_a_folder) {
+    for (const fs::path& path : {store_.folder(), store_.folder().parent_path()}) {
+        fs::rename(path, scratch_ / "elsewhere");
+        fs::create_directory_symlink(scratch_ / "elsewhere", path);
+        EXPECT_EQ(refusal(), ErrorCode::link) << path;
+        EXPECT_EQ(store_.keep(key_, urdf_).error().code, ErrorCode::link) << path;
+        fs::remove(path);
+        fs::rename(scratch_ / "elsewhere", path);
+    }
+    EXPECT_TRUE(store_.find(key_));
+}
+
+TEST_F(FitStoreTest, refuses_the_fit_of_another_key) {
+    const std::string other(64, 'b');
+    ASSERT_TRUE(store_.keep(other, "another robot"));
+    fs::rename(store_.folder() / (other + ".fit"), file_);
+    EXPECT_EQ(refusal(), ErrorCode::damaged);
 }
 
 TEST_F(FitStoreTest, refuses_a_file_that_is_cut_or_changed_anywhere) {

@@ -49,15 +49,34 @@ TEST_F(MeshPlacesTest, finds_a_file_in_a_copy_of_its_package_under_another_name)
     make("ws/src/b.stl");
     EXPECT_EQ(found("package://other/meshes/a.stl"), "ws/src/arm/meshes/a.stl");
     EXPECT_EQ(found("package://other/b.stl"), "not_found");  // not above the folder of relative paths
+    folder_.write("ws/src/arm/package.xml", "<package><name> arm_description\n</name></package>");
+    EXPECT_EQ(found("package://other/meshes/a.stl"), "not_found");  // it is another package
+    EXPECT_EQ(found("package://arm_description/meshes/a.stl"), "ws/src/arm/meshes/a.stl");
+    EXPECT_EQ(found("package://arm/meshes/a.stl"), "ws/src/arm/meshes/a.stl");
 }
 
-TEST_F(MeshPlacesTest, the_users_folder_wins_and_the_next_is_used_if_it_lacks_the_file) {
+TEST_F(MeshPlacesTest, only_the_first_package_of_a_name_counts) {
     make("ws/src/arm/a.stl");
     make("ws/src/arm/b.stl");
     make("given/a.stl");
     const MeshSearch search{{{"arm", folder_ / "given"}}, "", ""};
     EXPECT_EQ(found("package://arm/a.stl", search), "given/a.stl");
-    EXPECT_EQ(found("package://arm/b.stl", search), "ws/src/arm/b.stl");
+    EXPECT_EQ(found("package://arm/b.stl", search), "not_found");
+    EXPECT_EQ(found("package://arm/a.stl", {{{"arm", folder_ / "no_folder"}}, "", ""}), "not_found");
+    EXPECT_EQ(found("package://arm/a.stl", {{{"arm", folder_ / "given/a.stl"}}, "", ""}), "not_found");
+    make("over/arm/a.stl");
+    make("under/arm/b.stl");
+    const MeshSearch overlay{{}, (folder_ / "over").string() + ":" + (folder_ / "under").string(), ""};
+    EXPECT_EQ(found("package://arm/a.stl", overlay), "over/arm/a.stl");
+    EXPECT_EQ(found("package://arm/b.stl", overlay), "not_found");
+}
+
+TEST_F(MeshPlacesTest, links_in_the_path_that_the_user_typed_are_followed) {
+    make("ws/src/arm/urdf/a.stl");
+    fs::create_directory_symlink(folder_ / "ws/src/arm/urdf", folder_ / "ws/src/link");
+    const auto place = MeshPlaces(folder_ / "ws/src/link/arm.urdf", {}).find("a.stl");
+    ASSERT_TRUE(place) << place.error().message();
+    EXPECT_TRUE(place->open());
 }
 
 TEST_F(MeshPlacesTest, finds_relative_and_absolute_files_below_the_package_and_refuses_others) {
