@@ -144,7 +144,7 @@ void write_new(const RigOptions& options) {
         value_or_fail(new_rig_text({.robot = {options.new_robot, options.robot.packages},
                                     .base_link = options.base_link,
                                     .rings = options.rings,
-                                    .board = board,
+
                                     .robot_in_rig = named_in_rig(options.new_robot, options.out),
                                     .board_in_rig = board.string()}));
     if (options.out.empty()) {

@@ -17,7 +17,6 @@ struct NewRig {
     GivenRobot robot;               ///< its URDF
     std::string base_link;          ///< empty: the root
     std::vector<SensorRing> rings;  ///< none: four sensors on the last link that moves, at its origin
-    std::filesystem::path board;    ///< file of the type of board
     std::string robot_in_rig;       ///< the URDF as the rig names it
     std::string board_in_rig;
 };

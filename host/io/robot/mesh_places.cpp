@@ -47,8 +47,7 @@ bool is_below(const fs::path& file, const fs::path& folder, fs::path& name) {
 /// The <name> in the folder's package.xml; nullopt without such a file, empty without a name in it.
 std::optional<std::string> package_name_in(const fs::path& folder) {
     constexpr std::size_t kPackageFileMax = 1U << 20U;
-    const auto opened = FilePlace(folder / "package.xml").open();
-    const auto text = opened ? opened->read(kPackageFileMax) : unexpected(opened.error());
+    const auto text = FilePlace(folder / "package.xml").read(kPackageFileMax);
     if (!text) return std::nullopt;
     const auto begin = text->find("<name>");
     const auto end = text->find("</name>");
@@ -69,6 +68,14 @@ Error not_found(const std::string& uri, const std::vector<fs::path>& tried, std:
             .remedy = std::move(remedy)};
 }
 
+/// Links in the path that the user typed are followed; those of a recording's folder are not.
+fs::path folder_of_urdf(const FilePlace& urdf) {
+    const fs::path folder = fs::absolute(urdf.shown()).lexically_normal().parent_path();
+    std::error_code error;
+    const fs::path real = urdf.folder() == nullptr ? fs::canonical(folder, error) : folder;
+    return error ? folder : real;
+}
+
 }  // namespace
 
 Result<PackagePath, Error> package_path_of(std::string_view text) {
@@ -85,14 +92,6 @@ Result<PackagePath, Error> package_path_of(std::string_view text) {
 
 MeshSearch mesh_search(std::vector<PackagePath> packages) {
     return {std::move(packages), environment("ROS_PACKAGE_PATH"), environment("AMENT_PREFIX_PATH")};
-}
-
-/// Links in the path that the user typed are followed; those of a recording's folder are not.
-fs::path folder_of_urdf(const FilePlace& urdf) {
-    const fs::path folder = fs::absolute(urdf.shown()).lexically_normal().parent_path();
-    std::error_code error;
-    const fs::path real = urdf.folder() == nullptr ? fs::canonical(folder, error) : folder;
-    return error ? folder : real;
 }
 
 MeshPlaces::MeshPlaces(const FilePlace& urdf, MeshSearch search)
