@@ -36,8 +36,8 @@ struct PlaybackRequest {
     std::string configuration;      ///< name of `mapping`
     bool is_mapping_given = false;  ///< used in place of the recording's
     std::vector<MapFeed> maps = every_feed();
-    std::filesystem::path rig;    ///< used in place of the recording's; empty: the recording's
-    GivenRobot robot;  ///< used in place of the recording's
+    std::filesystem::path rig;  ///< used in place of the recording's; empty: the recording's
+    GivenRobot robot;           ///< used in place of the recording's
     /// For a data set or an .oni file without a rig: one of tum::kDataSetCameras. Empty: the camera of the
     /// data set's layout, or the first one.
     std::string camera = {};
