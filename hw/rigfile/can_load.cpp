@@ -6,8 +6,12 @@ namespace octoskin::rig {
 
 double can_load(const Rig& rig) {
     wire::BusUse use;
-    use.nodes = static_cast<std::uint32_t>(rig.nodes.size() + 1);  // plus the node that sends joint states
-    use.joint_samples_per_s = rig.joints.rate_hz;
+    use.nodes = static_cast<std::uint32_t>(rig.nodes.size());
+    for (const JointSource& source : rig.joint_sources) {
+        if (source.way == JointWay::socket) continue;
+        ++use.nodes;
+        use.joint_samples_per_s += source.rate_hz;
+    }
     use.uses_can_fd = rig.bus.uses_can_fd;
     for (const Node& node : rig.nodes) {
         use.sensors += node.config.sensor_count;

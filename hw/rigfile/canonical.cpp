@@ -119,12 +119,19 @@ void write_bus(Writer& out, const Bus& bus) {
     if (bus.uses_can_fd) out.entry("  ", keys::bus::kDataBitrate, bus.data_bitrate);
 }
 
-void write_joints(Writer& out, const JointSource& joints) {
+/// One source is written as the table that it was before there were several: rigs keep their hash.
+void write_joints(Writer& out, const std::vector<JointSource>& sources) {
     out.open("", keys::kJointsTable);
-    out.entry("  ", keys::joints::kNodeId, joints.node_id);
-    out.entry("  ", keys::joints::kRate, number(joints.rate_hz));
-    out.open("  ", keys::joints::kNames);
-    for (const auto& name : joints.joints) out.item("    ", quoted(name));
+    const bool is_list = sources.size() > 1;
+    for (const JointSource& source : sources) {
+        out.entry(is_list ? "  - " : "  ", keys::joints::kNodeId, source.node_id);
+        const std::string indent = is_list ? "    " : "  ";
+        out.entry(indent, keys::joints::kRate, number(source.rate_hz));
+        if (source.way != JointWay::can)
+            out.entry(indent, keys::joints::kWay, word_of(keys::joints::kWay, source.way));
+        out.open(indent, keys::joints::kNames);
+        for (const auto& name : source.joints) out.item(indent + "  ", quoted(name));
+    }
 }
 
 void write_camera(Writer& out, const Camera& camera) {
@@ -273,7 +280,7 @@ std::string canonical_text(const Rig& rig, const std::string& urdf) {
     out.entry("  ", keys::range_limits::kSigmaMax, number(rig.range_limits.sigma_max_m));
     out.entry("  ", keys::range_limits::kTimeUncertaintyMax,
               number(rig.range_limits.time_uncertainty_max_ms));
-    write_joints(out, rig.joints);
+    write_joints(out, rig.joint_sources);
     if (rig.camera) write_camera(out, *rig.camera);
     out.open("", keys::kNodes);
     for (const Node& node : rig.nodes) write_node(out, node);

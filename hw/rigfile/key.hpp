@@ -119,9 +119,12 @@ struct TableKey {
     bool is_in_node_block = false;
 };
 
-using AnyKey = std::variant<const NumberKey*, const IntegerKey*, const FlagKey*, const WordKey<bool>*,
-                            const WordKey<DistanceMode>*, const WordKey<StreamGate>*, const TextKey*,
-                            const NumbersKey*, const ListKey*, const TableKey*>;
+enum class JointWay : std::uint8_t;
+
+using AnyKey =
+    std::variant<const NumberKey*, const IntegerKey*, const FlagKey*, const WordKey<bool>*,
+                 const WordKey<DistanceMode>*, const WordKey<StreamGate>*, const WordKey<JointWay>*,
+                 const TextKey*, const NumbersKey*, const ListKey*, const TableKey*>;
 
 /// All keys of one table of a file. Their order is that of the hints about an unknown key.
 struct KeyTable {

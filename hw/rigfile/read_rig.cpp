@@ -12,6 +12,7 @@
 #include "hw/rigfile/camera_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/joined.hpp"
+#include "hw/rigfile/joint_reader.hpp"
 #include "hw/rigfile/links_without_body.hpp"
 #include "hw/rigfile/node_reader.hpp"
 #include "hw/rigfile/pose.hpp"
@@ -45,6 +46,26 @@ void require_link(const Value& value, const std::string& path, const std::string
     fail(value, path,
          {ErrorCode::unknown_name, fmt::format("expected a link of {}", robot.file().filename().string()),
           fmt::format("'{}'", link), "it has " + joined(robot.link_names())});
+}
+
+/// Its place in the map is fixed, so no joint of the robot may move it. A mobile robot's place is that of its
+/// base: a `floating` or `planar` joint above it has no position here.
+void refuse_moved_base(const Table& table, const std::string& base_link, const UrdfDocument& robot) {
+    const auto is_moving = [](int type) {
+        return type == urdf::Joint::REVOLUTE || type == urdf::Joint::CONTINUOUS ||
+               type == urdf::Joint::PRISMATIC;
+    };
+    const auto& links = robot.model().links_;
+    for (auto link = links.at(base_link); link->parent_joint != nullptr;
+         link = links.at(link->parent_joint->parent_link_name)) {
+        const urdf::Joint& joint = *link->parent_joint;
+        if (!is_moving(joint.type)) continue;
+        table.fail(
+            keys::robot::kBaseLink,
+            {ErrorCode::conflict, "expected a link that no joint moves",
+             fmt::format("'{}', which joint '{}' moves", base_link, joint.name),
+             fmt::format("name '{}' or a link fixed to it above that joint", robot.model().getRoot()->name)});
+    }
 }
 
 void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig) {
@@ -193,76 +214,6 @@ Bus read_bus(const Value& value) {
     return bus;
 }
 
-/// The error for a robot with more moving joints than a rig can name, or with joints that the rig does not
-/// name.
-[[noreturn]] void fail_unnamed(const Value& list, const std::string& path, const UrdfDocument& robot,
-                               const std::vector<std::string>& moving,
-                               const std::vector<std::string>& unnamed) {
-    const std::string file = robot.file().filename().string();
-    const std::string fix = "make each joint that does not move type=\"fixed\" in " + file;
-    if (moving.size() > wire::kJointsPerSample) {
-        fail(list, path,
-             {ErrorCode::limit_exceeded,
-              fmt::format("expected at most {} moving joints", wire::kJointsPerSample),
-              fmt::format("{} in {}; not named are {}", moving.size(), file, joined(unnamed)), fix});
-    }
-    fail(list, path,
-         {ErrorCode::missing_key,
-          fmt::format("expected every moving joint of {}, because the position of a joint without a name is "
-                      "unknown",
-                      file),
-          "none named " + joined(unnamed), "name it, or " + fix});
-}
-
-std::vector<std::string> read_joint_names(const Table& table, const UrdfDocument& robot,
-                                          const std::string& base_link) {
-    const Value& list = table.require(keys::joints::kNames);
-    const std::string path = table.path_of(keys::joints::kNames);
-    const auto moving = robot.moving_joints(base_link);
-    std::vector<std::string> names;
-    for (const Value& item : read_list(list, path)) {
-        auto name = read_element_name(item, path);
-        if (std::find(moving.begin(), moving.end(), name) == moving.end()) {
-            fail(item, path,
-                 {ErrorCode::unknown_name,
-                  fmt::format("expected a moving joint of {}", robot.file().filename().string()),
-                  fmt::format("'{}'", name), "it has " + joined(moving)});
-        }
-        if (std::find(names.begin(), names.end(), name) != names.end()) {
-            fail(item, path,
-                 {ErrorCode::duplicate, "expected each joint once", fmt::format("'{}' again", name)});
-        }
-        names.push_back(std::move(name));
-    }
-    std::vector<std::string> unnamed;
-    std::copy_if(moving.begin(), moving.end(), std::back_inserter(unnamed), [&names](const auto& name) {
-        return std::find(names.begin(), names.end(), name) == names.end();
-    });
-    if (!unnamed.empty()) fail_unnamed(list, path, robot, moving, unnamed);
-    if (names.empty() || names.size() > wire::kJointsPerSample) {
-        fail(list, path,
-             {ErrorCode::limit_exceeded, fmt::format("expected 1 to {} joints", wire::kJointsPerSample),
-              fmt::format("{} in {}", names.size(), robot.file().filename().string()),
-              names.empty() ? "" : "make those that stay as they are type=\"fixed\" there"});
-    }
-    return names;
-}
-
-JointSource read_joints(const Value& value, const UrdfDocument& robot, const Rig& rig) {
-    const Table table(value, std::string(name_of(keys::kJointsTable)), keys::kJoints);
-    JointSource joints;
-    joints.node_id = table.integer<std::uint8_t>(keys::joints::kNodeId);
-    for (const Node& node : rig.nodes) {
-        if (node.config.node_id != joints.node_id) continue;
-        table.fail(keys::joints::kNodeId,
-                   {ErrorCode::duplicate, "expected a unique id", std::to_string(joints.node_id),
-                    fmt::format("node '{}' has it", node.name)});
-    }
-    joints.joints = read_joint_names(table, robot, rig.base_link);
-    joints.rate_hz = table.number(keys::joints::kRate);
-    return joints;
-}
-
 RangeLimits read_range_limits(const Value& value) {
     const Table table(value, std::string(name_of(keys::kRangeLimitsTable)), keys::kRangeLimits);
     const RangeLimits limits{
@@ -303,11 +254,13 @@ Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instea
     rig.bus = read_bus(top.require(keys::kBusTable));
     if (const Value* limits = top.find(keys::kRangeLimitsTable))
         rig.range_limits = read_range_limits(*limits);
-    if (const Value* camera = top.find(keys::kCameraTable)) rig.camera = read_camera(*camera);
+    if (const Value* camera = top.find(keys::kCameraTable))
+        rig.camera = read_camera(*camera);
     rig.nodes = read_nodes(top.require(keys::kNodes), top.path_of(keys::kNodes),
                            {urdf, rig.base_link, rig.bus, top.find(keys::kSensorDefaults)});
-    rig.joints = read_joints(top.require(keys::kJointsTable), urdf, rig);
+    rig.joint_sources = read_joint_sources(top.require(keys::kJointsTable), urdf, rig);
     refuse_overloaded_bus(top, rig);
+    refuse_moved_base(robot, rig.base_link, urdf);
     return rig;
 }
 

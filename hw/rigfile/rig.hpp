@@ -58,10 +58,15 @@ struct Node {
     std::vector<Sensor> sensors;  ///< in the order of the local index
 };
 
+/// How the joint states of a source reach the host.
+enum class JointWay : std::uint8_t { can, socket };
+
+/// A sender of joint states.
 struct JointSource {
-    std::uint8_t node_id = 0;         ///< of the node that sends joint states
+    std::uint8_t node_id = 0;         ///< of the node that sends them
     std::vector<std::string> joints;  ///< URDF joint names in the order on the wire, 1..7
     double rate_hz = 100.0;
+    JointWay way = JointWay::can;  ///< `socket`: they do not load the bus
 };
 
 /// Depth images are in millimetres of 16 bits.
@@ -131,9 +136,23 @@ struct Rig {
     double range_self_margin_m = kRangeSelfMarginDefault_m;
     Bus bus;
     std::vector<Node> nodes;
-    JointSource joints;
+    std::vector<JointSource> joint_sources;  ///< 1..32; each moving joint is in one of them
     std::optional<Camera> camera;
     RangeLimits range_limits;
+
+    /// The joints of all sources, in their order: the order of all joint vectors.
+    [[nodiscard]] std::vector<std::string> joint_names() const {
+        std::vector<std::string> names;
+        for (const JointSource& source : joint_sources)
+            names.insert(names.end(), source.joints.begin(), source.joints.end());
+        return names;
+    }
+    /// The number of joints of each source.
+    [[nodiscard]] std::vector<std::size_t> joint_counts() const {
+        std::vector<std::size_t> counts;
+        for (const JointSource& source : joint_sources) counts.push_back(source.joints.size());
+        return counts;
+    }
 };
 
 /// Reads and checks a rig: unknown keys, types, units, ranges, references, unique ids and addresses, I2C

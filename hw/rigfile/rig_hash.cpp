@@ -16,7 +16,8 @@ Rig placing_part(const Rig& rig) {
     Rig placing;
     placing.base_link = rig.base_link;
     placing.T_map_base = rig.T_map_base;
-    placing.joints.joints = rig.joints.joints;
+    for (const JointSource& source : rig.joint_sources)
+        placing.joint_sources.push_back({.joints = source.joints});
     for (const Node& node : rig.nodes) {
         Node& only_sensors = placing.nodes.emplace_back();
         only_sensors.config.node_id = node.config.node_id;

@@ -60,7 +60,8 @@ inline constexpr TableKey kRangeLimitsTable{.path = "range_limits",
                                             .fallback = {.text = "its defaults"},
                                             .meaning = "[limits](#range_limits) that every range must keep"};
 inline constexpr TableKey kJointsTable{.path = "joints",
-                                       .meaning = "[the sender of joint positions](#joints)"};
+                                       .expected = "a table, or a list of up to 32 tables",
+                                       .meaning = "[the senders of joint positions](#joints)"};
 inline constexpr TableKey kCameraTable{.path = "camera",
                                        .fallback = {.text = "none"},
                                        .meaning =
@@ -131,16 +132,29 @@ inline constexpr NumberKey kTimeUncertaintyMax{
 }  // namespace range_limits
 
 namespace joints {
+inline constexpr std::array<std::pair<std::string_view, JointWay>, 2> kWays{
+    {{"can", JointWay::can}, {"socket", JointWay::socket}}};
+inline constexpr Range<std::int64_t> kSources{1, 32};
+/// Of all sources together.
+inline constexpr std::size_t kNamesMax = 32;
 inline constexpr IntegerKey kNodeId{.path = "joints.node_id",
                                     .range = keys::kNodeId,
                                     .meaning = "an id of its own: the sender of joint states"};
-inline constexpr ListKey kNames{
-    .path = "joints.names",
-    .items = "joints",
-    .count = {1, wire::kJointsPerSample},
-    .meaning = "URDF joints in the order on the wire, every moving joint below the base link"};
+inline constexpr ListKey kNames{.path = "joints.names",
+                                .items = "joints",
+                                .count = {1, wire::kJointsPerSample},
+                                .meaning =
+                                    "URDF joints in the order on the wire; every moving joint below the "
+                                    "base link is in one source, up to 32 in all"};
 inline constexpr NumberKey kRate{
     .path = "joints.rate_hz", .unit = "Hz", .range = {1.0, 1000.0}, .meaning = "samples a second"};
+inline constexpr WordKey<JointWay> kWay{.path = "joints.via",
+                                        .words = kWays,
+                                        .fallback = {.value = JointWay::can},
+                                        .meaning =
+                                            "`socket`: they come through `octoskin run --joints`, not over "
+                                            "CAN. If no source has this, `--joints` "
+                                            "replaces all of them"};
 }  // namespace joints
 
 }  // namespace keys

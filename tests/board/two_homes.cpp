@@ -72,7 +72,7 @@ TwoHomes::TwoHomes(SlowClockSpread slow_clocks)
     : rig_(rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml").value()),
       scenario_(read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value()),
       world_(World::read(scenario_.world).value()),
-      arm_(Arm::read(rig_.urdf, rig_.base_link, rig_.joints.joints).value()),
+      arm_(Arm::read(rig_.urdf, rig_.base_link, rig_.joint_names()).value()),
       body_(rig::read_capsules(rig_.urdf, {}).value()) {
     rig_.camera.reset();
     scenario_.rest_s = 2.0;

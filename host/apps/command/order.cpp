@@ -80,7 +80,8 @@ Result<std::vector<Order>, AppError> recipients(const rig::Rig* rig, const std::
             found.push_back({.node_id = node.config.node_id, .known = known_of(node)});
         }
         if (!found.empty()) return found;
-        if (number && *number == rig->joints.node_id)
+        const auto is_wanted = [&](const rig::JointSource& source) { return number == source.node_id; };
+        if (std::ranges::any_of(rig->joint_sources, is_wanted))
             return fail(ExitCode::usage,
                         {ErrorCode::bad_argument, "expected a sensor board, which takes commands",
                          fmt::format("node {}, the rig's joint source", *number), "give another node"});

@@ -125,7 +125,7 @@ void Daemon::Parts::attend() {
     UnwindingRoom::keep();
     inputs.attend();
     recordings.attend(monotonic_now());
-    last_used.note(pipeline, monotonic_now());
+    last_used.note(pipeline, settings.host.rig, monotonic_now());
     if (const auto slept = map_time.attend(pipeline, inputs.reckoned_bus_now(monotonic_now()));
         slept > Nanoseconds{0})
         spdlog::info("the machine slept for {:.0f} s: the map is older by that time", seconds_of(slept));

@@ -1,5 +1,6 @@
 #include "host/apps/daemon/inputs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <system_error>
@@ -41,10 +42,6 @@ Nanoseconds time_on_bus(const wire::CanFrame& frame, const wire::BitRates& rates
     return Nanoseconds{std::llround(1e9 * wire::worst_case_seconds(frame, rates))};
 }
 
-LocalJoints local_joints_of(const HostRig& rig) {
-    return {rig.joints.node_id, rig.joints.joints.size(), rig.joints.rate_hz};
-}
-
 }  // namespace
 
 Inputs::Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop, Pipeline& pipeline,
@@ -55,14 +52,12 @@ Inputs::Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop
       recordings_(recordings),
       can_(
           opener(request, rig), [this] { can_ready_ = EventSource(); }, state_reader(request)),
-      joint_node_(rig.joints.node_id),
-      local_joints_(local_joints_of(rig)),
-      joint_burst_(rig.joints.rate_hz),
+      local_sources_(local_sources_of(rig)),
       bit_rates_(rig.bit_rates) {}
 
 Status<AppError> Inputs::take_sockets(const HostRig& rig) {
     if (request_.joint_socket.empty()) return Done{};
-    auto socket = JointSocket::open(request_.joint_socket, rig.joints.joints.size());
+    auto socket = JointSocket::open(request_.joint_socket, local_joints_of(rig));
     if (!socket) return unexpected(socket.error());
     joints_ = std::move(socket).value();
     return Done{};
@@ -114,12 +109,10 @@ void Inputs::attend_camera() {
 
 void Inputs::change_rig(const HostRig& rig) {
     if (!request_.can_descriptor) can_.change_filters(opener(request_, rig), socketcan::our_filters(rig));
-    joint_node_ = rig.joints.node_id;
     bit_rates_ = rig.bit_rates;
-    local_joints_ = local_joints_of(rig);
-    joint_burst_.expect(rig.joints.rate_hz);
+    change_local_sources(local_sources_of(rig));
     rig_changed_ = wall_now();
-    if (joints_) joints_->expect(rig.joints.joints.size());
+    if (joints_) joints_->expect(local_joints_of(rig));
     camera_mode_ = mode_for(rig);
     attend_camera();
 }
@@ -154,7 +147,7 @@ void Inputs::exchange_alone() {
     const auto sync = at ? sync_.poll_alone(*at) : std::nullopt;
     if (!sync) return;
     feed(wire::encode(*sync, wire::kHostId), stamp);
-    feed(local_joints_.report(sync->sequence, *at), stamp);
+    report_local_joints(sync->sequence, *at, stamp);
     const wire::FollowUp follow_up{sync->sequence, static_cast<std::uint64_t>(at->ns / 1000)};
     feed(wire::encode(follow_up, wire::kHostId), stamp);
     newest_stamp_ = stamp;
@@ -197,11 +190,11 @@ bool Inputs::drain_can(int& datagrams_left) {
     return false;
 }
 
-/// With a socket for joint states, its samples replace those of the rig's joint node: frames of two arms, or
-/// of two clocks, under one node id would give poses that never were.
+/// Samples of the socket replace those of their source's node: frames of two arms, or of two clocks, under
+/// one node id would give poses that never were.
 void Inputs::take_frame(const socketcan::Received& received) {
     bus_busy_ += time_on_bus(received.entry.frame, bit_rates_);
-    if (joints_ && wire::node_of(received.entry.frame.can_id) == joint_node_) {
+    if (is_of_local_joints(received.entry.frame)) {
         ++joint_node_ignored_;
         return;
     }
@@ -251,8 +244,7 @@ void Inputs::answer_sync(const socketcan::Received& received, HostTime at) {
     const auto decoded = wire::decode(received.entry.frame);
     const auto* const message = decoded ? std::get_if<wire::Sync>(&decoded->message) : nullptr;
     if (message == nullptr) return;
-    if (joints_ && joints_->samples() > 0)
-        feed(local_joints_.report(message->sequence, at), received.entry.stamp);
+    report_local_joints(message->sequence, at, received.entry.stamp);
     if (!received.is_own) {
         foreign_sync_ = at;
         return;
@@ -284,10 +276,9 @@ void Inputs::note_host_frame(const wire::CanFrame& frame, WallTime stamp) {
 }
 
 void Inputs::collect_joints(int& datagrams_left) {
-    constexpr std::size_t kWaitingMax = 256;
     if (!joints_) return;
     std::optional<JointSample> sample;
-    for (; datagrams_left > 0 && joints_waiting_.size() < kWaitingMax; --datagrams_left) {
+    for (; datagrams_left > 0 && !are_waiting_full(); --datagrams_left) {
         if (!joints_->receive(sample)) {
             has_joints_left_ = false;
             return;
@@ -298,7 +289,7 @@ void Inputs::collect_joints(int& datagrams_left) {
         } else if (has_lost_its_place(*sample)) {
             ++joints_late_;
         } else {
-            joints_waiting_.push_back(std::move(*sample));
+            local_sources_.at(sample->source).waiting.push_back(std::move(*sample));
         }
     }
     if (datagrams_left == 0) has_joints_left_ = true;
@@ -324,24 +315,90 @@ WallTime Inputs::place_of(const JointSample& sample) const {
     return is_overtaken ? *newest_stamp_ : sample.came;
 }
 
+LineJoints Inputs::local_joints_of(const HostRig& rig) const {
+    return LineJoints::local(rig, pipeline_.builder().robot().robot().limits());
+}
+
+std::vector<Inputs::LocalSource> Inputs::local_sources_of(const HostRig& rig) const {
+    std::vector<LocalSource> sources;
+    for (const LineJoints::Source& source : local_joints_of(rig).sources) {
+        const wire::NodeId node = rig.joint_sources[source.index].node_id;
+        sources.push_back({.node = node,
+                           .rate_hz = source.rate_hz,
+                           .joints = LocalJoints(node, source.names.size(), source.rate_hz),
+                           .burst = JointBurst(source.rate_hz)});
+    }
+    return sources;
+}
+
+/// A source that continues keeps its time of the newest sample: a reload is no gap.
+void Inputs::change_local_sources(std::vector<LocalSource> sources) {
+    for (LocalSource& source : sources) {
+        const auto before = std::ranges::find(local_sources_, source.node, &LocalSource::node);
+        if (before == local_sources_.end()) continue;
+        before->burst.expect(source.rate_hz);
+        source.burst = before->burst;
+    }
+    local_sources_ = std::move(sources);
+}
+
+bool Inputs::is_of_local_joints(const wire::CanFrame& frame) const {
+    const wire::NodeId node = wire::node_of(frame.can_id);
+    return std::ranges::any_of(local_sources_,
+                               [node](const LocalSource& source) { return source.node == node; });
+}
+
+/// The answer of each source that has sent.
+void Inputs::report_local_joints(std::uint8_t sequence, HostTime at, WallTime stamp) {
+    for (std::size_t i = 0; i < local_sources_.size(); ++i) {
+        if (joints_ && joints_->samples(i) > 0) feed(local_sources_[i].joints.report(sequence, at), stamp);
+    }
+}
+
+bool Inputs::are_waiting_full() const {
+    constexpr std::size_t kWaitingMax = 256;
+    return std::ranges::any_of(
+        local_sources_, [](const LocalSource& source) { return source.waiting.size() >= kWaitingMax; });
+}
+
 /// Those that arrived by `until`; empty: all, except possible parts of a burst that is not over.
 void Inputs::feed_joints(std::optional<WallTime> until) {
-    while (!joints_waiting_.empty() && (!until || joints_waiting_.front().came <= *until)) {
-        const JointBurst::Turn turn =
-            joint_burst_.turn_of_oldest(joints_waiting_, until.value_or(wall_now()));
-        if (turn == JointBurst::Turn::wait) return;
-        const JointSample sample = std::move(joints_waiting_.front());
-        joints_waiting_.pop_front();
-        const auto frames = turn == JointBurst::Turn::use
-                                ? local_joints_.frames(sample.sampled, sample.position)
-                                : unexpected(LocalJointFault::too_soon);
-        if (!frames) {  // the socket refuses and counts all other faults
-            ++joints_thinned_;
-            continue;
+    const WallTime now = until.value_or(wall_now());
+    std::vector<const LocalSource*> held_back;  // their oldest sample may be part of a burst
+    while (LocalSource* const source =
+               next_due(until.value_or(WallTime{std::numeric_limits<std::int64_t>::max()}), held_back)) {
+        const JointBurst::Turn turn = source->burst.turn_of_oldest(source->waiting, now);
+        if (turn == JointBurst::Turn::wait) {
+            held_back.push_back(source);
+        } else {
+            feed_oldest(*source, turn);
         }
-        const WallTime place = place_of(sample);
-        for (const wire::CanFrame& frame : *frames) feed(frame, place);
     }
+}
+
+/// The source with the oldest waiting sample, if that arrived by `until`; null if there is none.
+Inputs::LocalSource* Inputs::next_due(WallTime until, const std::vector<const LocalSource*>& held_back) {
+    LocalSource* next = nullptr;
+    for (LocalSource& source : local_sources_) {
+        const bool is_due = !source.waiting.empty() && source.waiting.front().came <= until &&
+                            std::ranges::find(held_back, &source) == held_back.end();
+        if (is_due && (next == nullptr || source.waiting.front().came < next->waiting.front().came))
+            next = &source;
+    }
+    return next;
+}
+
+void Inputs::feed_oldest(LocalSource& source, JointBurst::Turn turn) {
+    const JointSample sample = std::move(source.waiting.front());
+    source.waiting.pop_front();
+    const auto frames = turn == JointBurst::Turn::use ? source.joints.frames(sample.sampled, sample.position)
+                                                      : unexpected(LocalJointFault::too_soon);
+    if (!frames) {  // the socket refuses and counts all other faults
+        ++joints_thinned_;
+        return;
+    }
+    const WallTime place = place_of(sample);
+    for (const wire::CanFrame& frame : *frames) feed(frame, place);
 }
 
 void Inputs::drain_camera() {

@@ -66,7 +66,7 @@ class Inputs {
     [[nodiscard]] std::uint64_t joints_displaced() const;
     /// Datagrams were displaced within the last 2 s, or exceeded the share of one program.
     [[nodiscard]] bool is_flooded(HostTime now) const;
-    /// Frames of the rig's joint node on the bus, while the socket is the source.
+    /// Frames on the bus of joint nodes whose joint states come through the socket.
     [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
     /// Empty without a camera. Its `untimed` includes the frames that came while another host's clock was not
     /// known.
@@ -110,6 +110,23 @@ class Inputs {
     void feed_joints(std::optional<WallTime> until);
     void drain_camera();
 
+    /// A source of joint states whose samples come through the socket.
+    struct LocalSource {
+        wire::NodeId node;
+        double rate_hz;
+        LocalJoints joints;
+        JointBurst burst;
+        std::deque<JointSample> waiting = {};  ///< until the CAN frames that arrived before them are taken
+    };
+    [[nodiscard]] LineJoints local_joints_of(const HostRig& rig) const;
+    [[nodiscard]] std::vector<LocalSource> local_sources_of(const HostRig& rig) const;
+    void change_local_sources(std::vector<LocalSource> sources);
+    void report_local_joints(std::uint8_t sequence, HostTime at, WallTime stamp);
+    [[nodiscard]] bool is_of_local_joints(const wire::CanFrame& frame) const;
+    [[nodiscard]] bool are_waiting_full() const;
+    [[nodiscard]] LocalSource* next_due(WallTime until, const std::vector<const LocalSource*>& held_back);
+    void feed_oldest(LocalSource& source, JointBurst::Turn turn);
+
     const DaemonRequest& request_;
     EventLoop& loop_;
     Pipeline& pipeline_;
@@ -117,15 +134,12 @@ class Inputs {
     EventSource can_ready_;  ///< declared before the link, which resets it before it closes a descriptor
     CanLink can_;
     SyncMaster sync_;
-    wire::NodeId joint_node_;
-    LocalJoints local_joints_;
-    JointBurst joint_burst_;
+    std::vector<LocalSource> local_sources_;  ///< in the order of LineJoints::local
     std::optional<JointSocket> joints_;
     EventSource joints_ready_;
-    std::deque<JointSample> joints_waiting_;  ///< until the CAN frames that arrived before them are taken
-    bool has_joints_left_ = false;            ///< more arrived than one turn takes
-    std::uint64_t joints_late_ = 0;           ///< left out: later frames are already used, or the rig changed
-    std::optional<WallTime> rig_changed_;     ///< by a reload
+    bool has_joints_left_ = false;         ///< more arrived than one turn takes
+    std::uint64_t joints_late_ = 0;        ///< left out: later frames are already used, or the rig changed
+    std::optional<WallTime> rig_changed_;  ///< by a reload
     std::uint64_t displaced_noted_ = 0;
     std::optional<HostTime> displaced_at_;  ///< when displaced samples were noted last
     std::optional<WallTime> newest_stamp_;  ///< of the frames in the pipeline that are no joint samples

@@ -1,99 +1,28 @@
 #include "host/apps/daemon/joint_socket.hpp"
 
-#include <fmt/format.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
-#include <cmath>
-#include <span>
+#include <chrono>
 #include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/unix_socket.hpp"
-#include "host/apps/query/joint_lines.hpp"
 #include "host/apps/recording/shortage.hpp"
-#include "host/core/ingest/local_joints.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
 
 namespace octoskin {
-namespace {
 
-constexpr double kNsPerS = 1e9;
-constexpr double kTimeOffMaxS = 1.0;
-
-double seconds_at(HostTime time) {
-    return static_cast<double>(time.ns) / kNsPerS;
-}
-bool is_too_large(double position) {
-    return std::abs(position) > LocalJoints::kLargest;
-}
-
-/// The usual error of a time that is not CLOCK_MONOTONIC in seconds.
-std::string guess_at(double time, double now_s) {
-    constexpr double kYear2001S = 1e9;
-    constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
-        {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}};
-    for (const auto& [per_s, name] : kUnits)
-        if (std::abs(time / per_s - now_s) <= kTimeOffMaxS) return std::string(": it looks like ") + name;
-    return time >= kYear2001S ? ": it looks like wall time" : "";
-}
-
-/// `numbers`: as many as joints, and maybe a time before them.
-std::string describe_too_large(std::span<const double> numbers, std::size_t joint_count) {
-    const auto positions = numbers.last(std::min(joint_count, numbers.size()));
-    const auto found = std::ranges::find_if(positions, is_too_large);
-    if (found == positions.end()) return {};
-    return fmt::format(": joint {} of {} is {}, beyond +-{}: degrees, or millimetres?",
-                       found - positions.begin() + 1, joint_count, *found, LocalJoints::kLargest);
-}
-
-}  // namespace
-
-Result<JointSample, JointTextFault> parse_joints(std::string_view text, std::size_t joint_count, HostTime now,
-                                                 std::optional<HostTime> came) {
-    if (text.size() > kJointTextMax) return unexpected(JointTextFault::too_long);
-    auto numbers = read_numbers(text);
-    if (!numbers) return unexpected(JointTextFault::not_a_number);
-    JointSample sample{came.value_or(HostTime{}), std::move(*numbers), {}};
-    const bool is_dated = came || sample.position.size() == joint_count + 1;
-    if (sample.position.size() == joint_count + 1) {
-        const double time_s = sample.position.front();
-        if (std::abs(time_s - seconds_at(now)) > kTimeOffMaxS) return unexpected(JointTextFault::time_off);
-        sample.sampled.ns = std::llround(time_s * kNsPerS);
-        sample.has_own_time = true;
-        sample.position.erase(sample.position.begin());
-    }
-    if (sample.position.size() != joint_count) return unexpected(JointTextFault::wrong_count);
-    if (!is_dated) return unexpected(JointTextFault::time_off);
-    if (std::ranges::any_of(sample.position, is_too_large)) return unexpected(JointTextFault::too_large);
-    return sample;
-}
-
-std::string describe(JointTextFault fault, std::string_view text, std::size_t joint_count, HostTime now) {
-    std::string name = names_of(fault).at(static_cast<std::size_t>(fault));
-    if (fault == JointTextFault::too_long) return fmt::format("{}: over {} bytes", name, kJointTextMax);
-    const auto read = read_numbers(text);
-    if (!read) return fmt::format("{}: \"{}\"", name, read.error());
-    const std::vector<double>& numbers = *read;
-    if (fault == JointTextFault::wrong_count)
-        return fmt::format("{}: {} numbers, the rig has {} joints", name, numbers.size(), joint_count);
-    if (fault == JointTextFault::too_large) return name + describe_too_large(numbers, joint_count);
-    if (numbers.size() != joint_count + 1) return name;  // it has no time
-    return fmt::format("{}: {}, and CLOCK_MONOTONIC here is {:.3f}{}", name, numbers.front(), seconds_at(now),
-                       guess_at(numbers.front(), seconds_at(now)));
-}
-
-Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& file, std::size_t joint_count) {
+Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& file, LineJoints joints) {
     const auto descriptor = bind_unix_socket(file, SOCK_DGRAM, "--joints");
     if (!descriptor) return unexpected(descriptor.error());
     try {
         if (!socketcan::want_stamps(*descriptor) || !socketcan::want_senders(*descriptor))
             throw std::system_error(errno, std::generic_category(), "cannot enable time stamps and senders");
-        return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1), joint_count);
+        return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1),
+                           std::move(joints));
     } catch (const std::system_error& error) {
         socketcan::close_socket(*descriptor);
         ::unlink(file.c_str());
@@ -106,12 +35,10 @@ Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& fil
 JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {
     std::swap(file_, other.file_);
     std::swap(feed_, other.feed_);
-    joint_count_ = other.joint_count_;
-    senders_ = std::move(other.senders_);
+    joints_ = std::move(other.joints_);
+    records_ = std::move(other.records_);
+    samples_of_line_ = std::move(other.samples_of_line_);
     samples_ = other.samples_;
-    second_begun_ = other.second_begun_;
-    second_samples_ = other.second_samples_;
-    rate_hz_ = other.rate_hz_;
     faults_ = other.faults_;
     refused_ = std::move(other.refused_);
     return *this;
@@ -122,42 +49,63 @@ JointSocket::~JointSocket() {
     ::unlink(file_.c_str());  // while it still answers, so that no other process has the name yet
 }
 
+void JointSocket::expect(LineJoints joints) {
+    joints_ = std::move(joints);
+    records_.resize(joints_.sources.size());
+    samples_of_line_.clear();
+}
+
 bool JointSocket::receive(std::optional<JointSample>& sample) {
     sample.reset();
-    const auto datagram = feed_->take();
-    if (!datagram) return false;
-    auto parsed = parse_joints(datagram->bytes, joint_count_, datagram->read, datagram->came_at);
-    if (parsed) {
-        ++samples_;
-        feed_->keep(*datagram);
-        sample = std::move(parsed).value();
-        sample->came = datagram->came;
-        const HostTime at = datagram->came_at.value_or(datagram->read);
-        count_rate(at);
-        senders_.hear(datagram->sender, at);
-        sample->is_of_several = senders_.are_several(at);
-    } else {
-        ++faults_.at(static_cast<std::size_t>(parsed.error()));
-        refused_ = datagram->sender;
+    if (samples_of_line_.empty()) {
+        const auto datagram = feed_->take();
+        if (!datagram) return false;
+        take(*datagram);
     }
+    if (samples_of_line_.empty()) return true;
+    sample = std::move(samples_of_line_.front());
+    samples_of_line_.pop_front();
     return true;
 }
 
-void JointSocket::count_rate(HostTime at) {
-    constexpr Nanoseconds kSecond{1'000'000'000};
-    const Nanoseconds passed = at - second_begun_;
-    if (passed >= kSecond) {
-        rate_hz_ =
-            passed < 2 * kSecond ? static_cast<double>(second_samples_) / seconds_at({passed.count()}) : 0.0;
-        second_begun_ = at;
-        second_samples_ = 0;
+void JointSocket::take(const Datagram& datagram) {
+    auto line = parse_joints(datagram.bytes, joints_, datagram.read, datagram.came_at);
+    if (!line) {
+        ++faults_.at(static_cast<std::size_t>(line.error()));
+        refused_ = datagram.sender;
+        return;
     }
-    ++second_samples_;
+    feed_->keep(datagram);
+    const HostTime at = datagram.came_at.value_or(datagram.read);
+    for (JointSample& sample : line->samples) {
+        Record& record = records_.at(sample.source);
+        ++samples_;
+        record.count(at);
+        record.senders.hear(datagram.sender, at);
+        sample.came = datagram.came;
+        sample.is_of_several = record.senders.are_several(at);
+        samples_of_line_.push_back(std::move(sample));
+    }
 }
 
-double JointSocket::rate_hz(HostTime now) const {
+void JointSocket::Record::count(HostTime at) {
+    constexpr Nanoseconds kSecond{1'000'000'000};
+    const Nanoseconds passed = at - second_begun;
+    if (passed >= kSecond) {
+        rate_hz = passed < 2 * kSecond
+                      ? static_cast<double>(second_samples) / std::chrono::duration<double>(passed).count()
+                      : 0.0;
+        second_begun = at;
+        second_samples = 0;
+    }
+    ++second_samples;
+    ++samples;
+}
+
+double JointSocket::rate_hz(std::size_t source, HostTime now) const {
     constexpr Nanoseconds kOver{2'000'000'000};
-    return now - second_begun_ < kOver ? rate_hz_ : 0.0;
+    const Record& record = records_.at(source);
+    return now - record.second_begun < kOver ? record.rate_hz : 0.0;
 }
 
 }  // namespace octoskin

@@ -15,16 +15,10 @@ namespace octoskin {
 namespace {
 
 /// Empty if they are not known.
-std::vector<double> present_joints(const Pipeline& pipeline, std::size_t count, std::optional<HostTime> now) {
-    std::vector<double> newest;
-    std::optional<HostTime> sampled;
-    pipeline.builder().for_each_joint_sample([&](const JointMeasurement& joints) {
-        const auto position = std::span(joints.position_rad).first(count);
-        newest.assign(position.begin(), position.end());
-        sampled = joints.sampled;
-    });
-    if (!now || !sampled || *now - *sampled > QueryServer::kPresentMax) newest.clear();
-    return newest;
+std::vector<double> present_joints(const Pipeline& pipeline, std::optional<HostTime> now) {
+    const auto newest = pipeline.builder().robot().newest();
+    if (!now || !newest || *now - newest->oldest > QueryServer::kPresentMax) return {};
+    return newest->position;
 }
 
 }  // namespace
@@ -85,9 +79,8 @@ QueryServer::Answers QueryServer::serve(const Pipeline& pipeline, const Now& now
     std::unique_lock lock(mutex_);
     auto answers = std::exchange(answers_, {});
     if (wants_ground_) {
-        ground_.emplace(Ground{setup_, pipeline.map().copy(),
-                               present_joints(pipeline, setup_->robot.joint_count(), now.known), now,
-                               units_});
+        ground_.emplace(
+            Ground{setup_, pipeline.map().copy(), present_joints(pipeline, now.known), now, units_});
         wants_ground_ = false;
         lock.unlock();
         changed_.notify_all();

@@ -18,14 +18,16 @@ namespace {
 
 RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSettings& settings,
                         const Pipeline& pipeline, const Recorder::Copier& copier) {
+    // Not within the braces below: if the copy throws, GCC 12 destroys a nested aggregate twice.
+    orderlog::Header order{.rig_hash = settings.rig_hash,
+                           .mapping_crc32 = settings.mapping_crc32(),
+                           .joints = settings.joints,
+                           .first_map = std::nullopt};
     return {.paths = RecordingPaths(folder),
             .rig = settings.rig,
             .robot = settings.robot,
             .mapping = settings.mapping,
-            .order = {.rig_hash = settings.rig_hash,
-                      .mapping_crc32 = settings.mapping_crc32(),
-                      .joints = settings.joints,
-                      .first_map = std::nullopt},
+            .order = std::move(order),
             .placement_crc32 = settings.placement_crc32,
             .first = {copier(pipeline.map()), pipeline.builder().histories(),
                       pipeline.builder().camera_memory()}};

@@ -25,7 +25,7 @@ struct RecordedSettings {
     std::string mapping;
     std::uint32_t rig_hash = 0;
     std::uint32_t placement_crc32 = 0;  ///< rig::placement_crc32
-    std::size_t joints = 0;
+    std::vector<std::size_t> joints = {};
     std::string interface;
     /// Of the mapping's text.
     [[nodiscard]] std::uint32_t mapping_crc32() const noexcept {
@@ -107,7 +107,7 @@ class Recorder final : public CommitListener {
     Copier copier_;
     std::filesystem::path folder_;
     std::optional<Nanoseconds> limit_;
-    std::size_t joints_;
+    std::vector<std::size_t> joints_;
     double depth_max_m_;
     HostTime begun_;
     std::optional<HostTime> stopped_;

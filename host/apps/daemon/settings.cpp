@@ -1,5 +1,6 @@
 #include "host/apps/daemon/settings.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -27,8 +28,26 @@ Result<RecordedSettings, AppError> recorded_settings(const rig::Rig& rig, const 
                             .mapping = mapping_text(mapping),
                             .rig_hash = rig::rig_hash(rig),
                             .placement_crc32 = placement,
-                            .joints = rig.joints.joints.size(),
+                            .joints = rig.joint_counts(),
                             .interface = interface};
+}
+
+/// With --joints, the sources that the rig has there come from this machine, or all if it has none there.
+Status<AppError> choose_local_joints(HostRig& rig, const DaemonRequest& request) {
+    const auto local = std::ranges::find_if(rig.joint_sources, &HostJointSource::is_local);
+    const bool has_local = local != rig.joint_sources.end();
+    if (request.joint_socket.empty() && has_local) {
+        return fail(ExitCode::usage,
+                    {.code = ErrorCode::missing_key,
+                     .what = "joint states of node " + std::to_string(local->node_id) +
+                             " come through a socket (`via: socket`)",
+                     .remedy = "name the socket with --joints, or set `via: can` if they come over CAN",
+                     .file = request.rig,
+                     .key = "--joints"});
+    }
+    if (!request.joint_socket.empty() && !has_local)
+        for (HostJointSource& source : rig.joint_sources) source.is_local = true;
+    return Done{};
 }
 
 Result<Settings, AppError> settings_of(const rig::Rig& rig, const DaemonRequest& request) {
@@ -44,6 +63,7 @@ Result<Settings, AppError> settings_of(const rig::Rig& rig, const DaemonRequest&
                      .file = request.rig,
                      .key = "--camera"});
     }
+    if (auto chosen = choose_local_joints(host->rig, request); !chosen) return unexpected(chosen.error());
     auto recorded = recorded_settings(rig, configuration->mapping, request.interface);
     if (!recorded) return unexpected(recorded.error());
     return Settings{std::move(host).value(), configuration->mapping, std::move(recorded).value()};
@@ -62,7 +82,6 @@ Result<Pipeline, AppError> make_pipeline(const DaemonRequest& request, const Set
     config.maps = {MapFeed::both};
     config.depth_threads = request.depth_threads;
     config.release = Release::once_placed;
-    config.intake.has_local_joints = !request.joint_socket.empty();
     return build_pipeline(request.rig.string(), settings.host.rig, settings.host.robot, settings.mapping,
                           config);
 }

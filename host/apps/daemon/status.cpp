@@ -207,47 +207,79 @@ Json camera_json(const DaemonView& view) {
             {"age_s", age_s(view.camera->newest, view.now)}};
 }
 
+std::uint64_t joint_contradictions(const Pipeline& pipeline, const HostRig& rig) {
+    std::uint64_t contradictions = 0;
+    for (std::size_t i = 0; i < rig.joint_sources.size(); ++i)
+        contradictions += pipeline.intake().joint_senders(i).contradictions();
+    return contradictions;
+}
+
+Json joint_sources_json(const DaemonView& view) {
+    const RobotTracker& robot = view.pipeline->builder().robot();
+    const std::span<const std::uint64_t> unknown = robot.times_unknown();
+    Json sources = Json::array();
+    std::size_t joint = 0;
+    for (std::size_t i = 0; i < view.rig->joint_sources.size(); ++i) {
+        const HostJointSource& source = view.rig->joint_sources[i];
+        Json joints = Json::array();
+        for (const std::string& name : source.joints)
+            joints.push_back({{"name", name}, {"poses_without", unknown[joint++]}});
+        sources.push_back({{"node_id", source.node_id},
+                           {"via", source.is_local ? "socket" : "can"},
+                           {"rate_hz", source.rate_hz},
+                           {"age_s", age_s(robot.newest_sample(i), view.bus_reckoned)},
+                           {"joints", std::move(joints)}});
+    }
+    return sources;
+}
+
 Json joint_states_json(const DaemonView& view) {
-    const JointSenderCheck& senders = view.pipeline->intake().joint_senders();
-    const auto& jumped = view.pipeline->joint_gate().jump().newest();
+    const auto jump = newest_jump(view);
     const PoseFault fault = pose_fault(view);
-    const auto& joints = view.rig->joints.joints;
-    return {{"second_sender", are_joints_withheld(view)},
-            {"contradictions", senders.contradictions()},
-            {"jumped", jumped ? Json(joints.at(jumped->joint)) : Json(nullptr)},
+    const std::vector<std::string> joints = view.rig->joint_names();
+    return {{"sources", joint_sources_json(view)},
+            {"second_sender", are_joints_withheld(view)},
+            {"contradictions", joint_contradictions(*view.pipeline, *view.rig)},
+            {"jumped", jump ? Json(jump->name) : Json(nullptr)},
             {"jump_age_s", age_s(view.used.joint_jump, view.now)},
             {"off_joint", fault.joint ? Json(joints.at(fault.joint->joint)) : Json(nullptr)},
             {"off_by", fault.joint ? Json(fault.joint->offset) : Json(nullptr)},
             {"or_camera", fault.joint && fault.camera}};
 }
 
-Json senders_json(const JointSenders& senders, HostTime now) {
-    Json all = Json::array();
+void add_senders(const JointSenders& senders, wire::NodeId node, HostTime now, Json& all) {
     for (const JointSenders::Heard& heard : senders.heard(now)) {
-        all.push_back({{"pid", heard.sender.pid},
+        all.push_back({{"node_id", node},
+                       {"pid", heard.sender.pid},
                        {"uid", heard.sender.uid},
                        {"program", heard.program},
                        {"address", heard.sender.address},
                        {"samples", heard.samples},
                        {"age_s", seconds_of(now - heard.newest)}});
     }
-    return all;
 }
 
 Json joints_json(const DaemonView& view) {
     const JointSocket* const joints = view.inputs->joints();
     if (joints == nullptr) return nullptr;
+    double rate_hz = 0.0;
+    Json senders = Json::array();
+    for (std::size_t i = 0; i < joints->joints().sources.size(); ++i) {
+        rate_hz += joints->rate_hz(i, view.now);
+        const std::size_t source = joints->joints().sources[i].index;
+        add_senders(joints->senders(i), view.rig->joint_sources.at(source).node_id, view.now, senders);
+    }
     Json json = {{"samples", joints->samples()},
                  {"displaced", view.inputs->joints_displaced()},
                  {"surplus", joints->surplus()},
                  {"thinned", view.inputs->joints_thinned()},
                  {"second_sender", view.inputs->joints_of_several()},
-                 {"rate_hz", joints->rate_hz(view.now)},
+                 {"rate_hz", rate_hz},
                  {"above_rate", are_joints_above_rate(view)},
                  {"joint_node_ignored", view.inputs->joint_node_ignored()}};
     for (std::size_t i = 0; i < joints->faults().size(); ++i)
         json[names_of(JointTextFault{}).at(i)] = joints->faults().at(i);
-    json["senders"] = senders_json(joints->senders(), view.now);
+    json["senders"] = std::move(senders);
     return json;
 }
 
@@ -294,7 +326,7 @@ Json inputs_json(const Pipeline& pipeline) {
 
 }  // namespace
 
-void LastUsed::note(const Pipeline& pipeline, HostTime now) {
+void LastUsed::note(const Pipeline& pipeline, const HostRig& rig, HostTime now) {
     const PipelineInputs& inputs = pipeline.inputs();
     const auto note_one = [now](std::uint64_t count, std::uint64_t& before, std::optional<HostTime>& last) {
         if (count > before) last = now;
@@ -304,8 +336,7 @@ void LastUsed::note(const Pipeline& pipeline, HostTime now) {
     note_one(inputs.readings.used(), counts_[1], reading);
     note_one(inputs.depth_frames.used(), counts_[2], depth_frame);
     note_one(inputs.joint_samples.rejected(JointReason::joint_jump), counts_[6], joint_jump);
-    note_one(inputs.joint_samples.rejected(JointReason::second_sender) +
-                 pipeline.intake().joint_senders().contradictions(),
+    note_one(inputs.joint_samples.rejected(JointReason::second_sender) + joint_contradictions(pipeline, rig),
              counts_[7], joint_senders);
     note_one(pipeline.times_back(), counts_[3], time_back);
     note_one(pipeline.times_ahead(), counts_[5], time_ahead);

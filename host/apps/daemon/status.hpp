@@ -24,7 +24,7 @@ namespace octoskin {
 class LastUsed {
   public:
     /// Call this often: inputs used since the last call count as used now.
-    void note(const Pipeline& pipeline, HostTime now);
+    void note(const Pipeline& pipeline, const HostRig& rig, HostTime now);
 
     std::optional<HostTime> joint_sample;
     std::optional<HostTime> joint_jump;     ///< a sample was rejected because of a jump
@@ -91,6 +91,12 @@ struct DaemonView {
 /// Empty if its mode is not known, or has about the rig's rate.
 [[nodiscard]] std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double rate_hz);
 
+/// The newest joint sample, of all sources, that the arm cannot have reached; empty: there was none.
+struct JumpOfJoint {
+    std::string name;  ///< the joint
+    const JointJumped* jumped = nullptr;
+};
+[[nodiscard]] std::optional<JumpOfJoint> newest_jump(const DaemonView& view);
 /// Two senders of joint states are active, and neither is used.
 [[nodiscard]] bool are_joints_withheld(const DaemonView& view);
 /// Samples come through the joint socket at more than the rig's rate: the surplus is left out.

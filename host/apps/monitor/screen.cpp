@@ -172,11 +172,21 @@ class Screen {
         add_nonzero("joints_socket",
                     {"samples", "displaced", "thinned", "second_sender", "joint_node_ignored", "not_a_number",
                      "wrong_count", "time_off", "too_large", "too_long"});
+        const Json& sources = at(at(now_, "joint_states"), "sources");
+        for (std::size_t i = 0; i < sources.size() && sources.size() > 1; ++i) add_joint_source(sources[i]);
         const Json& socket = at(now_, "joints_socket");
         if (at(socket, "above_rate") == true)
             add(fmt::format(
                 "     {:.0f} Hz through the socket, more than the rig's rate: the surplus is left out",
                 number(at(socket, "rate_hz"))));
+    }
+    void add_joint_source(const Json& source) {
+        constexpr double kSilentS = 1.0;
+        const Json& newest = at(source, "age_s");
+        const bool is_silent = newest.is_null() || number(newest) > kSilentS;
+        add(fmt::format("     node {} by {}, newest {}", text(at(source, "node_id")), text(at(source, "via")),
+                        age(newest)),
+            is_silent ? Emphasis::bad : Emphasis::none);
     }
     void add_camera() {
         const Json& camera = at(now_, "camera");

@@ -240,10 +240,23 @@ constexpr std::array kStatusMeanings = {
             "comparisons in which the sensor saw a surface where the camera sees free space"},
     Meaning{"nodes.sensors.camera", "behind_surface", kCount, "",
             "comparisons in which the sensor saw free space through a surface that the camera sees"},
+    Meaning{"joint_states", "sources", kList, "",
+            "one table for each source of joint states of the rig, below"},
+    Meaning{"joint_states.sources", "node_id", kInteger, "", "its node"},
+    Meaning{"joint_states.sources", "via", kWord, "", "can or socket"},
+    Meaning{"joint_states.sources", "rate_hz", kNumber, "Hz", "its rate in the rig"},
+    Meaning{"joint_states.sources", "age_s", kNumberOrNull, "s",
+            "since its newest sample that is used; null: none yet"},
+    Meaning{"joint_states.sources", "joints", kList, "", "one table for each of its joints, below"},
+    Meaning{"joint_states.sources.joints", "name", kText, "", "as in the URDF"},
+    Meaning{"joint_states.sources.joints", "poses_without", kCount, "",
+            "poses of the robot, for a reading or an image, at whose time its position was not known, but "
+            "that of "
+            "other joints was"},
     Meaning{"joint_states", "second_sender", kFlag, "",
             "two senders are active, or were within the last second: neither is used"},
     Meaning{"joint_states", "contradictions", kCount, "",
-            "how often two senders under the joint node of the bus contradicted each other"},
+            "how often two senders under one joint node of the bus contradicted each other"},
     Meaning{"joint_states", "jumped", kTextOrNull, "",
             "the joint that last moved further between two samples than the arm can in that time; null: none "
             "yet"},
@@ -267,26 +280,32 @@ constexpr std::array kStatusMeanings = {
     Meaning{"joints_socket", "thinned", kCount, "",
             "samples left out because they followed the one before sooner than the rig's rate: usual for a "
             "fast driver"},
-    Meaning{"joints_socket", "second_sender", kCount, "",
-            "samples left out because more than one program sends some, or did within the last second"},
+    Meaning{
+        "joints_socket", "second_sender", kCount, "",
+        "samples left out because more than one program sends some of their source, or did within the last "
+        "second"},
     Meaning{"joints_socket", "rate_hz", kNumber, "Hz", "samples received within the newest second"},
     Meaning{"joints_socket", "above_rate", kFlag, "",
-            "rate_hz is over 1.3 times joints.rate_hz of the rig: the surplus is thinned"},
-    Meaning{"joints_socket", "joint_node_ignored", kCount, "",
-            "frames of the rig's joint node on the bus, which are not used with --joints"},
+            "samples of a source come at over 1.3 times its rate_hz of the rig: the surplus is thinned"},
+    Meaning{
+        "joints_socket", "joint_node_ignored", kCount, "",
+        "frames on the bus of joint nodes whose joint states come through the socket, which are not used"},
     Meaning{"joints_socket", "not_a_number", kCount, "",
             "refused: a word that is no finite number, or a comma without a number on each side"},
-    Meaning{"joints_socket", "wrong_count", kCount, "",
-            "refused: neither as many numbers as the rig has joints, nor one more, the time"},
+    Meaning{
+        "joints_socket", "wrong_count", kCount, "",
+        "refused: neither as many numbers as the rig has joints, nor one more, the time; by name: no source "
+        "has all its joints"},
     Meaning{"joints_socket", "time_off", kCount, "",
             "refused: its time differs by over 1 s from when it was read, or it has none and waited longer "
             "than that. Send CLOCK_MONOTONIC of this machine in seconds; the usual cause is wall time"},
     Meaning{"joints_socket", "too_large", kCount, "",
             "refused: a position beyond +-8.38 rad (or m); the usual cause is degrees"},
-    Meaning{"joints_socket", "too_long", kCount, "", "refused: over 1024 bytes"},
+    Meaning{"joints_socket", "too_long", kCount, "", "refused: over 4096 bytes"},
     Meaning{"joints_socket", "senders", kList, "",
-            "one table for each program that sent within the last second, below; with more than one, none is "
-            "used"},
+            "one table for each program and source that it sent within the last second, below; a source with "
+            "more than one program is not used"},
+    Meaning{"joints_socket.senders", "node_id", kInteger, "", "the node of the source that it sends"},
     Meaning{"joints_socket.senders", "pid", kInteger, "",
             "its process; 0: not visible from here, as in another container; all of those count as one"},
     Meaning{"joints_socket.senders", "uid", kInteger, "", "its user; 0 if the process is not visible"},

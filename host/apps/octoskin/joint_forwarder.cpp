@@ -26,14 +26,17 @@ std::string lines(std::uint64_t count) {
 
 }  // namespace
 
-std::optional<Error> RigJoints::fault_of(std::span<const double> position) const {
-    for (std::size_t i = 0; i < position.size(); ++i) {
-        if (limits[i].hold(position[i], JointHistoryConfig{}.limit_tolerance)) continue;
-        return Error{
-            .code = ErrorCode::out_of_range,
-            .what = fmt::format("expected {} to {}, the robot's limits", limits[i].min, limits[i].max),
-            .value = fmt::format("{}", position[i]),
-            .key = fmt::format("joint {} of {}, {}", i + 1, position.size(), names[i])};
+std::optional<Error> RigJoints::fault_of(const JointLine& line) const {
+    for (const JointSample& sample : line.samples) {
+        const auto& names = joints.sources[sample.source].names;
+        for (std::size_t i = 0; i < sample.position.size(); ++i) {
+            const JointLimits& limit = limits[sample.source][i];
+            if (limit.hold(sample.position[i], JointHistoryConfig{}.limit_tolerance)) continue;
+            return Error{.code = ErrorCode::out_of_range,
+                         .what = fmt::format("expected {} to {}, the robot's limits", limit.min, limit.max),
+                         .value = fmt::format("{}", sample.position[i]),
+                         .key = fmt::format("joint {} of {}, {}", i + 1, names.size(), names[i])};
+        }
     }
     return std::nullopt;
 }
@@ -49,22 +52,22 @@ void JointForwarder::begin_block() {
 
 void JointForwarder::put(const std::string& line) {
     if (!joints_) return send(line, std::nullopt);
-    const std::size_t count = joints_->names.size();
-    auto sample = parse_joints(line, count, now_, now_);  // it counts as sampled now unless it has a time
-    if (!sample) {
-        const char* const name = names_of(sample.error()).at(static_cast<std::size_t>(sample.error()));
+    // It counts as sampled now unless it has a time.
+    auto parsed = parse_joints(line, joints_->joints, now_, now_);
+    if (!parsed) {
+        const char* const name = names_of(parsed.error()).at(static_cast<std::size_t>(parsed.error()));
         return refuse(name, {.code = ErrorCode::bad_syntax,
-                             .what = describe(sample.error(), line, count, now_),
+                             .what = describe(parsed.error(), line, joints_->joints, now_),
                              .value = "'" + shown(line) + "'",
                              .remedy = fmt::format("write lines of the form {}", kJointTextWanted)});
     }
-    if (auto fault = joints_->fault_of(sample->position)) {
+    if (auto fault = joints_->fault_of(*parsed)) {
         fault->others = "The line is " + shown(line);
         return refuse("out_of_limits", std::move(*fault));
     }
-    if (!burst_) return send(line, *sample);
-    sample->came = came_;
-    waiting_.push_back(std::move(*sample));
+    if (!burst_) return send(line, *parsed);
+    parsed->came = came_;
+    waiting_.push_back(std::move(*parsed));
 }
 
 void JointForwarder::send_due() {
@@ -75,19 +78,19 @@ void JointForwarder::send_until(WallTime now) {
     while (!waiting_.empty()) {
         const JointBurst::Turn turn = burst_->turn_of_oldest(waiting_, now);
         if (turn == JointBurst::Turn::wait) return;
-        const JointSample oldest = std::move(waiting_.front());
+        JointLine oldest = std::move(waiting_.front());
         waiting_.pop_front();
         if (turn == JointBurst::Turn::use) {
-            send({}, oldest);
+            send({}, std::move(oldest));
         } else {
             ++left_out_;
         }
     }
 }
 
-void JointForwarder::send(const std::string& line, const std::optional<JointSample>& sample) {
+void JointForwarder::send(const std::string& line, const std::optional<JointLine>& parsed) {
     const std::uint64_t count = 1 + std::exchange(left_out_, 0);
-    if (!output_.put(line, sample)) return lose(count);
+    if (!output_.put(line, parsed)) return lose(count);
     if (!losses_reported_.empty()) spdlog::info("samples are sent again; so far lost: {}", lines(lost_));
     losses_reported_.clear();
     refusals_reported_.clear();

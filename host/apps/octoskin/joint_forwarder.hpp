@@ -5,12 +5,11 @@
 #include <deque>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "common/time.hpp"
-#include "host/apps/daemon/joint_socket.hpp"
+#include "host/apps/daemon/joint_line.hpp"
 #include "host/core/ingest/joint_burst.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/errors/error.hpp"
@@ -21,9 +20,9 @@ namespace octoskin::app {
 class JointOutput {
   public:
     virtual ~JointOutput() = default;
-    /// `sample`: of the line; empty without a rig, because the number of joints is then not known. False if
-    /// it could not be sent now; it is not sent later.
-    [[nodiscard]] virtual bool put(const std::string& line, const std::optional<JointSample>& sample) = 0;
+    /// `parsed`: the line; empty without a rig, because the joints are then not known. False if it could not
+    /// be sent now; it is not sent later.
+    [[nodiscard]] virtual bool put(const std::string& line, const std::optional<JointLine>& parsed) = 0;
     /// Handles other requests of the target; called often.
     virtual void attend() = 0;
     /// -1, or a descriptor for which `attend` is called when it is readable.
@@ -32,13 +31,14 @@ class JointOutput {
     [[nodiscard]] virtual std::optional<Error> why() const = 0;
 };
 
-/// The limits of a line. The daemon drops samples beyond them, and the sender of the lines would not notice.
+/// The joints of a line, and their limits. The daemon drops samples beyond them, and the sender of the lines
+/// would not notice.
 struct RigJoints {
-    std::vector<std::string> names;
-    std::vector<JointLimits> limits;
+    LineJoints joints;
+    std::vector<std::vector<JointLimits>> limits;  ///< of each source
 
-    /// Why the daemon would not accept the sample; empty: it is within the limits.
-    [[nodiscard]] std::optional<Error> fault_of(std::span<const double> position) const;
+    /// Why the daemon would not accept a sample; empty: all are within the limits.
+    [[nodiscard]] std::optional<Error> fault_of(const JointLine& line) const;
 };
 
 /// Log messages about the lines: once for each reason of a loss or refusal, and once when lines are sent
@@ -64,17 +64,17 @@ class JointForwarder {
     static constexpr std::size_t kLossesTold = 8;
 
     void send_until(WallTime now);
-    void send(const std::string& line, const std::optional<JointSample>& sample);
+    void send(const std::string& line, const std::optional<JointLine>& parsed);
     void lose(std::uint64_t count);
     void refuse(const char* reason, Error why);
 
     JointOutput& output_;
     std::optional<RigJoints> joints_;
     std::optional<JointBurst> burst_;
-    HostTime now_;                     ///< arrival of the block
-    WallTime came_;                    ///< the same
-    std::deque<JointSample> waiting_;  ///< for the end of a burst
-    std::uint64_t left_out_ = 0;       ///< of the burst: they count like its newest line
+    HostTime now_;                   ///< arrival of the block
+    WallTime came_;                  ///< the same
+    std::deque<JointLine> waiting_;  ///< for the end of a burst
+    std::uint64_t left_out_ = 0;     ///< of the burst: they count like its newest line
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t refused_ = 0;

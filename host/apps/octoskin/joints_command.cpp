@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -51,7 +52,7 @@ class SocketOutput final : public JointOutput {
     ~SocketOutput() override { close(); }
     SocketOutput(const SocketOutput&) = delete;
     SocketOutput& operator=(const SocketOutput&) = delete;
-    bool put(const std::string& line, const std::optional<JointSample>& /*sample*/) override {
+    bool put(const std::string& line, const std::optional<JointLine>& /*parsed*/) override {
         attend();
         if (descriptor_ < 0) return false;
         // The kernel keeps ten datagrams. If more come at once, there is room again soon, unless the daemon
@@ -99,18 +100,27 @@ class SocketOutput final : public JointOutput {
     std::optional<Error> why_;
 };
 
-/// Acts as a node of the bus: sends frames, keeps to the heartbeat's silence, and answers each SYNC.
+/// Acts as the rig's joint nodes on the bus: sends frames, keeps to the heartbeat's silence, and answers each
+/// SYNC.
 class CanOutput final : public JointOutput {
   public:
     CanOutput(const std::string& interface, const rig::Rig& rig)
-        : joints_(rig.joints.node_id, rig.joints.joints.size(), rig.joints.rate_hz),
-          link_(opener(interface, descriptor_of(interface))) {}
-    /// There is a rig, so `sample` is not empty.
-    bool put(const std::string& /*line*/, const std::optional<JointSample>& sample) override {
-        const auto frames = joints_.frames(sample->sampled, sample->position);
-        if (!frames) return is_through_;  // too soon after the one before: counts like that one
-        is_through_ = true;
-        for (const wire::CanFrame& frame : *frames) is_through_ = link_.send(frame) && is_through_;
+        : link_(opener(interface, descriptor_of(interface))) {
+        for (const rig::JointSource& source : rig.joint_sources)
+            sources_.push_back({LocalJoints(source.node_id, source.joints.size(), source.rate_hz)});
+    }
+    /// There is a rig, so `parsed` is not empty.
+    bool put(const std::string& /*line*/, const std::optional<JointLine>& parsed) override {
+        bool is_any_due = false;
+        bool are_through = true;
+        for (const JointSample& sample : parsed->samples) {
+            Source& source = sources_.at(sample.source);
+            const auto frames = source.joints.frames(sample.sampled, sample.position);
+            if (!frames) continue;  // too soon after the one before
+            is_any_due = source.has_sent = true;
+            for (const wire::CanFrame& frame : *frames) are_through = link_.send(frame) && are_through;
+        }
+        if (is_any_due) is_through_ = are_through;  // else it counts like the line before
         return is_through_;
     }
     void attend() override {
@@ -122,7 +132,10 @@ class CanOutput final : public JointOutput {
             const auto decoded = wire::decode(received->entry.frame);
             const auto* const sync = decoded ? std::get_if<wire::Sync>(&decoded->message) : nullptr;
             const auto ended = monotonic_of(received->entry.stamp);
-            if (sync != nullptr && ended) (void)link_.send(joints_.report(sync->sequence, *ended));
+            if (sync == nullptr || !ended) continue;
+            for (const Source& source : sources_)
+                if (source.has_sent || sources_.size() == 1)
+                    (void)link_.send(source.joints.report(sync->sequence, *ended));
         }
     }
     [[nodiscard]] int descriptor() const override { return link_.descriptor(); }
@@ -143,7 +156,11 @@ class CanOutput final : public JointOutput {
             return socketcan::CanSocket(interface, copy);
         };
     }
-    LocalJoints joints_;
+    struct Source {
+        LocalJoints joints;
+        bool has_sent = false;  ///< another program may be the sender of the other sources
+    };
+    std::vector<Source> sources_;  ///< in the rig's order
     CanLink link_;
     bool is_through_ = true;  ///< the newest sample that was due
 };
@@ -153,18 +170,34 @@ std::optional<rig::Rig> rig_of(const JointsOptions& options) {
     return value_or_fail(read_given_rig(options.rig));
 }
 
-std::optional<RigJoints> joints_of(const std::optional<rig::Rig>& rig) {
+/// To the socket, the sources that the rig has there, or all if it has none there; to a bus, all.
+std::optional<RigJoints> joints_of(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
     if (!rig) return std::nullopt;
-    const auto robot = read_robot_model(rig->urdf, rig->base_link, rig->joints.joints);
+    const auto robot = read_robot_model(rig->urdf, rig->base_link, rig->joint_names());
     if (!robot) throw CommandFailure(reading_error(ExitCode::bad_config, robot.error()));
-    const auto limits = robot->limits();
-    return RigJoints{rig->joints.joints, {limits.begin(), limits.end()}};
+    const auto is_of_socket = [](const rig::JointSource& source) {
+        return source.way == rig::JointWay::socket;
+    };
+    const bool takes_all =
+        !options.interface.empty() || std::ranges::none_of(rig->joint_sources, is_of_socket);
+    HostRig host;
+    for (const rig::JointSource& source : rig->joint_sources)
+        host.joint_sources.push_back(
+            {source.node_id, source.joints, source.rate_hz, takes_all || is_of_socket(source)});
+    RigJoints joints{LineJoints::local(host, robot->limits()), {}};
+    std::size_t first = 0;
+    for (const HostJointSource& source : host.joint_sources) {
+        const auto limits = robot->limits().subspan(first, source.joints.size());
+        first += source.joints.size();
+        if (source.is_local) joints.limits.emplace_back(limits.begin(), limits.end());
+    }
+    return joints;
 }
 
 /// For lines to the daemon's socket the daemon does this.
 std::optional<JointBurst> burst_of(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
     if (options.interface.empty()) return std::nullopt;
-    return JointBurst(rig->joints.rate_hz);
+    return JointBurst(std::ranges::max(rig->joint_sources, {}, &rig::JointSource::rate_hz).rate_hz);
 }
 
 std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
@@ -200,7 +233,7 @@ void forward(const JointsOptions& options) {
     constexpr int kBurstMs = 2;  // no line marks the end of a burst
     const auto rig = rig_of(options);
     const auto output = make_output(options, rig);
-    JointForwarder forwarder(*output, joints_of(rig), burst_of(options, rig));
+    JointForwarder forwarder(*output, joints_of(options, rig), burst_of(options, rig));
     const EndSignals signals;
     std::string pending;
     while (true) {  // until standard input ends, or a signal
@@ -251,7 +284,9 @@ void add_joints_command(CLI::App& app) {
         ->check(existing_file());
     command->footer(
         "One sample a line: [TIME] Q1 ... QN, numbers separated by blanks or commas, in the rig's order; "
-        "radians, metres\nfor a prismatic joint, within +-8.388607. TIME is CLOCK_MONOTONIC of this machine "
+        "radians, metres\nfor a prismatic joint, within +-8.388607. Or by name, in any order: [TIME] "
+        "shoulder=0.1 elbow=-0.7. Of a source of the\nrig a line has all joints or none; names that the rig "
+        "does not have are left out. TIME is CLOCK_MONOTONIC of this machine "
         "in seconds (as Python's\ntime.monotonic()), within 1 s of now; without it the time of arrival "
         "counts. With --rig a line\nwith another number of joints, or over 0.005 beyond the robot's joint "
         "limits, is refused here; without it\nthe daemon checks the lines, and `octoskin monitor` counts "

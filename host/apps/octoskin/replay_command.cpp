@@ -158,13 +158,12 @@ void replay_onto_bus(const ReplayOptions& options) {
 
 /// For queries of the map: unknown space surrounds the arm's last posture.
 void report_last_posture(const Playback& playback) {
+    const auto newest = playback.pipeline.builder().robot().newest();
+    if (!newest) return;
     std::string joints;
-    playback.pipeline.builder().for_each_joint_sample([&](const JointMeasurement& sample) {
-        joints.clear();
-        for (std::size_t i = 0; i < playback.rig.joints.joints.size(); ++i)
-            joints += fmt::format("{}{:.6f}", joints.empty() ? "" : ",", sample.position_rad.at(i));
-    });
-    if (!joints.empty()) print("the arm's last known posture, for `octoskin query`: --stands={}\n", joints);
+    for (const double position : newest->position)
+        joints += fmt::format("{}{:.6f}", joints.empty() ? "" : ",", position);
+    print("the arm's last known posture, for `octoskin query`: --stands={}\n", joints);
 }
 
 void replay_recording(const ReplayOptions& options) {

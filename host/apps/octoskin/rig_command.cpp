@@ -82,8 +82,9 @@ void describe(const rig::Rig& rig, const HostSetup& host) {
         describe_i2c(node);
         for (const std::string& line : rig::reflex_lines(node)) print("    {}\n", line);
     }
-    print("  node {} sends {} joints at {:g} Hz\n", rig.joints.node_id, rig.joints.joints.size(),
-          rig.joints.rate_hz);
+    for (const rig::JointSource& source : rig.joint_sources)
+        print("  node {} sends {} joints at {:g} Hz{}\n", source.node_id, source.joints.size(), source.rate_hz,
+              source.way == rig::JointWay::socket ? " through the joint socket" : "");
     if (rig.camera) {
         print("  camera {} x {} at {:g} Hz\n", rig.camera->width, rig.camera->height, rig.camera->rate_hz);
     }

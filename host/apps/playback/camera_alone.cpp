@@ -117,8 +117,8 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const r
                                  .child_link = "no_link",
                                  .kind = JointKind::continuous,
                                  .limits = {}};
-    host.joints.joints = {joint.name};
-    auto robot = RobotModel::build(rig.base_link, std::span(&joint, 1), host.joints.joints);
+    host.joint_sources = {{.joints = {joint.name}}};
+    auto robot = RobotModel::build(rig.base_link, std::span(&joint, 1), host.joint_names());
     if (!robot) {
         return fail(ExitCode::failed,
                     {ErrorCode::self_check, std::string("no robot: ") + describe(robot.error().error)});

@@ -15,15 +15,22 @@ namespace {
 /// Details that the counters do not contain.
 std::string detail(const Loss& loss, const Playback& playback) {
     if (loss.reason != "joints_missing") return {};
-    const auto& gap = playback.pipeline.builder().newest_joint_gap();
-    return gap ? " " + gap_text(*gap) : std::string();
+    const RobotTracker& robot = playback.pipeline.builder().robot();
+    const std::string unknown = unknown_text(robot.times_unknown(), playback.rig.joint_names());
+    for (std::size_t i = 0; i < playback.rig.joint_sources.size(); ++i)
+        if (const auto& gap = robot.newest_gap(i)) return " " + gap_text(*gap) + unknown;
+    return unknown;
 }
 
 /// The node of the joint states is reported as working only as far as its joint states are used.
 void note_joint_loss(const Loss& loss, Playback& playback) {
     if (loss.unit != "joint samples" || !loss.is_mendable) return;
+    const auto is_source = [&](wire::NodeId node) {
+        return std::ranges::find(playback.rig.joint_sources, node, &rig::JointSource::node_id) !=
+               playback.rig.joint_sources.end();
+    };
     for (NodeSummary& node : playback.nodes) {
-        if (node.node_id == playback.rig.joints.node_id && !node.loss) node.loss = loss;
+        if (is_source(node.node_id) && !node.loss) node.loss = loss;
     }
 }
 
@@ -51,8 +58,9 @@ void find_losses(Playback& playback) {
         playback.losses.push_back(std::move(*loss));
     }
     std::ranges::stable_sort(playback.losses, {}, rank_of);
-    if (const auto& beyond = playback.pipeline.joint_gate().beyond())
-        playback.warnings.push_back(beyond_text(*beyond, playback.rig.joints.joints));
+    for (std::size_t i = 0; i < playback.rig.joint_sources.size(); ++i)
+        if (const auto& beyond = playback.pipeline.joint_gate(i).beyond())
+            playback.warnings.push_back(beyond_text(*beyond, playback.rig.joint_sources[i].joints));
 }
 
 }  // namespace octoskin

@@ -172,13 +172,13 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
                                                 std::optional<HostTime> begin, const ReplayReport& report) {
     auto order = orderlog::OrderReader::open(request.recording.order());
     if (!order) return fail(ExitCode::bad_data, order.error());
-    if (order->header().joints != rig.joints.joints.size()) {
-        return fail(ExitCode::bad_config,
-                    {.code = ErrorCode::mismatch,
-                     .what = fmt::format("expected {} joints, as in the rig", rig.joints.joints.size()),
-                     .value = std::to_string(order->header().joints),
-                     .remedy = "replay with the recording's own rig",
-                     .file = request.recording.order().shown()});
+    if (order->header().joints != rig.joint_counts()) {
+        return fail(ExitCode::bad_config, {.code = ErrorCode::mismatch,
+                                           .what = fmt::format("expected {} joints, as in the rig",
+                                                               orderlog::joints_text(rig.joint_counts())),
+                                           .value = orderlog::joints_text(order->header().joints),
+                                           .remedy = "replay with the recording's own rig",
+                                           .file = request.recording.order().shown()});
     }
     const bool has_daemons_mapping =
         order->header().mapping_crc32 == file_checksum(mapping_text(request.mapping));

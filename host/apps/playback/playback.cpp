@@ -169,7 +169,7 @@ void find_contradictions(const HostRig& rig, Playback& playback) {
     const CrossCheck* const cross_check = playback.pipeline.builder().cross_check();
     if (cross_check == nullptr) return;
     if (const auto& fault = cross_check->pose().fault())
-        playback.warnings.push_back(describe(*fault, rig.joints.joints));
+        playback.warnings.push_back(describe(*fault, rig.joint_names()));
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
             const SensorEvidence& evidence =

@@ -40,13 +40,13 @@ Error error_of(const PostureFault& fault, const HostRig& rig, const RobotModel& 
         return Error{.code = code,
                      .what = expected,
                      .value = fmt::format("{:.6g}", position[fault.joint]),
-                     .key = of + ": " + rig.joints.joints.at(fault.joint)};
+                     .key = of + ": " + rig.joint_names().at(fault.joint)};
     };
     switch (fault.error) {
         case PostureError::wrong_count:
             return {.code = ErrorCode::mismatch,
                     .what = fmt::format("expected the positions of {} joints: {}", robot.joint_count(),
-                                        listed(rig.joints.joints)),
+                                        listed(rig.joint_names())),
                     .value = fmt::format("{} positions", position.size()),
                     .key = of};
         case PostureError::not_finite:

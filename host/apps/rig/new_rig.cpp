@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "common/wire/messages.hpp"
 #include "host/apps/recording/permission.hpp"
 #include "host/apps/robot/fitted_robot.hpp"
 #include "host/core/kinematics/joint_twist.hpp"
@@ -112,6 +113,23 @@ std::string node_text(std::size_t number, std::span<const PlacedSensor> sensors,
     return text;
 }
 
+/// More than seven joints are of several senders.
+std::string joints_text(const std::vector<std::string>& joints) {
+    constexpr int kFirstNode = 60;
+    const std::string what = "of the sender of joint states on the bus; unused with `octoskin run --joints`";
+    std::string text = "joints:\n";
+    const bool is_one = joints.size() <= wire::kJointsPerSample;
+    for (std::size_t first = 0; first < joints.size(); first += wire::kJointsPerSample) {
+        const std::size_t count = std::min<std::size_t>(wire::kJointsPerSample, joints.size() - first);
+        const auto of_source = std::span(joints).subspan(first, count);
+        text += fmt::format(
+            "{}node_id: {}  # {}\n{}rate_hz: 100\n{}names: {}  # in the order of the sender\n",
+            is_one ? "  " : "  - ", kFirstNode - static_cast<int>(first / wire::kJointsPerSample), what,
+            is_one ? "  " : "    ", is_one ? "  " : "    ", list_of({of_source.begin(), of_source.end()}));
+    }
+    return text;
+}
+
 std::string text_of(const NewRig& request, const rig::Rig& rig, const std::vector<std::string>& joints,
                     const std::vector<PlacedSensor>& sensors, bool has_meshes) {
     std::vector<std::string> mounts;
@@ -137,10 +155,7 @@ std::string text_of(const NewRig& request, const rig::Rig& rig, const std::vecto
         "  protocol: can_fd\n"
         "  nominal_bitrate_bps: 1000000\n"
         "  data_bitrate_bps: 5000000\n\n"
-        "joints:\n"
-        "  node_id: 60  # of the sender of joint states on the bus; unused with `octoskin run --joints`\n"
-        "  rate_hz: 100\n"
-        "  names: {}  # in the order of the sender\n\n"
+        "{}\n"
         "sensor_defaults:\n"
         "  distance_mode: short      # to 1.36 m, best in bright light; long: to 3.6 m in the dark\n"
         "  timing_budget_ms: 15\n"
@@ -165,7 +180,8 @@ std::string text_of(const NewRig& request, const rig::Rig& rig, const std::vecto
         has_meshes
             ? "  # It has meshes. `octoskin run` wants the file of `octoskin robot URDF --out FITTED.urdf`.\n"
             : "",
-        yaml_text(request.robot_in_rig), yaml_text(rig.base_link), list_of(mounts), list_of(joints), nodes);
+        yaml_text(request.robot_in_rig), yaml_text(rig.base_link), list_of(mounts), joints_text(joints),
+        nodes);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ Result<BeamBuilder, RobotModelFault> BeamBuilder::build(const HostRig& rig, cons
                 return unexpected(no_such_link(sensor.link));
             }
             Sensor& placed = builder.sensors_[{node.node_id, index++}];
-            placed = {*link, sensor.T_link_sensor, {}};
+            placed = {*link, robot.joints_above(*link), sensor.T_link_sensor, {}};
             for (HostZone zone : sensor.zones) {
                 if (!rules.sees_cones) zone.optics = {};
                 placed.zones.push_back({zone, rays_of(zone)});
@@ -92,6 +92,7 @@ Result<Beam, BeamFault> BeamBuilder::place(const RangeMeasurement& measurement,
     assert(found != sensors_.end());
     const Sensor& sensor = found->second;
     assert(measurement.source.zone < sensor.zones.size());
+    if ((sensor.joints_above & robot.unknown) != 0) return unexpected(BeamFault::unplaced);
 
     const Eigen::Isometry3d T_base_sensor = robot.T_base_link[sensor.link] * sensor.T_link_sensor;
     const Eigen::Isometry3d T_map_sensor = T_map_base_ * T_base_sensor;

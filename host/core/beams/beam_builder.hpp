@@ -28,6 +28,7 @@ struct BeamRules {
 enum class BeamFault : std::uint8_t {
     self_hit,    ///< beyond the predicted self-hit less the rig's margin; without return: nothing to clear
                  ///< before it
+    unplaced,    ///< the position of a joint above the sensor is not known
     not_finite,  ///< the pose holds a NaN or an infinity
 };
 
@@ -64,6 +65,7 @@ class BeamBuilder {
     };
     struct Sensor {
         LinkId link = 0;
+        JointSet joints_above = 0;
         Eigen::Isometry3d T_link_sensor = Eigen::Isometry3d::Identity();
         std::vector<Zone> zones;
     };

@@ -188,7 +188,7 @@ constexpr std::array kCounterMeanings = {
                    Cause::outside, "record from before START to after STOP"},
     CounterMeaning{"readings", "late", "arrived after the map had advanced past its time", Cause::mendable,
                    kMoreProcessor},
-    CounterMeaning{"readings", "joints_missing", "no pose of the arm at its capture time", Cause::mendable,
+    CounterMeaning{"readings", "joints_missing", "no pose of its link at its capture time", Cause::mendable,
                    "send joint states at 20 Hz or more, from before the first reading to after the last"},
     CounterMeaning{"readings", "self_hit",
                    "the beam ends on the robot's own body: usual for a sensor that sees another link",

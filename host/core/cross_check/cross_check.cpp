@@ -69,7 +69,7 @@ CrossCheck::CrossCheck(const HostRig& rig, const CrossCheckConfig& config)
     : config_(config),
       camera_(rig.camera.value().intrinsics),
       ray_slope_max_(LensInverse(camera_.lens).radius()),
-      judge_(sensors_of_nodes(rig)) {
+      judge_(sensors_of_nodes(rig), rig.joint_names().size()) {
     assert(0.0 < config.contradicted_sound && config.contradicted_sound < config.contradicted_faulty &&
            config.contradicted_faulty < 1.0);
     const PredictorConfig predictor{.camera_sigma_m =

@@ -1,7 +1,6 @@
 // Decides whether an offset of one joint from its joint states explains the contradictions of range sensors.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -20,12 +19,13 @@ struct JointError {
 };
 
 /// CameraJudge's estimate with one unknown: for each joint alone its offset, from the ranges of all sensors
-/// that the joint carries. Uses about the newest 1500 comparisons. 0.8 kB a sensor.
+/// that the joint carries. Uses about the newest 1500 comparisons. 0.1 kB for each sensor and joint.
 class JointJudge {
   public:
-    explicit JointJudge(std::size_t sensors) : sensors_(sensors) {}
+    /// `joints`: of the robot, at most kJointsMax.
+    JointJudge(std::size_t sensors, std::size_t joints) : sensors_(sensors, std::vector<Fit>(joints)) {}
 
-    /// `twists`: motion of the sensor with each joint, camera coordinates. About 1 us.
+    /// `twists`: motion of the sensor with each joint, camera coordinates. About 1 us for seven joints.
     void compare(std::uint16_t sensor, const RangeChange& change, const JointTwists& twists);
     /// Call after all comparisons with one image. About 10 us for 34 sensors.
     void decide();
@@ -43,7 +43,7 @@ class JointJudge {
 
   private:
     using Fit = ErrorFit<1>;
-    std::vector<std::array<Fit, kJointsMax>> sensors_;
+    std::vector<std::vector<Fit>> sensors_;  ///< for each joint
     std::optional<JointError> error_;
     JointError likeliest_;
     ErrorEvidence evidence_;

@@ -22,7 +22,8 @@ struct PoseFault {
 /// Compares an error of the camera with that of one joint, by the same comparisons. 2 kB a sensor.
 class PoseJudge {
   public:
-    explicit PoseJudge(std::size_t sensors) : camera_(sensors), joints_(sensors) {}
+    /// `joints`: of the robot, at most kJointsMax.
+    PoseJudge(std::size_t sensors, std::size_t joints) : camera_(sensors), joints_(sensors, joints) {}
 
     /// `twists`: motion of the sensor with each joint, camera coordinates. About 2 us.
     void compare(std::uint16_t sensor, const RangeChange& change, const JointTwists& twists);

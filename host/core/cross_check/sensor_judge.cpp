@@ -70,8 +70,8 @@ RangeFault fault_at(std::size_t place) {
 
 }  // namespace
 
-SensorJudge::SensorJudge(std::span<const std::size_t> sensors_of_nodes)
-    : pose_(std::accumulate(sensors_of_nodes.begin(), sensors_of_nodes.end(), std::size_t{0})) {
+SensorJudge::SensorJudge(std::span<const std::size_t> sensors_of_nodes, std::size_t joints)
+    : pose_(std::accumulate(sensors_of_nodes.begin(), sensors_of_nodes.end(), std::size_t{0}), joints) {
     for (const std::size_t count : sensors_of_nodes) {
         const std::size_t begin = sensors_.size();
         for (std::size_t i = 0; i < count; ++i) {

@@ -49,7 +49,8 @@ struct Compared {
 class SensorJudge {
   public:
     /// `sensors_of_nodes`: number of sensors of each node.
-    explicit SensorJudge(std::span<const std::size_t> sensors_of_nodes);
+    /// `joints`: of the robot.
+    SensorJudge(std::span<const std::size_t> sensors_of_nodes, std::size_t joints);
 
     /// Evaluates all comparisons with one image, at most one range a sensor. 0.3 ms for 34.
     void judge(std::span<const Compared> compared);

@@ -11,12 +11,13 @@ namespace octoskin {
 
 CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
     : config_(config),
-      joint_source_(rig.joints.node_id),
       host_clock_(config.host_clock),
       nodes_(rig),
-      ranges_(rig, config.uses_no_return, Nanoseconds{config.clock.now_slack}),
-      joints_(rig.joints.rate_hz),
-      joint_senders_(rig.joints.rate_hz, !config.has_local_joints) {
+      ranges_(rig, config.uses_no_return, Nanoseconds{config.clock.now_slack}) {
+    for (const HostJointSource& source : rig.joint_sources) {
+        joint_sources_.push_back({source.node_id, JointAssembler(source.rate_hz),
+                                  JointSenderCheck(source.rate_hz, !source.is_local)});
+    }
     for (const auto& [node, record] : nodes_.records()) {
         clocks_.emplace(node, ClockMap(config.clock));
         answers_.try_emplace(node);
@@ -76,9 +77,30 @@ void CanIntake::end_joint_samples(FrameOutcome& outcome) {
     if (!now_known) return;
     const bool has_relocked =
         std::exchange(relocks_, host_clock_.relocks()) != host_clock_.relocks();  // host time may be equal
-    if (has_relocked) joint_senders_.settle(outcome.joint_samples_of_before);
-    joint_senders_.settle_if_back(*now_known, outcome.joint_samples_of_before);
-    joint_senders_.advance(*now_known, outcome.joint_samples);
+    for (JointIntake& source : joint_sources_) {
+        if (has_relocked) source.senders.settle(outcome.joint_samples_of_before);
+        source.senders.settle_if_back(*now_known, outcome.joint_samples_of_before);
+        source.senders.advance(*now_known, outcome.joint_samples);
+    }
+}
+
+std::uint64_t CanIntake::joint_samples_pending() const {
+    std::uint64_t pending = 0;
+    for (const JointIntake& source : joint_sources_)
+        pending += source.assembler.pending() + source.senders.waiting();
+    return pending;
+}
+
+JointSenderCheck::Ended CanIntake::joints_due(HostTime now) {
+    JointSenderCheck::Ended ended;
+    for (JointIntake& source : joint_sources_) source.senders.advance(now, ended);
+    return ended;
+}
+
+JointSenderCheck::Ended CanIntake::settle_joints() {
+    JointSenderCheck::Ended ended;
+    for (JointIntake& source : joint_sources_) source.senders.settle(ended);
+    return ended;
 }
 
 void CanIntake::note_time() {
@@ -323,7 +345,8 @@ CanIntake::Rejection CanIntake::on(wire::NodeId, const wire::Calibration&, Frame
 CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& message,
                                    FrameOutcome& outcome) {
     const auto now_known = now();
-    if (node != joint_source_) {
+    const auto source = std::ranges::find(joint_sources_, node, &JointIntake::node);
+    if (source == joint_sources_.end()) {
         return FrameReason::not_joint_source;
     }
     if (is_refused_for_joints(nodes_.verdict(node, now_known))) {
@@ -332,24 +355,25 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& me
     if (!now_known) {
         return FrameReason::joint_no_host_time;
     }
-    const JointAssembler::Outcome assembled = joints_.on_frame(message, *now_known);
+    const JointAssembler::Outcome assembled = source->assembler.on_frame(message, *now_known);
     for (const JointReason reason : assembled.given_up) {
         outcome.joint_samples.push_back(unexpected(reason));
     }
     outcome.joint_samples_begun += assembled.opened ? 1U : 0U;
     if (assembled.is_contradiction) {
         const std::uint8_t sequence = std::visit([](const auto& part) { return part.sequence; }, message);
-        joint_senders_.on_contradiction(sequence,
-                                        assembled.is_of_one_round  ? JointSenderCheck::Rounds::one
-                                        : assembled.is_of_no_round ? JointSenderCheck::Rounds::none
-                                                                   : JointSenderCheck::Rounds::any,
-                                        *now_known, outcome.joint_samples);
+        source->senders.on_contradiction(sequence,
+                                         assembled.is_of_one_round  ? JointSenderCheck::Rounds::one
+                                         : assembled.is_of_no_round ? JointSenderCheck::Rounds::none
+                                                                    : JointSenderCheck::Rounds::any,
+                                         *now_known, outcome.joint_samples);
     }
     if (assembled.complete) {
-        const auto placed = place(*assembled.complete, *now_known);
+        const auto index = static_cast<std::size_t>(source - joint_sources_.begin());
+        const auto placed = place(index, *assembled.complete, *now_known);
         if (placed) {
-            joint_senders_.on_sample(assembled.complete->sequence, *placed, *now_known,
-                                     outcome.joint_samples);
+            source->senders.on_sample(assembled.complete->sequence, *placed, *now_known,
+                                      outcome.joint_samples);
         } else {
             outcome.joint_samples.push_back(placed);
         }
@@ -357,8 +381,10 @@ CanIntake::Rejection CanIntake::on(wire::NodeId node, const wire::JointState& me
     return assembled.is_repeated ? Rejection(FrameReason::joint_repeated) : std::nullopt;
 }
 
-Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& reading, HostTime now) const {
-    const auto sampled = clocks_.at(joint_source_).locate(reading.sampled, now);
+Result<JointMeasurement, JointReason> CanIntake::place(std::size_t source, const JointReading& reading,
+                                                       HostTime now) const {
+    const JointIntake& of = joint_sources_[source];
+    const auto sampled = clocks_.at(of.node).locate(reading.sampled, now);
     if (!sampled) {
         return unexpected(clock_reason<JointReason>(sampled.error()));
     }
@@ -367,7 +393,7 @@ Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& readi
     }
     // Frames of the next round arrive one round after this sample was taken, plus or minus a period of
     // jitter.
-    const bool may_be_mixed = !reading.is_in_order && now - sampled->time > joints_.round() * 7 / 8;
+    const bool may_be_mixed = !reading.is_in_order && now - sampled->time > of.assembler.round() * 7 / 8;
     if (may_be_mixed) return unexpected(JointReason::contradictory);
     if (now - sampled->time > config_.joint_age_max) {
         return unexpected(JointReason::too_old);
@@ -375,7 +401,10 @@ Result<JointMeasurement, JointReason> CanIntake::place(const JointReading& readi
     if (!reading.has_pace) {  // checked last: a source's first samples precede its clock's first exchange
         return unexpected(JointReason::too_frequent);
     }
-    return JointMeasurement{sampled->time, reading.position_rad, host_clock_.relocks()};
+    return JointMeasurement{.sampled = sampled->time,
+                            .position_rad = reading.position_rad,
+                            .relocks = host_clock_.relocks(),
+                            .source = static_cast<std::uint8_t>(source)};
 }
 
 }  // namespace octoskin

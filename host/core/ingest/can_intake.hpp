@@ -36,8 +36,6 @@ struct IntakeConfig {
     /// A joint sample that arrives later than this after its sampling time is not used. Smaller than the
     /// steps of the wall clock that make a range's time field ambiguous: host/core/time/README.md.
     Nanoseconds joint_age_max{50'000'000};
-    /// Joint states come from this machine only. Their sender is checked before they become frames.
-    bool has_local_joints = false;
 };
 
 /// Result of one frame: either the reason why it was not used, or any of the other fields.
@@ -90,22 +88,15 @@ class CanIntake {
     /// Host time at the newest time stamp; empty while unknown.
     [[nodiscard]] std::optional<HostTime> now() const { return host_clock_.now(); }
     /// Joint samples that have begun and not ended.
-    [[nodiscard]] std::uint64_t joint_samples_pending() const {
-        return joints_.pending() + joint_senders_.waiting();
-    }
+    [[nodiscard]] std::uint64_t joint_samples_pending() const;
     /// No frame arrives at present and the time is `now`: returns complete samples that need not wait longer.
-    [[nodiscard]] JointSenderCheck::Ended joints_due(HostTime now) {
-        JointSenderCheck::Ended ended;
-        joint_senders_.advance(now, ended);
-        return ended;
-    }
+    [[nodiscard]] JointSenderCheck::Ended joints_due(HostTime now);
     /// Returns all waiting complete samples, as if nothing more would arrive.
-    [[nodiscard]] JointSenderCheck::Ended settle_joints() {
-        JointSenderCheck::Ended ended;
-        joint_senders_.settle(ended);
-        return ended;
+    [[nodiscard]] JointSenderCheck::Ended settle_joints();
+    /// The senders under the node id of a source: its index in HostRig::joint_sources.
+    [[nodiscard]] const JointSenderCheck& joint_senders(std::size_t source) const {
+        return joint_sources_.at(source).senders;
     }
-    [[nodiscard]] const JointSenderCheck& joint_senders() const noexcept { return joint_senders_; }
 
     [[nodiscard]] const NodeRegistry& nodes() const noexcept { return nodes_; }
     [[nodiscard]] const RangeGate& ranges() const noexcept { return ranges_; }
@@ -150,7 +141,12 @@ class CanIntake {
                       FrameOutcome& outcome);
     [[nodiscard]] Result<RangeMeasurement, ReadingReason> measure(wire::NodeId node,
                                                                   const wire::RangeReading& reading);
-    [[nodiscard]] Result<JointMeasurement, JointReason> place(const JointReading& reading,
+    struct JointIntake {
+        wire::NodeId node = 0;
+        JointAssembler assembler;
+        JointSenderCheck senders;
+    };
+    [[nodiscard]] Result<JointMeasurement, JointReason> place(std::size_t source, const JointReading& reading,
                                                               HostTime now) const;
     void add_exchange(wire::NodeId node);
     void note_damage(const wire::CanFrame& frame, wire::DecodeError error);
@@ -162,7 +158,6 @@ class CanIntake {
     [[nodiscard]] std::optional<HostTime> steady_now() const;
 
     IntakeConfig config_;
-    wire::NodeId joint_source_;
     HostClockEstimate host_clock_;
     SyncExchange exchange_;
     std::map<wire::NodeId, ClockMap> clocks_;
@@ -173,13 +168,12 @@ class CanIntake {
     ReadingHold held_;
     NodeRegistry nodes_;
     RangeGate ranges_;
-    JointAssembler joints_;
-    JointSenderCheck joint_senders_;
-    std::uint64_t relocks_ = 0;            ///< of the host's clock, at the newest frame
-    WallTime stamp_;                       ///< of the current frame
-    std::uint64_t jumps_ = 0;              ///< of the time stamps, so far
-    bool is_time_known_ = false;           ///< whether the host time was known at the newest frame
-    std::optional<HostTime> known_since_;  ///< the host time after the last jump
+    std::vector<JointIntake> joint_sources_;  ///< in the rig's order
+    std::uint64_t relocks_ = 0;               ///< of the host's clock, at the newest frame
+    WallTime stamp_;                          ///< of the current frame
+    std::uint64_t jumps_ = 0;                 ///< of the time stamps, so far
+    bool is_time_known_ = false;              ///< whether the host time was known at the newest frame
+    std::optional<HostTime> known_since_;     ///< the host time after the last jump
 };
 
 }  // namespace octoskin

@@ -9,12 +9,14 @@
 
 namespace octoskin {
 
+/// A sample of one source of the rig.
 struct JointMeasurement {
     HostTime sampled;
     std::array<double, wire::kJointsPerSample> position_rad{};
     /// Relock count of the host's clock (HostClockEstimate) at this time. The distance of two times with
     /// different counts is not reliable.
     std::uint64_t relocks = 0;
+    std::uint8_t source = 0;  ///< index in HostRig::joint_sources
 };
 
 }  // namespace octoskin

@@ -1,5 +1,7 @@
 #include "host/core/ingest/node_registry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cstdio>
@@ -98,24 +100,26 @@ std::optional<NodeMismatch> NodeRecord::mismatch() const noexcept {
 
 NodeRegistry::NodeRegistry(const HostRig& rig) {
     for (const HostNode& node : rig.nodes) {
-        add(node, rig.joints);
+        const auto source = rig.joint_source_of(node.node_id);
+        add(node, source ? &rig.joint_sources[*source] : nullptr);
     }
-    if (!rig.joints.joints.empty() && !knows(rig.joints.node_id)) {
-        add({.node_id = rig.joints.node_id,
-             .name = "joints",
+    const bool is_one = rig.joint_sources.size() == 1;
+    for (const HostJointSource& source : rig.joint_sources) {
+        if (knows(source.node_id)) continue;
+        add({.node_id = source.node_id,
+             .name = is_one ? "joints" : fmt::format("joints of node {}", source.node_id),
              .node_hash = 0,
              .pinned_build_id = {},
              .sensors = {}},
-            rig.joints);
-        records_.at(rig.joints.node_id).has_block = false;
+            &source);
+        records_.at(source.node_id).has_block = false;
     }
 }
 
-void NodeRegistry::add(const HostNode& node, const HostJointSource& joints) {
-    const bool sends_joints = !joints.joints.empty() && node.node_id == joints.node_id;
+void NodeRegistry::add(const HostNode& node, const HostJointSource* joints) {
     records_[node.node_id].expected = node;
-    records_[node.node_id].sends_joints = sends_joints;
-    traffic_.emplace(node.node_id, NodeTraffic(node, sends_joints ? joints.rate_hz : 0.0));
+    records_[node.node_id].sends_joints = joints != nullptr;
+    traffic_.emplace(node.node_id, NodeTraffic(node, joints != nullptr ? joints->rate_hz : 0.0));
 }
 
 bool NodeRegistry::is_lost(const NodeRecord& record, std::optional<HostTime> now) const {

@@ -138,7 +138,8 @@ class NodeRegistry {
     [[nodiscard]] std::string describe(wire::NodeId node, std::optional<HostTime> now) const;
 
   private:
-    void add(const HostNode& node, const HostJointSource& joints);
+    /// `joints`: the source of joint states with its id; null: it is none.
+    void add(const HostNode& node, const HostJointSource* joints);
     [[nodiscard]] bool is_lost(const NodeRecord& record, std::optional<HostTime> now) const;
 
     std::map<wire::NodeId, NodeRecord> records_;

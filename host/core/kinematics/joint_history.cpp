@@ -8,7 +8,7 @@ namespace octoskin {
 
 JointHistory::JointHistory(std::span<const JointLimits> limits, const JointHistoryConfig& config)
     : limits_(limits.begin(), limits.end()), config_(config), ring_(config.capacity) {
-    assert(!limits_.empty() && limits_.size() <= kJointsMax);
+    assert(!limits_.empty() && limits_.size() <= kSourceJointsMax);
     assert(config_.capacity >= 2);
 }
 

@@ -1,5 +1,5 @@
-// The history of the joints: takes samples and returns positions at any instant between them, never beyond
-// them.
+// The history of the joints of one source: takes samples and returns positions at any instant between them,
+// never beyond them.
 #pragma once
 
 #include <array>
@@ -16,9 +16,11 @@
 
 namespace octoskin {
 
-/// Positions of all moved joints, radians (metres for a prismatic joint).
+inline constexpr std::size_t kSourceJointsMax = 7;  ///< the limit of a joint-state sample on the wire
+
+/// Positions of a source's joints, radians (metres for a prismatic joint).
 struct JointPosition {
-    std::array<double, kJointsMax> values{};
+    std::array<double, kSourceJointsMax> values{};
     std::size_t count = 0;
     [[nodiscard]] std::span<const double> span() const noexcept { return std::span(values).first(count); }
 };
@@ -56,7 +58,7 @@ struct JointGap {
 
 class JointHistory {
   public:
-    /// `limits`: one per joint, at most kJointsMax; `config.capacity` at least 2.
+    /// `limits`: one per joint, at most kSourceJointsMax; `config.capacity` at least 2.
     explicit JointHistory(std::span<const JointLimits> limits, const JointHistoryConfig& config = {});
 
     /// Adds a sample or returns the reason for the rejection. O(joints), no allocation.
@@ -79,6 +81,10 @@ class JointHistory {
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    /// Time of the newest sample; empty if there is none.
+    [[nodiscard]] std::optional<HostTime> newest() const noexcept {
+        return size_ > 0 ? std::optional(sample(size_ - 1).sampled) : std::nullopt;
+    }
     /// Visits all samples, the oldest first.
     void for_each(const std::function<void(HostTime, std::span<const double>)>& visit) const {
         for (std::size_t i = 0; i < size_; ++i) {
@@ -89,7 +95,7 @@ class JointHistory {
   private:
     struct Sample {
         HostTime sampled;
-        std::array<double, kJointsMax> values{};
+        std::array<double, kSourceJointsMax> values{};
     };
     [[nodiscard]] const Sample& sample(std::size_t age_rank) const noexcept;
     [[nodiscard]] std::size_t first_not_before(HostTime instant) const noexcept;

@@ -9,7 +9,7 @@ namespace octoskin {
 
 JointJump::JointJump(std::span<const JointLimits> limits, const JointJumpConfig& config)
     : limits_(limits.begin(), limits.end()), config_(config) {
-    assert(!limits_.empty() && limits_.size() <= kJointsMax);
+    assert(!limits_.empty() && limits_.size() <= kSourceJointsMax);
     assert(std::ranges::all_of(limits_, [](const JointLimits& limit) { return limit.velocity_max > 0.0; }));
 }
 

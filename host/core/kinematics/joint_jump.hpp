@@ -43,7 +43,7 @@ struct JointJumped {
 /// costs one second, and no track is excluded permanently.
 class JointJump {
   public:
-    /// `limits`: one per joint, at most kJointsMax, each with a velocity above 0 (asserted).
+    /// `limits`: one per joint, at most kSourceJointsMax, each with a velocity above 0 (asserted).
     explicit JointJump(std::span<const JointLimits> limits, const JointJumpConfig& config = {});
 
     enum class SampleFit : std::uint8_t {
@@ -66,7 +66,7 @@ class JointJump {
   private:
     struct Point {
         HostTime sampled;
-        std::array<double, kJointsMax> position{};
+        std::array<double, kSourceJointsMax> position{};
     };
     /// The largest movement of a joint between two points, as a multiple of the allowed movement; and that
     /// joint.

@@ -4,10 +4,13 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace octoskin {
 
-inline constexpr std::size_t kJointsMax = 7;  ///< the limit of a joint-state sample on the wire
+inline constexpr std::size_t kJointsMax = 32;  ///< of a robot
+/// A set of moved joints: bit i is joint i of all joint vectors.
+using JointSet = std::uint32_t;
 
 /// A point p moves by turn x p + shift per radian of the joint, or per metre of a prismatic joint. Zero: the
 /// joint does not move it. The owner states the frame.
@@ -25,7 +28,10 @@ using JointTwists = std::array<JointTwist, kJointsMax>;
 }
 
 [[nodiscard]] inline JointTwists placed(const Eigen::Isometry3d& T_a_b, JointTwists twists) {
-    for (JointTwist& twist : twists) twist = placed(T_a_b, twist);
+    for (JointTwist& twist : twists) {
+        const bool moves = !twist.turn.isZero(0.0) || !twist.shift.isZero(0.0);
+        if (moves) twist = placed(T_a_b, twist);
+    }
     return twists;
 }
 

@@ -238,6 +238,36 @@ void RobotModel::twists(LinkId link, std::span<const Eigen::Isometry3d> T_base_l
     }
 }
 
+JointSet RobotModel::joints_above(LinkId link) const noexcept {
+    JointSet above = 0;
+    for (std::size_t at = link; at != 0; at = impl_->links[at].parent)
+        if (impl_->links[at].joint != kNoJoint) above |= JointSet{1} << impl_->links[at].joint;
+    return above;
+}
+
+RobotModel::Whereabouts RobotModel::whereabouts(LinkId link, std::span<const Eigen::Isometry3d> T_base_link,
+                                                JointSet unknown) const noexcept {
+    const auto& links = impl_->links;
+    Whereabouts found;
+    double below_m = 0.0;
+    for (std::size_t at = link; at != 0; at = links[at].parent) {
+        const Link& moved = links[at];
+        if (moved.axis_to_link.getJoint().getType() == KDL::Joint::TransZ) {
+            const JointLimits& limits = impl_->limits[moved.joint];
+            const double farthest = std::max(std::abs(limits.min), std::abs(limits.max));
+            below_m += std::abs(moved.multiplier) * farthest + std::abs(moved.offset);
+        }
+        if (moved.joint != kNoJoint &&
+            (unknown >> moved.joint & 1U) != 0) {  // the last one found is the topmost
+            Eigen::Isometry3d T_base_axis = Eigen::Isometry3d::Identity();
+            to_eigen(to_kdl(T_base_link[moved.parent]) * moved.T_parent_axis, T_base_axis);
+            found = {T_base_axis.translation(), below_m};
+        }
+        below_m += moved.T_parent_axis.p.Norm();
+    }
+    return found;
+}
+
 std::vector<double> RobotModel::levers_m(std::span<const double> farthest) const {
     const auto& links = impl_->links;
     assert(farthest.size() == joint_count());

@@ -110,6 +110,20 @@ class RobotModel {
     void twists(LinkId link, std::span<const Eigen::Isometry3d> T_base_link,
                 std::span<JointTwist> twists) const noexcept;
 
+    /// The moved joints on the way from the base to a link, of those that mimic one the one.
+    [[nodiscard]] JointSet joints_above(LinkId link) const noexcept;
+
+    /// All places that a link can have, if nothing is known of some joints: its origin is within `radius_m`
+    /// of `centre`.
+    struct Whereabouts {
+        Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< base frame
+        double radius_m = 0.0;
+    };
+    /// `unknown` has a joint above the link (asserted). `T_base_link`: the result of forward() with any
+    /// position of the unknown joints. The bound is that of `levers_m`. O(links above), no allocation.
+    [[nodiscard]] Whereabouts whereabouts(LinkId link, std::span<const Eigen::Isometry3d> T_base_link,
+                                          JointSet unknown) const noexcept;
+
     /// By LinkId, metres: for all joint positions, the upper bound of the distance from a link's origin to
     /// the axis of any joint that turns it. For a prismatic joint the bound holds up to `farthest`
     /// (joint_count() long) from its zero. The bound is the sum of the lengths between the joints, not the

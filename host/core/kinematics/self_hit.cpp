@@ -24,6 +24,18 @@ void RobotBody::pose(std::span<const Eigen::Isometry3d> T_base_link, std::vector
     }
 }
 
+void RobotBody::pose(const RobotModel& model, std::span<const Eigen::Isometry3d> T_base_link,
+                     JointSet unknown, std::vector<PosedCapsule>& posed) const {
+    pose(T_base_link, posed);
+    for (std::size_t i = 0; i < capsules_.size(); ++i) {
+        const PosedCapsule& capsule = capsules_[i];
+        if ((model.joints_above(capsule.link) & unknown) == 0) continue;
+        const RobotModel::Whereabouts link = model.whereabouts(capsule.link, T_base_link, unknown);
+        const double reach_m = std::max(capsule.p_a.norm(), capsule.p_b.norm()) + capsule.radius_m;
+        posed[i] = {link.centre, link.centre, link.radius_m + reach_m, capsule.link};
+    }
+}
+
 std::optional<double> predict_self_hit(std::span<const PosedCapsule> capsules, const Eigen::Vector3d& origin,
                                        const Eigen::Vector3d& direction,
                                        std::span<const LinkId> ignored) noexcept {

@@ -22,6 +22,10 @@ class RobotBody {
     /// The capsules in the base frame, in the order given to build(). `T_base_link`: the result of
     /// RobotModel::forward(). `posed` is reused. About 10 ns per capsule.
     void pose(std::span<const Eigen::Isometry3d> T_base_link, std::vector<PosedCapsule>& posed) const;
+    /// The same without the positions of the joints in `unknown`: a capsule below one becomes the ball that
+    /// holds it in every position of the joints. `model`: that of build().
+    void pose(const RobotModel& model, std::span<const Eigen::Isometry3d> T_base_link, JointSet unknown,
+              std::vector<PosedCapsule>& posed) const;
 
   private:
     std::vector<PosedCapsule> capsules_;  ///< each in its link's frame

@@ -18,7 +18,7 @@ namespace octoskin {
 
 /// A joint sample beyond the limits of the robot description.
 struct JointBeyond {
-    std::size_t joint = 0;  ///< index in HostJointSource::joints
+    std::size_t joint = 0;  ///< index in HostJointSource::joints of the sample's source
     double position = 0.0;  ///< radians or metres
     JointLimits limits;
     HostTime sampled;

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
+#include <iterator>
 
 namespace octoskin {
 namespace {
@@ -18,6 +20,16 @@ std::string beyond_text(const JointBeyond& beyond, std::span<const std::string> 
     return fmt::format(
         "joint samples beyond the limits are not used: {} is {:.6g}; its limits are {:.6g} to {:.6g}",
         names[beyond.joint], beyond.position, beyond.limits.min, beyond.limits.max);
+}
+
+std::string unknown_text(std::span<const std::uint64_t> times, std::span<const std::string> names) {
+    assert(times.size() == names.size());
+    if (times.empty() || std::ranges::count(times, times.front()) == std::ssize(times)) return {};
+    const std::uint64_t most = std::ranges::max(times);
+    std::string text;
+    for (std::size_t i = 0; i < times.size(); ++i)
+        if (times[i] == most) text += fmt::format("{}{}", text.empty() ? "" : ", ", names[i]);
+    return fmt::format(" No position was known of {} ({} times).", text, most);
 }
 
 std::string gap_text(const JointGap& gap, const JointHistoryConfig& config) {

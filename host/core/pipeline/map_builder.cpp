@@ -9,7 +9,15 @@ namespace octoskin {
 namespace {
 
 ReadingReason reason_of(BeamFault fault) {
-    return fault == BeamFault::self_hit ? ReadingReason::self_hit : ReadingReason::beam_not_valid;
+    switch (fault) {
+        case BeamFault::self_hit:
+            return ReadingReason::self_hit;
+        case BeamFault::unplaced:
+            return ReadingReason::joints_missing;
+        case BeamFault::not_finite:
+            break;
+    }
+    return ReadingReason::beam_not_valid;
 }
 
 ReadingReason reason_of(BeamRejection rejection) {
@@ -66,7 +74,6 @@ Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotM
                                                       const JointHistoryConfig& joints,
                                                       const std::vector<MapFeed>& maps,
                                                       unsigned depth_threads) {
-    assert(robot.joint_count() == rig.joints.joints.size());
     auto beams = BeamBuilder::build(rig, robot,
                                     {.removes_robot = mapping.removes_robot_from_ranges,
                                      .no_return_clear_m = mapping.no_return_clear_m,

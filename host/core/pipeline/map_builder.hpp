@@ -32,7 +32,7 @@ namespace octoskin {
 class MapBuilder {
   public:
     /// Refuses, by name, a link of the rig that the robot does not have. `robot` must move the joints of
-    /// `rig.joints.joints` in that order (asserted: equal count). `depth_threads`: see DepthIntegrator.
+    /// `rig.joint_names()` in that order (asserted: equal count). `depth_threads`: see DepthIntegrator.
     [[nodiscard]] static Result<MapBuilder, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                    const MappingConfig& mapping,
                                                                    const JointHistoryConfig& joints,
@@ -110,16 +110,9 @@ class MapBuilder {
     [[nodiscard]] bool depth_needs_robot() const noexcept { return depth_stage_->needs_robot(); }
     /// True if the joint samples around `instant` have arrived or will never come.
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return robot_.is_settled(instant); }
-    /// Limits of the joints of a sample, in its order.
-    [[nodiscard]] std::span<const JointLimits> joint_limits() const noexcept {
-        return robot_.robot().limits();
-    }
-    /// The newest gap between joint samples without a pose; empty if there was none.
-    [[nodiscard]] const std::optional<JointGap>& newest_joint_gap() const noexcept {
-        return robot_.newest_gap();
-    }
-    [[nodiscard]] std::uint64_t joint_gaps_in_a_row() const noexcept { return robot_.gaps_in_a_row(); }
-    /// Visits all joint samples from which poses are still interpolated, the oldest first.
+    /// The robot's motion: gaps between joint samples, joints without a position.
+    [[nodiscard]] const RobotTracker& robot() const noexcept { return robot_; }
+    /// Visits all joint samples from which poses are still interpolated, the oldest of a source first.
     void for_each_joint_sample(const std::function<void(const JointMeasurement&)>& visit) const {
         robot_.for_each_sample(visit);
     }

@@ -35,7 +35,7 @@ std::optional<ReadingReason> MeasurementQueue::put(const RangeMeasurement& measu
 }
 
 std::optional<JointReason> MeasurementQueue::put(const JointMeasurement& joints) {
-    switch (joint_samples_.push({joints.sampled, kCameraSource}, joints)) {
+    switch (joint_samples_.push({joints.sampled, {.sensor = joints.source}}, joints)) {
         case Pushed<JointMeasurement>::waits:
             return std::nullopt;
         case Pushed<JointMeasurement>::refused:

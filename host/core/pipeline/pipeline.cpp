@@ -20,6 +20,22 @@ IntakeConfig intake_config(const PipelineConfig& config, const MappingConfig& ma
     return intake;
 }
 
+/// Samples of all sources wait in one buffer.
+QueueLimits limits_of(const HostRig& rig, QueueLimits limits) {
+    limits.joint_samples *= std::max(rig.joint_sources.size(), std::size_t{1});
+    return limits;
+}
+
+std::vector<JointGate> gates_of(const HostRig& rig, std::span<const JointLimits> limits, double tolerance) {
+    std::vector<JointGate> gates;
+    std::size_t first = 0;
+    for (const HostJointSource& source : rig.joint_sources) {
+        gates.emplace_back(limits.subspan(first, source.joints.size()), tolerance);
+        first += source.joints.size();
+    }
+    return gates;
+}
+
 }  // namespace
 
 Result<Pipeline, RobotModelFault> Pipeline::build(const HostRig& rig, RobotModel robot,
@@ -39,8 +55,8 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
     : config_(config),
       intake_(rig, intake_config(config, mapping)),
       marks_(config.begin),
-      waiting_(config.release, config.waiting_max),
-      joint_gate_(builder.joint_limits(), config.joints.limit_tolerance),
+      waiting_(config.release, limits_of(rig, config.waiting_max)),
+      joint_gates_(gates_of(rig, builder.robot().robot().limits(), config.joints.limit_tolerance)),
       builder_(std::move(builder)) {
     if (rig.camera) {
         camera_patience_ = Nanoseconds{std::llround(3e9 / rig.camera->rate_hz)};
@@ -84,7 +100,7 @@ void Pipeline::on_can(const wire::CanFrame& frame, WallTime stamp) {
 void Pipeline::on_jump(const TimeJump::Jump& jump) {
     settle_waiting();
     builder_.clear_motion(jump.by);
-    joint_gate_.forget();
+    for (JointGate& gate : joint_gates_) gate.forget();
     waiting_.forget_time(jump.begin);
     just_used_.clear();  // from before the jump: their age is unknown
 }
@@ -204,7 +220,7 @@ bool Pipeline::is_placed(const ReleaseKey& key, bool is_depth) const {
 
 void Pipeline::release_joints(HostTime until) {
     while (const auto joints = waiting_.take_joints(until)) {
-        const auto checked = joint_gate_.check(*joints);
+        const auto checked = joint_gates_.at(joints->source).check(*joints);
         inputs_.joint_samples.settle(checked ? builder_.add(*joints) : checked);
     }
 }

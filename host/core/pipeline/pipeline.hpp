@@ -61,7 +61,7 @@ struct PipelineInputs {
 class Pipeline {
   public:
     /// Refuses, by name, a link of the rig that the robot does not have. `robot` must move the joints of
-    /// `rig.joints.joints` in that order (asserted: equal count).
+    /// `rig.joint_names()` in that order (asserted: equal count).
     [[nodiscard]] static Result<Pipeline, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                  const MappingConfig& mapping,
                                                                  const PipelineConfig& config = {});
@@ -140,8 +140,8 @@ class Pipeline {
     /// True if the host time is known and three of the rig's frame periods have passed without a depth frame.
     [[nodiscard]] bool is_camera_stale() const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
-    /// The check that rejects positions that the arm cannot have.
-    [[nodiscard]] const JointGate& joint_gate() const noexcept { return joint_gate_; }
+    /// The check of a source's samples that rejects positions that the arm cannot have.
+    [[nodiscard]] const JointGate& joint_gate(std::size_t source) const { return joint_gates_.at(source); }
     /// Null if the rig has no camera.
     [[nodiscard]] const DepthStage* depth_stage() const noexcept { return builder_.depth_stage(); }
     /// Converts measurements to maps. A recording that begins now also needs the joint samples stored there.
@@ -185,7 +185,7 @@ class Pipeline {
     MeasurementQueue waiting_;
     HostTime released_until_;
     // Placement, and the maps' voxels.
-    JointGate joint_gate_;
+    std::vector<JointGate> joint_gates_;  ///< one for each source of joint states
     MapBuilder builder_;
     DepthBeside beside_;
 

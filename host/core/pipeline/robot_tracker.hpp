@@ -1,6 +1,7 @@
 // Computes the pose of the whole robot at any instant from joint samples.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -17,46 +18,81 @@
 
 namespace octoskin {
 
+/// Each source of joint states has a history of its own: a pose has each joint at the pose's instant,
+/// whatever the sources' rates. Joints of a source without samples around the instant are unknown
+/// (`RobotPose::unknown`).
 class RobotTracker {
   public:
-    /// Refuses, by name, a body capsule on a link that the robot does not have.
+    /// Refuses, by name, a body capsule on a link that the robot does not have. `robot` must move the joints
+    /// of `rig.joint_names()` in that order (asserted: equal count).
     [[nodiscard]] static Result<RobotTracker, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                      const JointHistoryConfig& config);
 
-    /// Takes joint samples in the order of their times.
+    /// Takes joint samples in the order of their times. The source must be one of the rig (asserted).
     [[nodiscard]] Status<JointReason> add(const JointMeasurement& joints);
 
     /// The time continues from before the newest sample: clears all samples.
-    void forget() noexcept { joints_.forget(); }
+    void forget() noexcept;
 
     /// True if the samples around `instant` have arrived or will never come: `at` then always gives the same
-    /// result.
-    [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return joints_.is_settled(instant); }
+    /// result. A source counts as silent once another one is ahead of it by twice of what is bridged.
+    [[nodiscard]] bool is_settled(HostTime instant) const noexcept;
 
-    /// The robot at `instant`, or null if no samples surround it closely enough. Valid until the next call.
-    /// About 2 us.
+    /// The robot at `instant`, or null if no source has samples that surround it closely enough. Valid until
+    /// the next call. About 2 us.
     [[nodiscard]] const RobotPose* at(HostTime instant);
 
-    /// The newest gap between samples without a pose; empty if there was none.
-    [[nodiscard]] const std::optional<JointGap>& newest_gap() const noexcept { return newest_gap_; }
+    /// A source's newest gap between samples without a pose; empty if there was none.
+    [[nodiscard]] const std::optional<JointGap>& newest_gap(std::size_t source) const {
+        return sources_.at(source).newest_gap;
+    }
     /// Number of such gaps in a row, including the newest, each within 3 s of the one before. A single gap is
     /// an interruption; many gaps show that the source is too slow.
-    [[nodiscard]] std::uint64_t gaps_in_a_row() const noexcept { return gaps_in_a_row_; }
+    [[nodiscard]] std::uint64_t gaps_in_a_row(std::size_t source) const {
+        return sources_.at(source).gaps_in_a_row;
+    }
+    /// Poses in which a joint was unknown while others were not, by joint.
+    [[nodiscard]] std::span<const std::uint64_t> times_unknown() const noexcept {
+        return std::span(times_unknown_).first(robot_.joint_count());
+    }
 
-    /// Visits every stored sample, the oldest first.
+    /// Time of the newest sample of a source; empty if it has none.
+    [[nodiscard]] std::optional<HostTime> newest_sample(std::size_t source) const {
+        return sources_.at(source).history.newest();
+    }
+    struct NewestPosition {
+        std::vector<double> position;  ///< of all joints
+        HostTime oldest;               ///< of the sources' newest samples
+    };
+    /// From the newest sample of each source; empty if one has none.
+    [[nodiscard]] std::optional<NewestPosition> newest() const;
+
+    /// Visits every stored sample, the oldest of a source first.
     void for_each_sample(const std::function<void(const JointMeasurement&)>& visit) const;
 
     [[nodiscard]] const RobotModel& robot() const noexcept { return robot_; }
 
   private:
-    void note_gap(const JointGap& gap);
-    RobotTracker(RobotModel robot, RobotBody body, const JointHistoryConfig& config);
+    struct Source {
+        std::size_t first = 0;  ///< of its joints, in all joint vectors
+        std::size_t count = 0;
+        JointHistory history;
+        std::optional<JointGap> newest_gap = {};
+        std::uint64_t gaps_in_a_row = 0;
+
+        [[nodiscard]] JointSet joints() const noexcept;
+        void note_gap(const JointGap& gap);
+    };
+    RobotTracker(const HostRig& rig, RobotModel robot, RobotBody body, const JointHistoryConfig& config);
+    /// Fills in the positions at an instant; the result has the joints without one.
+    [[nodiscard]] JointSet look_up(HostTime instant, std::span<double> position);
+    void note_unknown(JointSet unknown);
 
     RobotModel robot_;
     RobotBody body_;
-    JointHistory joints_;
-    std::optional<JointGap> newest_gap_;
-    std::uint64_t gaps_in_a_row_ = 0;
+    JointHistoryConfig config_;
+    std::vector<Source> sources_;
+    std::array<std::uint64_t, kJointsMax> times_unknown_{};
     RobotPose pose_;
 };
 

@@ -44,11 +44,13 @@ struct HostNode {
     std::uint8_t aux_every = 0;                    ///< RANGE_AUX with every n-th reading; 0: never
 };
 
-/// The sender of joint states. It answers SYNC as every node does. It need not be one of `HostRig::nodes`.
+/// A sender of joint states. It answers SYNC as every node does. It need not be one of `HostRig::nodes`.
 struct HostJointSource {
     wire::NodeId node_id = 0;
     std::vector<std::string> joints;  ///< URDF joint names in the order on the wire, 1..7
     double rate_hz = 100.0;
+    /// They come from this machine, which has the bus's clock. No other sender can use their node id.
+    bool is_local = false;
 };
 
 struct HostCamera {
@@ -98,7 +100,7 @@ struct HostRig {
     std::uint32_t rig_hash = 0;
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
     std::vector<HostNode> nodes;  ///< sensor nodes, unique ids
-    HostJointSource joints;
+    std::vector<HostJointSource> joint_sources;  ///< unique ids and joints, at most kJointsMax in all
     std::optional<HostCamera> camera;
     std::vector<LinkCapsule> body;
     /// Space that only the robot can occupy: without padding, and inside each element of the robot
@@ -112,6 +114,26 @@ struct HostRig {
     double range_self_margin_m = 0.12;  ///< ranges beyond (predicted self-hit - this) are the robot
     HostRangeLimits range_limits;
     wire::BitRates bit_rates;  ///< of the CAN bus
+
+    /// The joints of all sources, in their order: the order of all joint vectors.
+    [[nodiscard]] std::vector<std::string> joint_names() const {
+        std::vector<std::string> names;
+        for (const HostJointSource& source : joint_sources)
+            names.insert(names.end(), source.joints.begin(), source.joints.end());
+        return names;
+    }
+    /// The number of joints of each source.
+    [[nodiscard]] std::vector<std::size_t> joint_counts() const {
+        std::vector<std::size_t> counts;
+        for (const HostJointSource& source : joint_sources) counts.push_back(source.joints.size());
+        return counts;
+    }
+    /// The index of a source in `joint_sources`; empty if the node is none.
+    [[nodiscard]] std::optional<std::size_t> joint_source_of(wire::NodeId node) const {
+        for (std::size_t i = 0; i < joint_sources.size(); ++i)
+            if (joint_sources[i].node_id == node) return i;
+        return std::nullopt;
+    }
 };
 
 }  // namespace octoskin

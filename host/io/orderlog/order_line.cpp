@@ -8,6 +8,8 @@
 #include <iterator>
 #include <limits>
 
+#include "host/core/kinematics/joint_twist.hpp"
+
 namespace octoskin::orderlog {
 namespace {
 
@@ -38,6 +40,20 @@ class Words {
         return to_crc(word);
     }
     std::uint32_t crc() { return to_crc(next()); }
+    /// "7+2": the joints of each source.
+    std::vector<std::size_t> joint_counts() {
+        std::vector<std::size_t> counts;
+        std::size_t sum = 0;
+        for (std::string_view rest = next(); is_sound_;) {
+            const std::size_t end = rest.find('+');
+            counts.push_back(to_number<std::size_t>(rest.substr(0, end), wire::kJointsPerSample));
+            sum += counts.back();
+            is_sound_ = is_sound_ && counts.back() > 0 && sum <= kJointsMax;
+            if (end == std::string_view::npos) break;
+            rest = rest.substr(end + 1);
+        }
+        return counts;
+    }
     /// All words were as requested, and none is left.
     [[nodiscard]] bool is_sound() const { return is_sound_ && is_over_; }
 
@@ -83,10 +99,11 @@ std::string crc_or_none(const std::optional<std::uint32_t>& crc) {
     return crc ? fmt::format("{:08x}", *crc) : std::string(kNone);
 }
 
-std::string format(const JointMeasurement& joints, std::size_t count) {
-    assert(count <= joints.position_rad.size());
-    std::string line = fmt::format("J {}", joints.sampled.ns);
-    for (std::size_t i = 0; i < count; ++i) {
+std::string format(const JointMeasurement& joints, std::span<const std::size_t> counts) {
+    assert(joints.source < counts.size() && counts[joints.source] <= joints.position_rad.size());
+    std::string line = counts.size() > 1 ? fmt::format("J {} {}", joints.source, joints.sampled.ns)
+                                         : fmt::format("J {}", joints.sampled.ns);
+    for (std::size_t i = 0; i < counts[joints.source]; ++i) {
         fmt::format_to(std::back_inserter(line), " {}", joints.position_rad[i]);
     }
     return line + '\n';
@@ -104,9 +121,12 @@ std::string format(const DepthCommit& frame) {
     return fmt::format("D {} {}\n", index, frame.captured.ns);
 }
 
-JointMeasurement parse_joints(Words& words, std::size_t count) {
-    JointMeasurement joints{{words.number(kTimeMax)}, {}};
-    for (std::size_t i = 0; i < count; ++i) joints.position_rad[i] = words.number<double>();
+JointMeasurement parse_joints(Words& words, std::span<const std::size_t> counts) {
+    JointMeasurement joints;
+    if (counts.size() > 1) joints.source = words.number(static_cast<std::uint8_t>(counts.size() - 1));
+    joints.sampled = {words.number(kTimeMax)};
+    if (joints.source >= counts.size()) return joints;  // not sound
+    for (std::size_t i = 0; i < counts[joints.source]; ++i) joints.position_rad[i] = words.number<double>();
     return joints;
 }
 
@@ -132,14 +152,23 @@ DepthCommit parse_depth(Words& words) {
 
 }  // namespace
 
+std::string joints_text(std::span<const std::size_t> joints) {
+    std::string text;
+    for (const std::size_t count : joints) {
+        if (!text.empty()) text += '+';
+        text += std::to_string(count);
+    }
+    return text;
+}
+
 std::string format_header(const Header& header) {
     const auto& state = header.first_state;
     return fmt::format("{} rig {:08x} mapping {:08x} joints {} first {}{}\n", state ? kSchema : kSchemaBefore,
-                       header.rig_hash, header.mapping_crc32, header.joints, crc_or_none(header.first_map),
-                       state ? fmt::format(" state {:08x}", *state) : "");
+                       header.rig_hash, header.mapping_crc32, joints_text(header.joints),
+                       crc_or_none(header.first_map), state ? fmt::format(" state {:08x}", *state) : "");
 }
 
-std::string format_commit(const Commit& commit, std::size_t joints) {
+std::string format_commit(const Commit& commit, std::span<const std::size_t> joints) {
     if (const auto* const sample = std::get_if<JointMeasurement>(&commit)) return format(*sample, joints);
     if (const auto* const reading = std::get_if<RangeMeasurement>(&commit)) return format(*reading);
     if (const auto* const passed = std::get_if<WaitCommit>(&commit)) return format(*passed);
@@ -162,18 +191,18 @@ std::optional<Header> parse_header(std::string_view line) {
     words.expect("mapping");
     header.mapping_crc32 = words.crc();
     words.expect("joints");
-    header.joints = words.number<std::size_t>(wire::kJointsPerSample);
+    header.joints = words.joint_counts();
     words.expect("first");
     header.first_map = words.optional_crc();
     if (!is_of_before) {
         words.expect("state");
         header.first_state = words.crc();
     }
-    if (!words.is_sound() || header.joints == 0) return std::nullopt;
+    if (!words.is_sound()) return std::nullopt;
     return header;
 }
 
-std::optional<Commit> parse_commit(std::string_view line, std::size_t joints) {
+std::optional<Commit> parse_commit(std::string_view line, std::span<const std::size_t> joints) {
     if (line.size() < 2 || line[1] != ' ') return std::nullopt;
     Words words(line.substr(2));
     std::optional<Commit> commit;

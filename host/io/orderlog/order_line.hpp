@@ -1,7 +1,9 @@
 // One line of order.log:
 //
 //     octoskin-order/2 rig 1a2b3c4d mapping 1a2b3c4d joints 7 first 1a2b3c4d state 1a2b3c4d    the first line
-//     J 71000000000 0.1 -0.2 0 0 0 0 0        joint sample: taken at (ns), radians, one for each of `joints`
+//     J 71000000000 0.1 -0.2 0 0 0 0 0        joint sample: taken at (ns), radians, one for each of `joints`.
+//                                             With several sources, `joints 7+2`, its source's index, from 0,
+//                                             is before the time
 //     R 2 3 0 71003000000 0.734 0.021         reading: node, sensor, zone, captured at (ns), range and sigma
 //                                             in metres; range "-": no target
 //     D 12 71010000000                        depth frame: its index in depth.oni, from 0, captured at (ns);
@@ -20,8 +22,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/result.hpp"
 #include "host/core/pipeline/commit.hpp"
@@ -31,7 +35,7 @@ namespace octoskin::orderlog {
 struct Header {
     std::uint32_t rig_hash = 0;
     std::uint32_t mapping_crc32 = 0;
-    std::size_t joints = 0;                         ///< 1..7
+    std::vector<std::size_t> joints = {};           ///< of each source of the rig, 1..7 each
     std::optional<std::uint32_t> first_map;         ///< CRC-32 of first.ot; empty: the map was empty
     std::optional<std::uint32_t> first_state = {};  ///< CRC-32 of first.snapshot; empty: version 1
     friend bool operator==(const Header&, const Header&) = default;
@@ -49,9 +53,12 @@ struct Trailer {
     friend bool operator==(const Trailer&, const Trailer&) = default;
 };
 
-/// Each with its line feed. A header without `first_state` is of version 1.
+/// "7+2": the joints of each source.
+[[nodiscard]] std::string joints_text(std::span<const std::size_t> joints);
+
+/// Each with its line feed. A header without `first_state` is of version 1. `joints`: those of the header.
 [[nodiscard]] std::string format_header(const Header& header);
-[[nodiscard]] std::string format_commit(const Commit& commit, std::size_t joints);
+[[nodiscard]] std::string format_commit(const Commit& commit, std::span<const std::size_t> joints);
 [[nodiscard]] std::string format_trailer(const Trailer& trailer);
 
 /// Well above the longest line of any kind.
@@ -59,7 +66,7 @@ inline constexpr std::size_t kLineBytesMax = 1024;
 
 /// `line` has no line feed. Empty if it is not such a line. Safe for any bytes.
 [[nodiscard]] std::optional<Header> parse_header(std::string_view line);
-[[nodiscard]] std::optional<Commit> parse_commit(std::string_view line, std::size_t joints);
+[[nodiscard]] std::optional<Commit> parse_commit(std::string_view line, std::span<const std::size_t> joints);
 [[nodiscard]] std::optional<Trailer> parse_trailer(std::string_view line);
 
 }  // namespace octoskin::orderlog

@@ -63,7 +63,9 @@ HostRig to_host(const rig::Rig& rig) {
     host.rig_hash = rig::rig_hash(rig);
     host.T_map_base = rig.T_map_base;
     for (const rig::Node& node : rig.nodes) host.nodes.push_back(to_host(node));
-    host.joints = {rig.joints.node_id, rig.joints.joints, rig.joints.rate_hz};
+    for (const rig::JointSource& source : rig.joint_sources)
+        host.joint_sources.push_back(
+            {source.node_id, source.joints, source.rate_hz, source.way == rig::JointWay::socket});
     host.bit_rates = {.nominal = rig.bus.nominal_bitrate, .data = rig.bus.data_bitrate};
     if (rig.camera) host.camera = host_camera(*rig.camera);
     host.links_ignored_by_sensors = rig.links_ignored_by_sensors;
@@ -121,7 +123,7 @@ HostCamera host_camera(const rig::Camera& camera) {
 }
 
 Result<HostSetup, Error> make_host_setup(const rig::Rig& rig) {
-    auto robot = read_robot_model(rig.urdf, rig.base_link, rig.joints.joints);
+    auto robot = read_robot_model(rig.urdf, rig.base_link, rig.joint_names());
     if (!robot) return unexpected(robot.error());
     const auto capsules = rig::padded_body(rig);
     if (!capsules) return unexpected(capsules.error());
@@ -158,8 +160,9 @@ Result<HostSetup, Error> make_host_setup(const rig::Rig& rig) {
     }
     if (auto warning = warning_of(host.links_without_body); !warning.empty())
         warnings.push_back(std::move(warning));
-    if (auto warning = rate_warning(rig.joints.rate_hz); !warning.empty())
-        warnings.push_back(std::move(warning));
+    for (const rig::JointSource& source : rig.joint_sources)
+        if (auto warning = rate_warning(source.rate_hz); !warning.empty())
+            warnings.push_back(std::move(warning));
     return HostSetup{std::move(host), std::move(robot).value(), std::move(warnings), std::move(notes)};
 }
 

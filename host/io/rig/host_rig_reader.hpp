@@ -14,7 +14,7 @@ namespace octoskin {
 /// The rig in the host's types, and its robot.
 struct HostSetup {
     HostRig rig;
-    RobotModel robot;  ///< from rig.base_link; joint vectors in the order of rig.joints.joints
+    RobotModel robot;  ///< from rig.base_link; joint vectors in the order of rig.joint_names()
     /// Valid but probably unintended settings, one sentence each, for the user.
     std::vector<std::string> warnings;
     /// Valid settings that the user may want to check, likewise.

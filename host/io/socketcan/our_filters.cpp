@@ -9,7 +9,7 @@ std::vector<IdFilter> our_filters(const HostRig& rig) {
     std::vector<IdFilter> filters;
     filters.push_back({wire::kHostId, kNodeBits});  // SYNC, FOLLOW_UP and MARK of any host
     for (const HostNode& node : rig.nodes) filters.push_back({node.node_id, kNodeBits});
-    filters.push_back({rig.joints.node_id, kNodeBits});
+    for (const HostJointSource& source : rig.joint_sources) filters.push_back({source.node_id, kNodeBits});
     filters.push_back({wire::can_id(wire::FrameType::heartbeat, 0), wire::kStandardIdMax & ~kNodeBits});
     return filters;
 }

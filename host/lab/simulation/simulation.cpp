@@ -57,7 +57,7 @@ Result<Inputs, AppError> read_inputs(const SimulationRequest& request) {
     if (!given) return unexpected(given.error());
     auto rig = with_fitted_body(*given, request.robot.packages, BodyFitting::if_needed);
     if (!rig) return unexpected(rig.error());
-    auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joints.joints);
+    auto arm = sim::Arm::read(rig->urdf, rig->base_link, rig->joint_names());
     if (!arm) return unexpected(reading_error(ExitCode::bad_config, arm.error()));
     auto body = true_body(*given, request.robot.packages);
     if (!body) return unexpected(body.error());

@@ -35,7 +35,7 @@ Beams beams_at(const sim::World& world, const rig::Rig& rig, const sim::Arm::Lin
 void dress_with_robot(const sim::World& world, const sim::Scenario& scenario, const rig::Rig& rig,
                       report::SceneDressing& dressing) {
     const auto lock = lock_reading();
-    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints);
+    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joint_names());
     const auto capsules = rig::real_body(rig);
     if (!arm || !capsules)
         return;  // not expected: the same files were read before; the picture is then drawn without the robot

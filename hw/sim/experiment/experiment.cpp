@@ -80,14 +80,20 @@ class RigInOneProcess {
             };
             boards_.push_back(make_board(input, node.config, clock, scene));
         }
-        const JointPositions positions = [&trajectory](SimTime time) {
-            const Eigen::VectorXd q = trajectory.at(time);
-            return std::vector<double>(q.data(), q.data() + q.size());
-        };
-        joints_ = std::make_unique<JointNode>(input.rig.joints.node_id, input.rig.joints.rate_hz,
-                                              draw_clock(random, false), positions);
-        joint_transmitter_ = &bus_.attach(
-            [this](const wire::CanFrame& frame, SimTime end) { joints_->on_frame(frame, end); }, 16);
+        std::size_t first = 0;
+        for (const rig::JointSource& source : input.rig.joint_sources) {
+            const JointPositions positions = [&trajectory, first, count = source.joints.size()](SimTime time) {
+                const Eigen::VectorXd q = trajectory.at(time);
+                return std::vector<double>(q.data() + first, q.data() + first + count);
+            };
+            auto node = std::make_unique<JointNode>(source.node_id, source.rate_hz, draw_clock(random, false),
+                                                    positions);
+            const auto on_frame = [node = node.get()](const wire::CanFrame& frame, SimTime end) {
+                node->on_frame(frame, end);
+            };
+            joints_.push_back({std::move(node), &bus_.attach(on_frame, 16)});
+            first += source.joints.size();
+        }
     }
 
     /// Queues a mark to send at `at`.
@@ -100,7 +106,8 @@ class RigInOneProcess {
             send_marks();
             for (const auto& board : boards_) board->begin_turn(present_.time);
             for (const auto& board : boards_) board->finish_turn();
-            send_all(joints_->poll(present_.time), *joint_transmitter_);
+            for (const JointSender& sender : joints_)
+                send_all(sender.node->poll(present_.time), *sender.transmitter);
             send_all(master_.poll(present_.time), *host_);
         }
     }
@@ -192,8 +199,11 @@ class RigInOneProcess {
     SyncMaster master_;
     node::CanTransmitter* host_ = nullptr;
     std::vector<std::unique_ptr<RigBoard>> boards_;
-    std::unique_ptr<JointNode> joints_;
-    node::CanTransmitter* joint_transmitter_ = nullptr;
+    struct JointSender {
+        std::unique_ptr<JointNode> node;
+        node::CanTransmitter* transmitter = nullptr;
+    };
+    std::vector<JointSender> joints_;  ///< one for each source of the rig
     std::deque<ScheduledMark> marks_;
     ExperimentSummary summary_;
 };

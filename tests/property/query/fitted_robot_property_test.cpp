@@ -30,7 +30,8 @@ rig::Rig fitted_rig(const std::filesystem::path& urdf) {
     rig::Rig rig;
     rig.urdf = FilePlace::held(fit_robot(text, {}).value().urdf, urdf);
     rig.base_link = text.shapes.base_link;
-    for (const rig::ShapedJoint& joint : text.shapes.joints) rig.joints.joints.push_back(joint.name);
+    rig::JointSource& source = rig.joint_sources.emplace_back();
+    for (const rig::ShapedJoint& joint : text.shapes.joints) source.joints.push_back(joint.name);
     return rig;
 }
 
@@ -106,7 +107,7 @@ TEST(FittedRobotProperty, a_query_answers_as_fcl_does) {
     const testing_support::OwnArm own;
     const rig::Rig rig = fitted_rig(own.urdf());
     const auto capsules = rig::real_body(rig).value();
-    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints).value();
+    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joint_names()).value();
     const HostSetup setup = make_host_setup(rig).value();
     const RobotQuery query = RobotQuery::build(setup.rig, setup.robot, {.ignores_unmoved = false}).value();
     ASSERT_GT(capsules.size(), 15U);

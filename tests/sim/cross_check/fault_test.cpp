@@ -39,7 +39,8 @@ std::optional<KeptRange> sound(const Image& image, std::size_t, SensorNumber sen
 
 SensorJudge judge_of_rig() {
     static constexpr std::size_t kNodes[] = {kPerNode, kPerNode};
-    return SensorJudge(kNodes);
+    constexpr std::size_t kJoints = 7;
+    return SensorJudge(kNodes, kJoints);
 }
 
 struct Outcome {

@@ -69,7 +69,7 @@ sim::Trajectory revolutions_of(const sim::Arm& arm, sim::Scenario& scenario, std
 /// The world, the arm and the camera, which all rigs share.
 struct Stage {
     Stage(const rig::Rig& rig, const KeptChoice& choice)
-        : arm(needed(sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints))),
+        : arm(needed(sim::Arm::read(rig.urdf, rig.base_link, rig.joint_names()))),
           body(needed(rig::read_capsules(rig.urdf, {}))),
           scenario(needed(sim::read_scenario(kHw / ".." / choice.scenario))),
           world(needed(sim::World::read(scenario.world))),

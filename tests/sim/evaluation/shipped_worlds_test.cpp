@@ -63,7 +63,7 @@ class ShippedWorld : public testing::TestWithParam<Shipped> {
         read_or_fail(sim::read_scenario(kHw / "worlds" / (GetParam().scenario + ".scenario.yaml")));
     const sim::World world_ = read_or_fail(sim::World::read(scenario_.world));
     const rig::Rig rig_ = read_or_fail(rig::read_rig(kHw / "rigs" / (GetParam().rig + ".yaml")));
-    const sim::Arm arm_ = read_or_fail(sim::Arm::read(rig_.urdf, rig_.base_link, rig_.joints.joints));
+    const sim::Arm arm_ = read_or_fail(sim::Arm::read(rig_.urdf, rig_.base_link, rig_.joint_names()));
 };
 
 class WorldBeforeCamera : public ShippedWorld {};

@@ -99,7 +99,7 @@ class BoxBeforeRangeSensor : public testing::TestWithParam<Tested> {
   protected:
     BoxBeforeRangeSensor()
         : rig_(rig::read_rig(kRigs / GetParam().rig).value()),
-          arm_(sim::Arm::read(rig_.urdf, rig_.base_link, rig_.joints.joints).value()),
+          arm_(sim::Arm::read(rig_.urdf, rig_.base_link, rig_.joint_names()).value()),
           scenario_(sim::read_scenario(kScenario).value()),
           trajectory_(sim::Trajectory::circle(arm_, scenario_.motion, sim::SimTime{kArmStarts_us}).value()) {}
 

@@ -93,7 +93,7 @@ constexpr double kAttackEndS = 9.0;
 
 Forged forge(const Attack& attack) {
     const std::vector<StampedFrame>& honest = recorded().frames;
-    const wire::NodeId node = recorded().setup.rig.joints.node_id;
+    const wire::NodeId node = recorded().setup.rig.joint_sources.at(0).node_id;
     Forged forged{honest, {}, {}};
     const WallTime start = honest.front().stamp;
     double due_s = kAttackBeginS;
@@ -154,7 +154,7 @@ struct Played {
 
 std::uint64_t reported_of(const Pipeline& pipeline) {
     const auto& joints = pipeline.inputs().joint_samples;
-    return pipeline.intake().joint_senders().contradictions() + joints.rejected(JointReason::second_sender) +
+    return pipeline.intake().joint_senders(0).contradictions() + joints.rejected(JointReason::second_sender) +
            joints.rejected(JointReason::joint_jump);
 }
 
@@ -170,8 +170,8 @@ Played play(const std::vector<StampedFrame>& frames, Release release) {
     for (const StampedFrame& entry : frames) {
         pipeline.on_can(entry.frame, entry.stamp);
         const CanIntake& intake = pipeline.intake();
-        if (!played.refused &&
-            is_refused_for_joints(intake.nodes().verdict(setup.rig.joints.node_id, intake.now())))
+        if (!played.refused && is_refused_for_joints(intake.nodes().verdict(
+                                   setup.rig.joint_sources.at(0).node_id, intake.now())))
             played.refused = entry.stamp;
         if (reported_of(pipeline) == reported) continue;
         reported = reported_of(pipeline);
@@ -181,7 +181,7 @@ Played play(const std::vector<StampedFrame>& frames, Release release) {
     pipeline.finish();
     EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     played.inputs = pipeline.inputs();
-    played.contradictions = pipeline.intake().joint_senders().contradictions();
+    played.contradictions = pipeline.intake().joint_senders(0).contradictions();
     played.map = encode_ot(pipeline.map());
     return played;
 }
@@ -224,9 +224,9 @@ std::string map_of_order(const std::vector<Commit>& commits) {
     config.maps = {MapFeed::both};
     Pipeline pipeline = Pipeline::build(setup.rig, setup.robot, robust_mapping(), config).value();
     for (const Commit& commit : commits) {
-        std::string line = orderlog::format_commit(commit, setup.rig.joints.joints.size());
+        std::string line = orderlog::format_commit(commit, setup.rig.joint_counts());
         line.pop_back();
-        const auto read = orderlog::parse_commit(line, setup.rig.joints.joints.size());
+        const auto read = orderlog::parse_commit(line, setup.rig.joint_counts());
         EXPECT_TRUE(read) << line;
         if (const auto* joints = std::get_if<JointMeasurement>(&*read)) {
             EXPECT_TRUE(pipeline.builder().add(*joints));
@@ -320,7 +320,7 @@ wire::Heartbeat own_heartbeat() {
         const auto decoded = wire::decode(entry.frame);
         const auto* reported = decoded ? std::get_if<wire::Heartbeat>(&decoded->message) : nullptr;
         if (reported != nullptr && reported->state == wire::NodeState::ranging &&
-            decoded->node_id == recorded().setup.rig.joints.node_id)
+            decoded->node_id == recorded().setup.rig.joint_sources.at(0).node_id)
             return *reported;
     }
     return {.state = wire::NodeState::ranging};
@@ -330,7 +330,7 @@ wire::Heartbeat own_heartbeat() {
 /// by the second it does. After every second one comes another, with the same number and 2 ms later.
 Forged forge_with_refused_samples() {
     const std::vector<StampedFrame>& honest = recorded().frames;
-    const wire::NodeId node = recorded().setup.rig.joints.node_id;
+    const wire::NodeId node = recorded().setup.rig.joint_sources.at(0).node_id;
     Forged forged{honest, {}, {}};
     unsigned count = 0;
     for (const Sample& sample : samples_of(honest, node)) {

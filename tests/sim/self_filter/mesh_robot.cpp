@@ -33,7 +33,8 @@ rig::Rig rig_of(const RobotText& robot, std::string urdf) {
     rig.name = "mesh_robot";
     rig.urdf = FilePlace::held(std::move(urdf), robot.file);
     rig.base_link = robot.shapes.base_link;
-    for (const rig::ShapedJoint& joint : robot.shapes.joints) rig.joints.joints.push_back(joint.name);
+    rig::JointSource& source = rig.joint_sources.emplace_back();
+    for (const rig::ShapedJoint& joint : robot.shapes.joints) source.joints.push_back(joint.name);
     rig.camera = needed(rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml")).camera;
     return rig;
 }
@@ -68,7 +69,7 @@ double distance_to(const Triangle& t, const Eigen::Vector3d& p) {
 MeshRobot::MeshRobot(const RobotText& robot, const MeshSearch& search, const sim::World& world)
     : rig_(rig_of(robot, needed(fit_robot(robot, search)).urdf)),
       surfaces_(needed(read_surfaces(robot, search)).meshes),
-      arm_(needed(sim::Arm::read(rig_.urdf, rig_.base_link, rig_.joints.joints))),
+      arm_(needed(sim::Arm::read(rig_.urdf, rig_.base_link, rig_.joint_names()))),
       truth_(true_body(rig_, needed(read_surfaces(robot, search)))),
       setup_(needed(make_host_setup(rig_))),
       capsules_(needed(RobotBody::build(setup_.rig.body, setup_.robot))),

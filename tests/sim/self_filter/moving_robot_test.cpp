@@ -56,7 +56,7 @@ class MovingRobot : public testing::Test {
   protected:
     MovingRobot()
         : rig_(rig::read_rig(kHw / "rigs/experiment.yaml").value()),
-          arm_(sim::Arm::read(rig_.urdf, rig_.base_link, rig_.joints.joints).value()),
+          arm_(sim::Arm::read(rig_.urdf, rig_.base_link, rig_.joint_names()).value()),
           capsules_(rig::real_body(rig_).value()),
           scenario_(sim::read_scenario(kHw / "worlds/experiment.scenario.yaml").value()),
           world_(sim::World::read(scenario_.world).value()),

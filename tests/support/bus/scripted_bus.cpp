@@ -111,8 +111,9 @@ void ScriptedBus::health(double at_s, wire::NodeId node, std::uint8_t sensor,
 }
 
 void ScriptedBus::joints(double sampled_s, wire::NodeId node, std::span<const double> position_rad) {
-    const std::uint8_t sequence = joint_sequence_;
-    joint_sequence_ = next(joint_sequence_, wire::kJointSequenceCount);
+    std::uint8_t& newest = joint_sequence_[node];
+    const std::uint8_t sequence = newest;
+    newest = next(newest, wire::kJointSequenceCount);
     for (std::uint8_t index = 0; index < 3; ++index) {
         const wire::JointPair pair{
             index,

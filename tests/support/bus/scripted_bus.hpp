@@ -56,7 +56,7 @@ class ScriptedBus {
     };
     std::map<wire::NodeId, Clock> clocks_;
     std::uint8_t sync_sequence_ = 0;
-    std::uint8_t joint_sequence_ = 0;
+    std::map<wire::NodeId, std::uint8_t> joint_sequence_;
     std::map<std::pair<wire::NodeId, std::uint8_t>, std::uint8_t> range_sequence_;
     std::vector<StampedFrame> frames_;
 };

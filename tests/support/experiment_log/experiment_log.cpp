@@ -10,7 +10,7 @@ std::vector<StampedFrame> experiment_log(rig::Rig rig, std::uint64_t seed, std::
     sim::Scenario scenario =
         sim::read_scenario(OCTOSKIN_SOURCE_DIR "/hw/worlds/experiment.scenario.yaml").value();
     const auto world = sim::World::read(scenario.world).value();
-    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joints.joints).value();
+    const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joint_names()).value();
     const sim::Body body(rig::read_capsules(rig.urdf, {}).value());
     rig.camera.reset();
     scenario.rest_s = 2.0;

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -142,6 +143,52 @@ TEST_F(JointSendersTest, of_which_there_are_two_move_nothing_are_named_within_a_
     ASSERT_TRUE(
         daemon_->wait_until([](const Json& status) { return status["recording"]["state"] == "ended"; }, 10s));
     expect_first_posture_alone();
+    expect_own_map();
+}
+
+// The arm's last three joints are a source of their own, as those of a tool.
+TEST_F(JointSendersTest, may_each_send_a_source_of_their_own_by_name) {
+    const std::filesystem::path rig = folder_ / "rig.yaml";
+    std::ofstream(rig)
+        << "extends: " << kExperiment
+        << "\njoints:\n"
+           "  - {node_id: 3, rate_hz: 100, names: [panda_joint1, panda_joint2, panda_joint3, "
+           "panda_joint4], via: socket}\n"
+           "  - {node_id: 5, rate_hz: 100, names: [panda_joint5, panda_joint6, panda_joint7], via: "
+           "socket}\n";
+    const std::string arm = "lamp=3 panda_joint2=-0.785 panda_joint1=0 panda_joint4=-2.356 panda_joint3=0";
+    const std::string tool = "panda_joint7=0.785 panda_joint6=1.571 panda_joint5=0";
+    start({"--no-camera", "--joints", (folder_ / "joints").string()}, rig);
+    ASSERT_TRUE(daemon_->wait_until([](const Json&) { return true; }, 5s)) << daemon_->log();
+    const Driver first(daemon_->joints(), arm, 100.0, true);
+    int arm_unknown = 0;  // at the start
+    {
+        const Driver second(daemon_->joints(), tool, 100.0, true);
+        ASSERT_TRUE(daemon_->wait_until(is_ranging, 15s)) << daemon_->status().dump(1) << daemon_->log();
+        const Json status = daemon_->status();
+        EXPECT_FALSE(has_problem(status, "joint")) << status["problems"].dump(1);
+        EXPECT_EQ(status["joints_socket"]["senders"].size(), 2U);
+        ASSERT_EQ(status["joint_states"]["sources"].size(), 2U);
+        EXPECT_EQ(status["joint_states"]["sources"][1]["node_id"], 5);
+        EXPECT_EQ(status["joint_states"]["sources"][1]["via"], "socket");
+        EXPECT_LT(status["joint_states"]["sources"][1]["age_s"].get<double>(), 0.5);
+        ASSERT_TRUE(ask("record start 0 " + recording())["ok"].get<bool>());
+        arm_unknown = status["joint_states"]["sources"][0]["joints"][1]["poses_without"].get<int>();
+        const int used = readings_used(status);
+        ASSERT_TRUE(daemon_->wait_until([&](const Json& now) { return readings_used(now) > used + 20; }, 5s));
+    }
+    const auto named = daemon_->wait_until(
+        [](const Json& status) { return has_problem(status, "no joint states of panda_joint5"); }, 5s);
+    ASSERT_TRUE(named) << daemon_->status()["problems"].dump(1);
+    EXPECT_LE(*named, 1s);
+    const auto unplaced = [](const Json& status) {
+        return status["joint_states"]["sources"][1]["joints"][1]["poses_without"].get<int>();
+    };
+    EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return unplaced(now) > 0; }, 5s));
+    EXPECT_EQ(daemon_->status()["joint_states"]["sources"][0]["joints"][1]["poses_without"], arm_unknown);
+    ASSERT_TRUE(ask("record stop")["ok"].get<bool>());
+    ASSERT_TRUE(
+        daemon_->wait_until([](const Json& status) { return status["recording"]["state"] == "ended"; }, 10s));
     expect_own_map();
 }
 

@@ -87,7 +87,7 @@ void add_pose_fault(const DaemonView& view, Problems& problems) {
     const ProblemCode code = !fault.joint    ? ProblemCode::camera_pose
                              : !fault.camera ? ProblemCode::joint_pose
                                              : ProblemCode::camera_or_joint_pose;
-    problems.push_back({.code = code, .what = describe(fault, view.rig->joints.joints)});
+    problems.push_back({.code = code, .what = describe(fault, view.rig->joint_names())});
 }
 
 void add_camera(const DaemonView& view, Problems& problems) {

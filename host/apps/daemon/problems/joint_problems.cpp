@@ -1,8 +1,11 @@
 #include "host/apps/daemon/problems/problem_groups.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/problems/unused_input.hpp"
@@ -22,12 +25,19 @@ std::string refused_lines(const JointSocket& socket) {
     return text;
 }
 
+/// "node 61" or "nodes 61, 62".
+std::string nodes_text(const HostRig& rig) {
+    std::vector<int> nodes;
+    for (const HostJointSource& source : rig.joint_sources) nodes.push_back(source.node_id);
+    return fmt::format("{} {}", nodes.size() == 1 ? "node" : "nodes", fmt::join(nodes, ", "));
+}
+
 Problem no_joints(const DaemonView& view) {
     Problem problem{.code = ProblemCode::joints_missing, .subject = "joints"};
     const JointSocket* const socket = view.inputs->joints();
     if (socket == nullptr) {
-        problem.what = fmt::format("no joint states: none from node {} on the bus (and no --joints)",
-                                   view.rig->joints.node_id);
+        problem.what =
+            fmt::format("no joint states: none from {} on the bus (and no --joints)", nodes_text(*view.rig));
     } else if (const std::string refused = refused_lines(*socket); !refused.empty()) {
         problem.what = fmt::format(
             "no joint states, because the lines that come through the socket are refused ({}, the "
@@ -66,18 +76,56 @@ bool is_recent(const std::optional<HostTime>& at, HostTime now) {
     return at && now - *at < kTold;
 }
 
+double highest_rate_hz(const HostRig& rig) {
+    return std::ranges::max(rig.joint_sources, {}, &HostJointSource::rate_hz).rate_hz;
+}
+
+/// Of several sources the node; with one source there is nothing to tell apart.
+std::string on_of(const DaemonView& view, std::size_t source) {
+    const auto& sources = view.rig->joint_sources;
+    return sources.size() > 1 ? fmt::format("joints of node {}", sources[source].node_id) : std::string();
+}
+
+bool is_local(const DaemonView& view, std::size_t source) {
+    return view.rig->joint_sources[source].is_local;
+}
+
+/// The source whose senders contradicted each other last, or most often so far.
+std::size_t contradicted_source(const DaemonView& view) {
+    const CanIntake& intake = view.pipeline->intake();
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < view.rig->joint_sources.size(); ++i) {
+        const JointSenderCheck& senders = intake.joint_senders(i);
+        if (view.bus_now && senders.hears_two(*view.bus_now)) return i;
+        if (senders.contradictions() > intake.joint_senders(found).contradictions()) found = i;
+    }
+    return found;
+}
+
+/// The senders of that source of the socket that had several last; null if none had.
+const JointSenders* newest_several(const JointSocket* socket) {
+    const JointSenders* newest = nullptr;
+    for (std::size_t i = 0; socket != nullptr && i < socket->joints().sources.size(); ++i) {
+        const JointSenders& senders = socket->senders(i);
+        if (senders.several_at() && (newest == nullptr || senders.several_at() > newest->several_at()))
+            newest = &senders;
+    }
+    return newest;
+}
+
 void add_joint_jump(const DaemonView& view, Problems& problems) {
-    const auto& jumped = view.pipeline->joint_gate().jump().newest();
-    if (!jumped || !is_recent(view.used.joint_jump, view.now)) return;
-    problems.push_back({.code = ProblemCode::joint_jump,
-                        .what = fmt::format(
-                            "joint states jump: {} went from {:.3f} to {:.3f} in {:.0f} ms, but the robot "
-                            "description allows at most {:.3f} (joint_jump, {}): another program sends joint "
-                            "states too, or the velocity of its <limit> is too low",
-                            view.rig->joints.joints.at(jumped->joint), jumped->from, jumped->to,
-                            1e3 * seconds_of(jumped->passed), jumped->step_max,
-                            view.pipeline->inputs().joint_samples.rejected(JointReason::joint_jump)),
-                        .key = "joint_jump"});
+    const auto found = newest_jump(view);
+    if (!found || !is_recent(view.used.joint_jump, view.now)) return;
+    const JointJumped* const jumped = found->jumped;
+    problems.push_back(
+        {.code = ProblemCode::joint_jump,
+         .what = fmt::format(
+             "joint states jump: {} went from {:.3f} to {:.3f} in {:.0f} ms, but the robot "
+             "description allows at most {:.3f} (joint_jump, {}): another program sends joint "
+             "states too, or the velocity of its <limit> is too low",
+             found->name, jumped->from, jumped->to, 1e3 * seconds_of(jumped->passed), jumped->step_max,
+             view.pipeline->inputs().joint_samples.rejected(JointReason::joint_jump)),
+         .key = "joint_jump"});
 }
 
 /// Several senders, none of which is used. They differ in their process, or their samples contradict each
@@ -85,13 +133,14 @@ void add_joint_jump(const DaemonView& view, Problems& problems) {
 void add_joint_senders(const DaemonView& view, Problems& problems) {
     add_joint_jump(view, problems);
     const JointSocket* const socket = view.inputs->joints();
-    if (socket != nullptr && is_recent(socket->senders().several_at(), view.now)) {
+    if (const JointSenders* const several = newest_several(socket);
+        several != nullptr && is_recent(several->several_at(), view.now)) {
         problems.push_back(
             {.code = ProblemCode::joint_senders,
-             .what = fmt::format(
-                 "joint states come through the socket from more than one program, and none is "
-                 "used until all but one have been silent for a second (second_sender, {}): {}",
-                 view.inputs->joints_of_several(), names_of_senders(socket->senders().newest_several())),
+             .what =
+                 fmt::format("joint states come through the socket from more than one program, and none is "
+                             "used until all but one have been silent for a second (second_sender, {}): {}",
+                             view.inputs->joints_of_several(), names_of_senders(several->newest_several())),
              .key = "second_sender"});
         return;
     }
@@ -99,7 +148,7 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
     const std::uint64_t withheld = view.pipeline->inputs().joint_samples.rejected(JointReason::second_sender);
     problems.push_back(
         {.code = ProblemCode::joint_senders,
-         .what = socket != nullptr
+         .what = is_local(view, contradicted_source(view))
                      ? fmt::format(
                            "joint states through the socket jump to and fro, as from two arms or as late "
                            "samples without TIME do; none is used until they have not jumped for a second "
@@ -109,41 +158,78 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
                            "two senders send joint states under node {}, and neither is used until they have "
                            "not contradicted each other for a second (second_sender, {}): the joint node and "
                            "another board of that id, or `octoskin joints --can` beside it",
-                           view.rig->joints.node_id, withheld),
+                           view.rig->joint_sources.at(contradicted_source(view)).node_id, withheld),
          .key = "second_sender"});
 }
 
 void add_joints_beyond(const DaemonView& view, Problems& problems) {
-    const auto& beyond = view.pipeline->joint_gate().beyond();
-    if (!beyond || !is_recent(beyond->sampled, view.now)) return;
-    problems.push_back(
-        {.code = ProblemCode::joint_limits, .what = beyond_text(*beyond, view.rig->joints.joints)});
+    for (std::size_t i = 0; i < view.rig->joint_sources.size(); ++i) {
+        const auto& beyond = view.pipeline->joint_gate(i).beyond();
+        if (!beyond || !is_recent(beyond->sampled, view.now)) continue;
+        problems.push_back({.code = ProblemCode::joint_limits,
+                            .on = on_of(view, i),
+                            .what = beyond_text(*beyond, view.rig->joint_sources[i].joints)});
+    }
 }
 
 /// Readings between two samples that are too far apart have no pose.
 void add_joint_gap(const DaemonView& view, Problems& problems) {
-    const auto& gap = view.pipeline->builder().newest_joint_gap();
     constexpr std::uint64_t kSlow = 3;  // fewer are an interruption
-    if (!gap || !is_recent(gap->instant, view.now)) return;
-    if (view.pipeline->builder().joint_gaps_in_a_row() < kSlow) return;
-    problems.push_back({.code = ProblemCode::joint_gap,
-                        .what = "readings have no pose (joints_missing). " + gap_text(*gap),
-                        .key = "joints_missing"});
+    const RobotTracker& robot = view.pipeline->builder().robot();
+    for (std::size_t i = 0; i < view.rig->joint_sources.size(); ++i) {
+        const auto& gap = robot.newest_gap(i);
+        if (!gap || !is_recent(gap->instant, view.now) || robot.gaps_in_a_row(i) < kSlow) continue;
+        problems.push_back({.code = ProblemCode::joint_gap,
+                            .on = on_of(view, i),
+                            .what = "readings have no pose (joints_missing). " + gap_text(*gap),
+                            .key = "joints_missing"});
+    }
+}
+
+/// Of several sources, one that is silent while others send.
+void add_silent_sources(const DaemonView& view, Problems& problems) {
+    const auto& sources = view.rig->joint_sources;
+    const RobotTracker& robot = view.pipeline->builder().robot();
+    for (std::size_t i = 0; i < sources.size() && sources.size() > 1; ++i) {
+        const auto newest = robot.newest_sample(i);
+        if (newest && !has_stopped(newest, view.bus_reckoned)) continue;
+        problems.push_back(
+            {.code = newest ? ProblemCode::joints_stopped : ProblemCode::joints_missing,
+             .on = on_of(view, i),
+             .what = fmt::format("no joint states of {} {}: sensors that they move are not placed "
+                                 "(joints_missing), and all is left out where bodies that they move can be",
+                                 fmt::join(sources[i].joints, ", "), newest ? "any more" : "yet"),
+             .key = "joints_missing"});
+    }
 }
 
 }  // namespace
 
+std::optional<JumpOfJoint> newest_jump(const DaemonView& view) {
+    std::optional<JumpOfJoint> newest;
+    for (std::size_t i = 0; i < view.rig->joint_sources.size(); ++i) {
+        const auto& jumped = view.pipeline->joint_gate(i).jump().newest();
+        if (jumped && (!newest || jumped->sampled > newest->jumped->sampled))
+            newest = {view.rig->joint_sources[i].joints.at(jumped->joint), &*jumped};
+    }
+    return newest;
+}
+
 bool are_joints_withheld(const DaemonView& view) {
     constexpr Nanoseconds kHold = JointSenders::kHeardFor;
     const auto is_new = [&](const std::optional<HostTime>& at) { return at && view.now - *at < kHold; };
-    const JointSocket* const socket = view.inputs->joints();
-    return is_new(view.used.joint_senders) || (socket != nullptr && is_new(socket->senders().several_at()));
+    const JointSenders* const several = newest_several(view.inputs->joints());
+    return is_new(view.used.joint_senders) || (several != nullptr && is_new(several->several_at()));
 }
 
 bool are_joints_above_rate(const DaemonView& view) {
     constexpr double kAbout = 1.3;
     const JointSocket* const socket = view.inputs->joints();
-    return socket != nullptr && socket->rate_hz(view.now) > kAbout * view.rig->joints.rate_hz;
+    if (socket == nullptr) return false;
+    const auto& sources = socket->joints().sources;
+    for (std::size_t i = 0; i < sources.size(); ++i)
+        if (socket->rate_hz(i, view.now) > kAbout * sources[i].rate_hz) return true;
+    return false;
 }
 
 void add_joints(const DaemonView& view, Problems& problems) {
@@ -162,6 +248,8 @@ void add_joints(const DaemonView& view, Problems& problems) {
         problems.push_back({.code = ProblemCode::joints_stopped,
                             .what = "joint states have stopped, and readings have no pose",
                             .subject = "joints"});
+    } else {
+        add_silent_sources(view, problems);
     }
     if (view.inputs->is_flooded(view.now)) {
         problems.push_back(
@@ -169,17 +257,17 @@ void add_joints(const DaemonView& view, Problems& problems) {
              .what = fmt::format(
                  "joint states come, or came, through the socket faster than they can be taken: {} were "
                  "displaced by newer ones (displaced), {} exceeded the rate of one program, or came from "
-                 "more than {} programs (surplus); the rig has {} Hz, and a higher rate is of no use",
+                 "more than {} programs (surplus); the rig has {:g} Hz, and a higher rate is of no use",
                  view.inputs->joints_displaced(), view.inputs->joints()->surplus(), SenderShares::kSendersMax,
-                 view.rig->joints.rate_hz),
+                 highest_rate_hz(*view.rig)),
              .key = "surplus"});
     }
     if (joints.rejected(JointReason::too_frequent) > kFirstSamples) {
         problems.push_back(
             {.code = ProblemCode::joints_too_frequent,
-             .what = fmt::format("joint states come, or came, faster than the {} Hz of the rig, and were "
+             .what = fmt::format("joint states come, or came, faster than the {:g} Hz of the rig, and were "
                                  "refused (too_frequent, {})",
-                                 view.rig->joints.rate_hz, joints.rejected(JointReason::too_frequent)),
+                                 highest_rate_hz(*view.rig), joints.rejected(JointReason::too_frequent)),
              .remedy = "set joints.rate_hz to the true rate",
              .key = "joints.rate_hz"});
     }

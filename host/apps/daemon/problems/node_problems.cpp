@@ -194,17 +194,19 @@ void add_nodes(const DaemonView& view, Problems& problems) {
     }
 }
 
-/// Problems of the node that sends the joint states of the bus, if it is not one of those with sensors.
-void add_joint_node(const DaemonView& view, Problems& problems) {
-    const wire::NodeId source = view.rig->joints.node_id;
+/// Problems of the nodes that send the joint states of the bus, if they are not among those with sensors.
+void add_joint_nodes(const DaemonView& view, Problems& problems) {
     const NodeRegistry& nodes = view.pipeline->intake().nodes();
-    if (!nodes.knows(source) || nodes.records().at(source).has_block) return;
-    add_restarts(view, nodes.records().at(source).expected, problems);
-    add_answers(view, nodes.records().at(source).expected, problems);
-    add_self_reports(view, nodes.records().at(source).expected, problems);
-    if (!is_refused_for_joints(nodes.verdict(source, view.bus_now))) return;
-    problems.push_back(
-        unusable_node(nodes.records().at(source).expected, nodes.describe(source, view.bus_now)));
+    for (const HostJointSource& joints : view.rig->joint_sources) {
+        const wire::NodeId source = joints.node_id;
+        if (!nodes.knows(source) || nodes.records().at(source).has_block) continue;
+        add_restarts(view, nodes.records().at(source).expected, problems);
+        add_answers(view, nodes.records().at(source).expected, problems);
+        add_self_reports(view, nodes.records().at(source).expected, problems);
+        if (is_refused_for_joints(nodes.verdict(source, view.bus_now)))
+            problems.push_back(
+                unusable_node(nodes.records().at(source).expected, nodes.describe(source, view.bus_now)));
+    }
 }
 
 void add_readings(const DaemonView& view, Problems& problems) {

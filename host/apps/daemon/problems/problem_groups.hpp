@@ -26,7 +26,7 @@ void add_nodes(const DaemonView& view, Problems& problems);
 [[nodiscard]] inline std::string node_subject(wire::NodeId node) {
     return "node " + std::to_string(node);
 }
-void add_joint_node(const DaemonView& view, Problems& problems);
+void add_joint_nodes(const DaemonView& view, Problems& problems);
 void add_readings(const DaemonView& view, Problems& problems);
 
 // --- silence_problems.cpp: missing data of a node that is usable

@@ -11,7 +11,7 @@ std::vector<Problem> problems(const DaemonView& view) {
     if (!view.is_settling()) {
         add_clock(view, problems);
         add_nodes(view, problems);
-        add_joint_node(view, problems);
+        add_joint_nodes(view, problems);
         add_joints(view, problems);
         add_readings(view, problems);
         add_camera(view, problems);

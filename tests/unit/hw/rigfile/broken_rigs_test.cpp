@@ -71,9 +71,9 @@ const Broken kBroken[] = {
     {"list-for-the-padding.yaml", 3, "robot.link_padding_m", ErrorCode::wrong_type, "a list of 1",
      "link names and metres"},
     {"more-joints-than-a-sample-holds.yaml", 7, "joints.names", ErrorCode::limit_exceeded,
-     "8 in eight-joints.urdf", "type=\"fixed\""},
-    {"seven-of-eight-joints.yaml", 7, "joints.names", ErrorCode::limit_exceeded,
-     "8 in eight-joints.urdf; not named are j7", "type=\"fixed\" in eight-joints.urdf"},
+     "8 in eight-joints.urdf", "a list of sources, each with up to seven"},
+    {"seven-of-eight-joints.yaml", 7, "joints.names", ErrorCode::missing_key, "none named j7",
+     "name it in another source (`joints` may be a list, each with up to seven)"},
     {"missing-nodes.yaml", 1, "nodes", ErrorCode::missing_key, ""},
     // Types.
     {"word-for-a-number.yaml", 3, "joints.rate_hz", ErrorCode::wrong_type, "'fast'", "from 1 to 1000"},

@@ -155,7 +155,7 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
               (LensDistortion{.k1 = 0.125, .k2 = -0.25, .p1 = 0.001, .p2 = -0.002, .k3 = 0.0625}));
     EXPECT_EQ(rig.camera->data_set,
               (DataSetKeys{.units_per_m = 1000.0, .no_value = 65'535, .pose_gap_max_ms = 150.0}));
-    EXPECT_EQ(rig.joints.rate_hz, 100.5);
+    EXPECT_EQ(rig.joint_sources.at(0).rate_hz, 100.5);
     const Node& node = rig.nodes.at(0);
     EXPECT_EQ(node.pinned_build_id, 0x1A2B3C4DU);
     EXPECT_EQ(node.board.board_type, 7);

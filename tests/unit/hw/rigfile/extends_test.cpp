@@ -49,9 +49,9 @@ using Orientation = Folder;
 TEST_F(Extends, tables_merge_key_by_key_and_the_rest_is_replaced) {
     const Rig rig = overlaid("name: heir\njoints:\n  rate_hz: 50\n");
     EXPECT_EQ(rig.name, "heir");
-    EXPECT_EQ(rig.joints.rate_hz, 50.0);
-    EXPECT_EQ(rig.joints.node_id, 9);
-    EXPECT_EQ(rig.joints.joints, std::vector<std::string>{"elbow"});
+    EXPECT_EQ(rig.joint_sources.at(0).rate_hz, 50.0);
+    EXPECT_EQ(rig.joint_sources.at(0).node_id, 9);
+    EXPECT_EQ(rig.joint_names(), std::vector<std::string>{"elbow"});
 }
 
 TEST_F(Extends, paths_stay_relative_to_the_file_that_names_them) {
@@ -76,8 +76,8 @@ TEST_F(Extends, nearer_file_wins_over_three_levels) {
     const auto rig = read_rig(write("c.yaml", "extends: b.yaml\njoints: {node_id: 5}\n"));
     ASSERT_TRUE(rig) << rig.error().message();
     EXPECT_EQ(rig->name, "b");
-    EXPECT_EQ(rig->joints.rate_hz, 10.0);
-    EXPECT_EQ(rig->joints.node_id, 5);
+    EXPECT_EQ(rig->joint_sources.at(0).rate_hz, 10.0);
+    EXPECT_EQ(rig->joint_sources.at(0).node_id, 5);
 }
 
 TEST_F(Extends, another_way_to_write_an_orientation_replaces_the_inherited_one) {

@@ -98,9 +98,9 @@ TEST(ShippedRigs, experiment_has_the_bus_camera_joints_and_limits_of_the_experim
     EXPECT_TRUE(rig.bus.uses_can_fd);
     EXPECT_EQ(rig.bus.nominal_bitrate, 1'000'000U);
     EXPECT_EQ(rig.bus.data_bitrate, 5'000'000U);
-    EXPECT_EQ(rig.joints.node_id, 3);
-    EXPECT_EQ(rig.joints.rate_hz, 100.0);
-    EXPECT_EQ(rig.joints.joints.size(), 7U);
+    EXPECT_EQ(rig.joint_sources.at(0).node_id, 3);
+    EXPECT_EQ(rig.joint_sources.at(0).rate_hz, 100.0);
+    EXPECT_EQ(rig.joint_names().size(), 7U);
     ASSERT_TRUE(rig.camera);
     EXPECT_EQ(rig.camera->width, 512U);
     EXPECT_EQ(rig.camera->height, 424U);

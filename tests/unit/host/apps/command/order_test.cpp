@@ -74,7 +74,7 @@ TEST(CommandOrder, names_what_there_is_instead) {
     const Error no_sensor = refusal_of(&bench, wish("bench", "stop", "top"));
     expect_unknown(no_sensor, "--sensor", "'top'", "front, left, back, right");
     EXPECT_NE(no_sensor.what.find("node 1 'bench'"), std::string::npos);
-    const std::string joints = std::to_string(bench.joints.node_id);
+    const std::string joints = std::to_string(bench.joint_sources.at(0).node_id);
     const Error joint_source = refusal_of(&bench, wish(joints, "stop"));
     EXPECT_EQ(joint_source.code, ErrorCode::bad_argument);
     EXPECT_EQ(joint_source.value, fmt::format("node {}, the rig's joint source", joints));

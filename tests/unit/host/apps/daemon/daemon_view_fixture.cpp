@@ -64,7 +64,7 @@ void DaemonViewTest::play_on(const std::vector<StampedFrame>& frames, double unt
         pipeline_->on_can(entry.frame, entry.stamp);
         const HostTime now{entry.stamp.ns - kWallOffsetNs};
         for (; depth != scene_.depth.end() && depth->captured <= now; ++depth) pipeline_->on_depth(*depth);
-        view_.used.note(*pipeline_, now);
+        view_.used.note(*pipeline_, scene_.rig, now);
     }
     set_now(until_s);
 }
@@ -101,6 +101,7 @@ HostTime DaemonViewTest::say_sync(std::uint8_t sequence) {
 std::unique_ptr<Inputs> DaemonViewTest::inputs_with_joint_socket() {
     request_with_joints_ = request_;
     request_with_joints_.joint_socket = folder_ / "joints";
+    for (HostJointSource& source : scene_.rig.joint_sources) source.is_local = true;
     auto inputs = std::make_unique<Inputs>(request_with_joints_, scene_.rig, loop_, beside_, recordings_);
     EXPECT_TRUE(inputs->take_sockets(scene_.rig));
     return inputs;

@@ -108,7 +108,7 @@ class DaemonViewTest : public testing::Test {
                                .robot = "<robot/>",
                                .mapping = "base: robust\n",
                                .rig_hash = 1,
-                               .joints = 1,
+                               .joints = {1},
                                .interface = "can7"};
     DaemonRequest request_;
     Scene scene_ = daemon_scene();

@@ -140,7 +140,7 @@ TEST_F(JointProblemsTest, have_a_joint_beyond_its_limits_and_which) {
 
 TEST_F(JointProblemsTest, have_joint_states_that_come_quicker_than_the_rig_says) {
     const auto at_rate_of_rig = [&](double rate_hz) {
-        play_changed([&](Scene& scene) { scene.rig.joints.rate_hz = rate_hz; });
+        play_changed([&](Scene& scene) { scene.rig.joint_sources.at(0).rate_hz = rate_hz; });
         return reported(ProblemCode::joints_too_frequent);
     };
     EXPECT_EQ(at_rate_of_rig(100.0), std::nullopt);
@@ -281,7 +281,7 @@ TEST_F(CameraProblemsTest, know_since_when_images_have_been_left_out_again_and_a
     auto leave_one_out_at = [&, used = LastUsed{}, captured = 4.0](double at_s) mutable {
         DepthFrame frame = flat_frame(captured += 0.01);
         pipeline.on_depth(std::move(frame));
-        used.note(pipeline, at(at_s));
+        used.note(pipeline, scene.rig, at(at_s));
         return used;
     };
     for (int i = 0; i < 3; ++i) EXPECT_FALSE(leave_one_out_at(9.0).depth_left_out) << i;

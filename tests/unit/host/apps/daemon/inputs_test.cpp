@@ -23,7 +23,7 @@ class InputsTest : public DaemonViewTest {
   protected:
     /// Ours alone is the bus then, and joint states come so often.
     void begin_with_rate(double joints_hz) {
-        scene_.rig.joints.rate_hz = joints_hz;
+        scene_.rig.joint_sources.at(0).rate_hz = joints_hz;
         std::array<int, 2> ends{};
         EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
         other_end_.emplace("other", ends[0]);

@@ -18,6 +18,7 @@
 
 #include "host/apps/daemon/joint_socket.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
+#include "tests/support/bus/line_joints.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -130,7 +131,7 @@ class JointSocketSenders : public testing::Test {
 
     testing_support::ScratchFolder folder_;
     std::filesystem::path file_ = folder_ / "joints";
-    JointSocket socket_ = JointSocket::open(file_, 3).value();
+    JointSocket socket_ = JointSocket::open(file_, testing_support::one_source(3)).value();
 };
 
 TEST_F(JointSocketSenders, are_told_apart_by_what_the_kernel_says_of_them) {
@@ -142,7 +143,7 @@ TEST_F(JointSocketSenders, are_told_apart_by_what_the_kernel_says_of_them) {
     EXPECT_TRUE(receive().is_of_several);
     send("1 2 3");
     EXPECT_TRUE(receive().is_of_several) << "neither is used";
-    const auto& heard = socket_.senders().newest_several();
+    const auto& heard = socket_.senders(0).newest_several();
     ASSERT_EQ(heard.size(), 2U);
     EXPECT_EQ(heard[0].sender.pid, ::getpid());
     EXPECT_EQ(heard[0].sender.uid, ::getuid());
@@ -194,7 +195,7 @@ TEST_F(JointSocketSenders, of_one_process_are_told_apart_by_the_addresses_that_t
         ::close(sender);
         EXPECT_EQ(receive().is_of_several, name == std::string("two"));
     }
-    EXPECT_EQ(socket_.senders().newest_several()[1].sender.address, (folder_ / "two").string());
+    EXPECT_EQ(socket_.senders(0).newest_several()[1].sender.address, (folder_ / "two").string());
 }
 
 }  // namespace

@@ -31,6 +31,7 @@
 #include "host/apps/daemon/sender_shares.hpp"
 #include "host/apps/daemon/unix_socket.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
+#include "tests/support/bus/line_joints.hpp"
 #include "tests/support/lingering_connection.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -83,7 +84,7 @@ class JointSocketTest : public testing::Test {
 
     testing_support::ScratchFolder folder_;
     std::filesystem::path file_ = folder_ / "joints";
-    JointSocket socket_ = JointSocket::open(file_, 3).value();
+    JointSocket socket_ = JointSocket::open(file_, testing_support::one_source(3)).value();
 };
 
 TEST_F(JointSocketTest, dates_a_sample_by_when_it_came_and_not_by_when_it_is_read) {
@@ -200,7 +201,7 @@ TEST_F(DatagramFeedTest, reads_on_whatever_was_sent_along_and_however_long_that_
 }
 
 TEST_F(JointSocketTest, takes_as_many_joints_as_the_rig_that_is_loaded_anew) {
-    socket_.expect(2);
+    socket_.expect(testing_support::one_source(2));
     send("1 2 3");
     send("1 2");
     std::optional<JointSample> sample;
@@ -390,7 +391,7 @@ TEST_F(JointSocketTest, without_room_for_its_thread_is_short_of_a_resource_and_l
     ASSERT_EQ(::pthread_getattr_default_np(&huge), 0);
     ASSERT_EQ(::pthread_attr_setstacksize(&huge, std::size_t{1} << 47U), 0);
     ASSERT_EQ(::pthread_setattr_default_np(&huge), 0);
-    const auto opened = JointSocket::open(folder_ / "other", 3);
+    const auto opened = JointSocket::open(folder_ / "other", testing_support::one_source(3));
     ASSERT_EQ(::pthread_setattr_default_np(&before), 0);
     ASSERT_FALSE(opened);
     EXPECT_EQ(opened.error().exit, ExitCode::no_resources);
@@ -400,7 +401,7 @@ TEST_F(JointSocketTest, without_room_for_its_thread_is_short_of_a_resource_and_l
 }
 
 TEST_F(JointSocketTest, is_one_to_a_file_and_takes_its_file_away) {
-    EXPECT_FALSE(JointSocket::open(file_, 3)) << "somebody listens";
+    EXPECT_FALSE(JointSocket::open(file_, testing_support::one_source(3))) << "somebody listens";
     {
         const JointSocket moved = std::move(socket_);
         EXPECT_TRUE(std::filesystem::exists(file_));

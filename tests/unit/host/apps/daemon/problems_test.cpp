@@ -244,7 +244,7 @@ TEST_F(ProblemsTest, have_a_time_that_nobody_tells_until_somebody_does) {
 TEST_F(ProblemsTest, have_no_time_from_our_own_sync_alone) {
     Scene scene = daemon_scene();
     scene.rig.nodes[0].node_id = 44;  // of those that speak none is the rig's
-    scene.rig.joints.node_id = 45;
+    scene.rig.joint_sources.at(0).node_id = 45;
     play(scene, 0.2);
     ASSERT_TRUE(pipeline_->now());
     EXPECT_THAT(reported(ProblemCode::time_unknown),

@@ -64,7 +64,7 @@ TEST(RecorderWithoutMemory, counts_what_it_could_not_keep_as_lost_and_goes_on) {
                                     .robot = "<robot/>",
                                     .mapping = "base: robust\n",
                                     .rig_hash = 1,
-                                    .joints = 1,
+                                    .joints = {1},
                                     .interface = "can0"};
     Recorder recorder(folder / "recording", {}, settings, pipeline, HostTime{1'000'000'000});
     const wire::CanFrame frame = test::good_scene().bus.frames().front().frame;
@@ -122,7 +122,7 @@ bool record_and_replay(const test::Scene& scene, std::int64_t allocations, std::
                                     .robot = "<robot/>",
                                     .mapping = "base: fast\n",
                                     .rig_hash = 1,
-                                    .joints = 1,
+                                    .joints = {1},
                                     .interface = "can0"};
     Recorder recorder(folder / "recording", {}, settings, pipeline, HostTime{1'000'000'000});
     fails_after = allocations;

@@ -47,7 +47,7 @@ class RecordingWriterTest : public testing::Test {
                 .rig = "rig text\n",
                 .robot = "robot text\n",
                 .mapping = "mapping text\n",
-                .order = {.rig_hash = 1, .mapping_crc32 = 2, .joints = 1, .first_map = std::nullopt},
+                .order = {.rig_hash = 1, .mapping_crc32 = 2, .joints = {1}, .first_map = std::nullopt},
                 .first = {FusedMap(MapConfig{}), {}}};
     }
     static RecordingEnd end(std::uint64_t commits) {

@@ -14,7 +14,7 @@ class RegisterLogTest : public testing::Test {
     static HostRig rig() {
         HostRig rig;
         rig.nodes.push_back({.node_id = 3, .name = "ring", .pinned_build_id = {}, .sensors = {HostSensor{}}});
-        rig.joints = {.node_id = 19, .joints = {"a"}, .rate_hz = 100.0};
+        rig.joint_sources = {{.node_id = 19, .joints = {"a"}, .rate_hz = 100.0}};
         return rig;
     }
     void say(wire::FaultKind kind, const wire::RegisterReport& report) {

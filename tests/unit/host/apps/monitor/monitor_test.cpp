@@ -274,6 +274,21 @@ TEST(Monitor, shows_each_counter_that_is_not_zero_with_its_rate_and_meaning) {
     EXPECT_FALSE(has(screen, "wrong_count"));
 }
 
+TEST(Monitor, shows_each_of_several_joint_sources_and_one_that_is_silent_as_bad) {
+    Json now = status();
+    now["joint_states"]["sources"] = Json::parse(R"([{"node_id": 60, "via": "can", "age_s": 0.01}])");
+    EXPECT_FALSE(has(shown(now, now), "node 60")) << "one needs no line";
+    now["joint_states"]["sources"] = Json::parse(
+        R"([{"node_id": 60, "via": "can", "age_s": 0.01}, {"node_id": 61, "via": "socket", "age_s": null}])");
+    const auto emphasis_of = [&](const std::string& text) {
+        const auto lines = screen_of(now, now, 2s);
+        const auto line = std::ranges::find(lines, text, &ScreenLine::text);
+        return line == lines.end() ? std::nullopt : std::optional(line->emphasis);
+    };
+    EXPECT_EQ(emphasis_of("     node 60 by can, newest 0.01 s ago"), Emphasis::none) << shown(now, now);
+    EXPECT_EQ(emphasis_of("     node 61 by socket, newest never"), Emphasis::bad);
+}
+
 TEST(Monitor, shows_the_recording_and_what_it_lost_as_bad) {
     Json now = status();
     EXPECT_FALSE(has(shown(now, now), "recording"));

@@ -39,7 +39,7 @@ HostRig rig() {
         {.offset_m = 0.0, .direction_sensor = Eigen::Vector3d(0, 1, 1).normalized(), .optics = {}});
     rig.nodes.push_back(
         {.node_id = 4, .name = "n", .node_hash = 0, .pinned_build_id = {}, .sensors = {sensor}});
-    rig.joints.joints = {"lift"};
+    rig.joint_sources = {{.joints = {"lift"}}};
     rig.body = {{"base", {1, 0, 0.5}, {1, 0, 0.5}, 0.1}, {"carriage", {0, 0, 0}, {0, 0, 0}, 0.4}};
     rig.links_ignored_by_sensors = {"carriage"};
     return rig;

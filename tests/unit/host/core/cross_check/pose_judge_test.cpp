@@ -68,7 +68,7 @@ class PoseJudgeTest : public testing::Test {
         judge_.decide(HostTime{100'000'000LL * image});
     }
 
-    PoseJudge judge_{kSensors};
+    PoseJudge judge_{kSensors, 7};
 };
 
 TEST_F(PoseJudgeTest, finds_nothing_where_nothing_is_off) {

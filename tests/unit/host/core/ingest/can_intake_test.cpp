@@ -33,7 +33,7 @@ HostRig rig() {
                          .node_hash = 0x12345678,
                          .pinned_build_id = {},
                          .sensors = {HostSensor{}}});
-    rig.joints = {.node_id = kJointNode, .joints = {"a"}, .rate_hz = 100.0};
+    rig.joint_sources = {{.node_id = kJointNode, .joints = {"a"}, .rate_hz = 100.0}};
     return rig;
 }
 
@@ -336,7 +336,7 @@ TEST(CanIntake, takes_no_joints_from_a_node_that_two_boards_share) {
 TEST(CanIntake, takes_no_joints_of_which_one_frame_is_the_next_round_s) {
     for (const double rate_hz : {100.0, 200.0}) {
         HostRig quick = rig();
-        quick.joints.rate_hz = rate_hz;
+        quick.joint_sources.at(0).rate_hz = rate_hz;
         ScriptedBus burst = bus();
         const double period_s = 1.0 / rate_hz;
         const double before = 0.0;

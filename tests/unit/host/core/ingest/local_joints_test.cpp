@@ -18,19 +18,16 @@ constexpr wire::NodeId kNode = 10;
 
 HostRig rig_of(std::size_t joints) {
     HostRig rig;
-    rig.joints = {.node_id = kNode, .joints = std::vector<std::string>(joints, "joint"), .rate_hz = 100.0};
+    rig.joint_sources = {{.node_id = kNode,
+                          .joints = std::vector<std::string>(joints, "joint"),
+                          .rate_hz = 100.0,
+                          .is_local = true}};
     return rig;
-}
-
-IntakeConfig of_this_machine() {
-    IntakeConfig config;
-    config.has_local_joints = true;
-    return config;
 }
 
 class LocalJointsTest : public testing::Test {
   protected:
-    LocalJointsTest() : intake_(rig_of(3), of_this_machine()), joints_(kNode, 3, 100.0) {}
+    LocalJointsTest() : intake_(rig_of(3)), joints_(kNode, 3, 100.0) {}
 
     FrameOutcome give(const wire::CanFrame& frame, std::int64_t at_ns) {
         return intake_.on_frame(frame, {test::kWallOffsetNs + at_ns});

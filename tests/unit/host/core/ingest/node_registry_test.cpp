@@ -26,7 +26,7 @@ HostRig rig() {
                          .node_hash = kHash,
                          .pinned_build_id = {},
                          .sensors = std::vector<HostSensor>(3)});
-    rig.joints = {.node_id = 9, .joints = {"a"}, .rate_hz = 100.0};
+    rig.joint_sources = {{.node_id = 9, .joints = {"a"}, .rate_hz = 100.0}};
     return rig;
 }
 

@@ -17,7 +17,7 @@ HostRig rig(std::uint32_t hash = 0x12345678) {
                          .node_hash = hash,
                          .pinned_build_id = {},
                          .sensors = {HostSensor{}}});
-    rig.joints = {.node_id = 19, .joints = {"a"}, .rate_hz = 100.0};
+    rig.joint_sources = {{.node_id = 19, .joints = {"a"}, .rate_hz = 100.0}};
     return rig;
 }
 

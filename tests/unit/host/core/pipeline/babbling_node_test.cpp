@@ -100,7 +100,7 @@ TEST(BabblingNode, is_judged_in_a_replay_as_it_was_live) {
 
 TEST(BabblingNode, whose_joint_states_come_too_often_gives_no_joint_state) {
     Scene scene = good_scene();
-    scene.rig.joints.rate_hz = 40.0;  // 178 frames a second: a hundred samples are 400
+    scene.rig.joint_sources.at(0).rate_hz = 40.0;  // 178 frames a second: a hundred samples are 400
     const RunResult result = run(scene);
     EXPECT_GT(result.inputs.frames.rejected(FrameReason::node_refused), 2'000U);
 }

@@ -81,7 +81,7 @@ Nanoseconds longest_wait(Scene scene) {
 
 TEST(LiveRelease, takes_a_reading_with_the_first_joint_sample_after_it_where_nobody_else_can_send_one) {
     Scene scene = live_scene();
-    scene.config.intake.has_local_joints = true;
+    scene.rig.joint_sources.at(0).is_local = true;
     EXPECT_LE(longest_wait(scene), std::chrono::milliseconds(10 + 20 - 15 + 1));
 }
 
@@ -103,7 +103,7 @@ std::vector<Nanoseconds> ages_on_the_map(Scene scene) {
 
 TEST(LiveRelease, tells_which_readings_each_frame_put_onto_the_map_whatever_they_waited_for) {
     Scene local = live_scene();
-    local.config.intake.has_local_joints = true;
+    local.rig.joint_sources.at(0).is_local = true;
     const auto at_once = ages_on_the_map(local);
     const auto certain = ages_on_the_map(live_scene());
     for (std::size_t i = 0; i < std::min(at_once.size(), certain.size()); ++i) {

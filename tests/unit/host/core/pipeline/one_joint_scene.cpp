@@ -66,7 +66,7 @@ HostRig one_joint_rig() {
         node(kLeft, {good, sensor("inward", T_arm_sensor(0.12, false)), lost_pose, far, no_offset, good}),
         node(kRight, {good}), node(kThird, {good})};
     rig.nodes[1].pinned_build_id = 77;
-    rig.joints = {.node_id = kJoints, .joints = {"shoulder"}, .rate_hz = 100.0};
+    rig.joint_sources = {{.node_id = kJoints, .joints = {"shoulder"}, .rate_hz = 100.0}};
     rig.camera = camera();
     rig.body = {{"base", {0, 0, -0.5}, {0, 0, 0.5}, 0.05}, {"arm", {0.08, 0, 0}, {0.14, 0, 0}, 0.03}};
     rig.certain_body = rig.body;

@@ -21,7 +21,7 @@ struct TwoJointArm {
     RobotModel robot;
 
     TwoJointArm() : robot(model()) {
-        rig.joints.joints = {"turn", "slide"};
+        rig.joint_sources = {{.joints = {"turn", "slide"}}};
         rig.body = {{"post", {0, 0, 0}, {0, 0, 0.2}, 0.05},
                     {"upper", {0, 0, 0}, {0.3, 0, 0}, 0.04},
                     {"hand", {0, 0, 0}, {0, 0, 0}, 0.04}};

@@ -139,7 +139,7 @@ TEST(PocketViews, are_none_through_what_is_occupied_and_from_where_the_arm_may_n
 
 TEST(PocketViews, are_looked_for_all_along_a_rail) {
     TwoJointArm arm;
-    arm.rig.joints.joints = {"rail"};
+    arm.rig.joint_sources = {{.joints = {"rail"}}};
     arm.rig.body = {{"hand", {0, 0, 0}, {0, 0, 0}, 0.04}};
     arm.rig.range_limits.max_m = 0.8;
     HostSensor& eye = arm.rig.nodes[0].sensors[0];

@@ -1,9 +1,11 @@
 #include "host/io/orderlog/order_line.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -55,31 +57,54 @@ std::vector<std::string> sound_lines() {
             "end commits 3 lost_can 0 lost_commits 0 lost_depth 1 last 1a2b3c4d"};
 }
 
+constexpr std::array<std::size_t, 1> kTwo{2};
+constexpr std::array<std::size_t, 1> kSeven{7};
+
 bool is_any(std::string_view line) {
-    return parse_header(line) || parse_commit(line, 2) || parse_trailer(line);
+    return parse_header(line) || parse_commit(line, kTwo) || parse_trailer(line);
 }
 
 TEST(OrderLine, says_what_the_documentation_shows) {
     JointMeasurement joints{{71'000'000'000}, {}};
     joints.position_rad[0] = 0.1;
     joints.position_rad[1] = -0.25;
-    EXPECT_EQ(format_commit(joints, 2), "J 71000000000 0.1 -0.25\n");
-    EXPECT_EQ(format_commit(RangeMeasurement{{2, 3, 0}, {71'003'000'000}, 0.734, 0.021}, 2),
+    EXPECT_EQ(format_commit(joints, kTwo), "J 71000000000 0.1 -0.25\n");
+    EXPECT_EQ(format_commit(RangeMeasurement{{2, 3, 0}, {71'003'000'000}, 0.734, 0.021}, kTwo),
               "R 2 3 0 71003000000 0.734 0.021\n");
-    EXPECT_EQ(format_commit(RangeMeasurement{{2, 3, 0}, {71'003'000'000}, std::nullopt, 0.0}, 2),
+    EXPECT_EQ(format_commit(RangeMeasurement{{2, 3, 0}, {71'003'000'000}, std::nullopt, 0.0}, kTwo),
               "R 2 3 0 71003000000 - 0\n");
-    EXPECT_EQ(format_commit(DepthCommit{12, {71'010'000'000}}, 2), "D 12 71010000000\n");
-    EXPECT_EQ(format_header({0x1a2b3c4d, 1, 2, std::nullopt}),
+    EXPECT_EQ(format_commit(DepthCommit{12, {71'010'000'000}}, kTwo), "D 12 71010000000\n");
+    EXPECT_EQ(format_header({0x1a2b3c4d, 1, {2}, std::nullopt}),
               "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first -\n");
-    EXPECT_EQ(format_header({0x1a2b3c4d, 1, 2, std::nullopt, 0xAU}),
+    EXPECT_EQ(format_header({0x1a2b3c4d, 1, {2}, std::nullopt, 0xAU}),
               "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first - state 0000000a\n");
     EXPECT_EQ(parse_header("octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first - state 0000000a"),
-              (Header{0x1a2b3c4d, 1, 2, std::nullopt, 0xAU}));
-    EXPECT_EQ(format_commit(WaitCommit{12}, 2), "W 12\n");
-    EXPECT_EQ(parse_commit("W 12", 2), Commit(WaitCommit{12}));
+              (Header{0x1a2b3c4d, 1, {2}, std::nullopt, 0xAU}));
+    EXPECT_EQ(format_commit(WaitCommit{12}, kTwo), "W 12\n");
+    EXPECT_EQ(parse_commit("W 12", kTwo), Commit(WaitCommit{12}));
     EXPECT_EQ(format_trailer({3, 0, 0, 1, 0x1a2b3c4dU}),
               "end commits 3 lost_can 0 lost_commits 0 lost_depth 1 last 1a2b3c4d\n");
     for (const std::string& line : sound_lines()) EXPECT_TRUE(is_any(line)) << line;
+}
+
+TEST(OrderLine, names_the_source_of_a_joint_sample_of_several) {
+    constexpr std::array<std::size_t, 2> kArmAndGripper{2, 1};
+    const JointMeasurement arm{.sampled = {71}, .position_rad = {0.1, -0.25}};
+    const JointMeasurement gripper{.sampled = {72}, .position_rad = {0.5}, .source = 1};
+    EXPECT_EQ(format_commit(arm, kArmAndGripper), "J 0 71 0.1 -0.25\n");
+    EXPECT_EQ(format_commit(gripper, kArmAndGripper), "J 1 72 0.5\n");
+    EXPECT_EQ(parse_commit("J 0 71 0.1 -0.25", kArmAndGripper), Commit(arm));
+    EXPECT_EQ(parse_commit("J 1 72 0.5", kArmAndGripper), Commit(gripper));
+    for (const char* line : {"J 2 72 0.5", "J 1 72 0.5 0.5", "J 0 72 0.5", "J 71 0.1 -0.25", "J -1 72 0.5"})
+        EXPECT_FALSE(parse_commit(line, kArmAndGripper)) << line;
+    const Header header{0x1a2b3c4d, 1, {2, 1}, std::nullopt, 0xAU};
+    EXPECT_EQ(format_header(header),
+              "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2+1 first - state 0000000a\n");
+    EXPECT_EQ(parse_header(without_feed(format_header(header))), header);
+    for (const char* joints : {"0", "8", "2+", "+2", "2+0", "7+7+7+7+5", "2-1", ""})
+        EXPECT_FALSE(parse_header(fmt::format(
+            "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints {} first - state 0000000a", joints)))
+            << joints;
 }
 
 TEST(OrderLine, gives_every_double_back_bit_for_bit) {
@@ -90,11 +115,11 @@ TEST(OrderLine, gives_every_double_back_bit_for_bit) {
         std::memcpy(&value, &bits, sizeof(value));
         if (!std::isfinite(value)) continue;
         const RangeMeasurement reading{{1, 2, 3}, {static_cast<std::int64_t>(bits >> 2U)}, value, -value};
-        const auto again = parse_commit(without_feed(format_commit(reading, 1)), 1);
+        const auto again = parse_commit(without_feed(format_commit(reading, kTwo)), kTwo);
         ASSERT_TRUE(again) << "seed 20, value " << value;
         EXPECT_EQ(std::get<RangeMeasurement>(*again), reading) << "seed 20, value " << value;
         JointMeasurement joints{reading.captured, {value, -value, 0.0, value, 1.0, 2.0, 3.0}};
-        const auto sample = parse_commit(without_feed(format_commit(joints, 7)), 7);
+        const auto sample = parse_commit(without_feed(format_commit(joints, kSeven)), kSeven);
         ASSERT_TRUE(sample);
         EXPECT_EQ(std::get<JointMeasurement>(*sample), joints);
     }

@@ -32,7 +32,7 @@ class Saver final : public CommitListener {
         frames.back().captured.ns += 999;  // the order's time counts, not that of the frame's recording
     }
     void on_wait(const WaitCommit& passed) override { put(passed); }
-    void put(const Commit& commit) { text += orderlog::format_commit(commit, kJoints); }
+    void put(const Commit& commit) { text += orderlog::format_commit(commit, std::span(&kJoints, 1)); }
 
     std::string text;
     std::vector<DepthFrame> frames;
@@ -44,7 +44,7 @@ class TextSource final : public CommitSource {
     Result<std::optional<Commit>, Error> next() override {
         std::string line;
         if (!std::getline(text_, line)) return std::optional<Commit>{};
-        auto commit = orderlog::parse_commit(line, kJoints);
+        auto commit = orderlog::parse_commit(line, std::span(&kJoints, 1));
         EXPECT_TRUE(commit) << line;
         return commit;
     }

@@ -49,9 +49,9 @@ TEST(HostRigReader, takes_over_everything_the_host_needs) {
     ASSERT_EQ(sensor.zones.size(), 1U);
     EXPECT_EQ(sensor.zones[0].offset_m, 0.0);
     EXPECT_TRUE(sensor.zones[0].direction_sensor == Eigen::Vector3d::UnitZ());
-    EXPECT_EQ(host.joints.node_id, 3);
-    EXPECT_EQ(host.joints.joints.front(), "panda_joint1");
-    EXPECT_EQ(host.joints.rate_hz, 100.0);
+    EXPECT_EQ(host.joint_sources.at(0).node_id, 3);
+    EXPECT_EQ(host.joint_names().front(), "panda_joint1");
+    EXPECT_EQ(host.joint_sources.at(0).rate_hz, 100.0);
     EXPECT_EQ(host.bit_rates.nominal, 1'000'000U);
     EXPECT_EQ(host.bit_rates.data, 5'000'000U);
     EXPECT_EQ(host.links_ignored_by_sensors, (std::vector<std::string>{"panda_link7", "panda_link8"}));
@@ -148,7 +148,7 @@ TEST(HostRigReader, reads_the_body_and_the_kinematics_from_the_urdf) {
 TEST(HostRigReader, refuses_a_body_outside_the_kinematic_tree) {
     rig::Rig rig = experiment();
     rig.base_link = "panda_link4";
-    rig.joints.joints = {"panda_joint5", "panda_joint6", "panda_joint7"};
+    rig.joint_sources = {{.joints = {"panda_joint5", "panda_joint6", "panda_joint7"}}};
     const auto setup = make_host_setup(rig);
     ASSERT_FALSE(setup);
     EXPECT_EQ(setup.error().code, ErrorCode::conflict);
@@ -178,7 +178,7 @@ TEST(HostRigReader, warns_of_a_robot_without_a_body) {
 TEST(HostRigReader, warns_of_joint_states_so_rare_that_the_gap_of_a_lost_one_is_not_bridged) {
     rig::Rig rig = experiment();
     const auto warnings_at = [&rig](double rate_hz) {
-        rig.joints.rate_hz = rate_hz;
+        rig.joint_sources.at(0).rate_hz = rate_hz;
         const auto setup = make_host_setup(rig);
         return setup ? setup->warnings : std::vector<std::string>{"refused"};
     };

@@ -17,7 +17,7 @@ TEST(OurFilters, pass_the_rigs_identifiers_and_every_heartbeat_of_all_2048) {
         const wire::NodeId node = wire::node_of(id);
         const bool is_of_rig =
             std::ranges::any_of(rig.nodes, [&](const HostNode& of_rig) { return of_rig.node_id == node; });
-        const bool is_ours = is_of_rig || node == wire::kHostId || node == rig.joints.node_id ||
+        const bool is_ours = is_of_rig || node == wire::kHostId || node == rig.joint_sources.at(0).node_id ||
                              wire::type_of(id) == wire::FrameType::heartbeat;
         const bool passes =
             std::ranges::any_of(filters, [&](const IdFilter& filter) { return filter.passes(id); });
