@@ -54,10 +54,16 @@ inline constexpr TableKey kDataSet{
     .path = "camera.data_set",
     .fallback = {.text = "as its layout has it"},
     .meaning = "of a [data set](how-to/record-and-replay.md#replay-a-public-data-set): keys below"};
+inline constexpr TextKey kLink{.path = "camera.link",
+                               .kind = TextKind::element_name,
+                               .fallback = {.text = "the base link"},
+                               .meaning =
+                                   "the URDF link that carries it, at or below the base link: then each "
+                                   "image has the pose of its own time"};
 inline constexpr TableKey kPose{.path = "camera.pose",
                                 .expected = "a [pose](#poses)",
                                 .meaning =
-                                    "T_base_camera of the optical frame: z forward, x right, y down. "
+                                    "T_link_camera of the optical frame: z forward, x right, y down. "
                                     "Images are never mirrored"};
 }  // namespace camera
 

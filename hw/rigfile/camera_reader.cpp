@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/pose.hpp"
 #include "hw/rigfile/rig_keys.hpp"
 #include "hw/rigfile/table.hpp"
@@ -72,7 +73,7 @@ DataSetKeys read_data_set(const Value& value, const std::string& path) {
 
 }  // namespace
 
-Camera read_camera(const Value& value) {
+Camera read_camera(const Value& value, const UrdfDocument& robot, const std::string& base_link) {
     const Table table(value, std::string(name_of(keys::kCameraTable)), keys::kCamera);
     Camera camera;
     camera.width = table.integer<std::uint32_t>(keys::camera::kWidth);
@@ -92,7 +93,16 @@ Camera read_camera(const Value& value) {
                                              fmt::format("{}", camera.depth_max_m)});
     if (const Value* data_set = table.find(keys::camera::kDataSet))
         camera.data_set = read_data_set(*data_set, table.path_of(keys::camera::kDataSet));
-    camera.T_base_camera = read_pose(table.require(keys::camera::kPose), table.path_of(keys::camera::kPose),
+    if (const Value* link = table.find(keys::camera::kLink)) {
+        camera.link = table.text(keys::camera::kLink);
+        if (!robot.is_below(base_link, camera.link))
+            fail(*link, table.path_of(keys::camera::kLink),
+                 {ErrorCode::unknown_name,
+                  fmt::format("expected a link of {} at or below {}", robot.file().filename().string(),
+                              base_link),
+                  fmt::format("'{}'", camera.link), "it has " + joined(robot.link_names())});
+    }
+    camera.T_link_camera = read_pose(table.require(keys::camera::kPose), table.path_of(keys::camera::kPose),
                                      {.reach_m = keys::kRoomReach_m, .may_look_at_point = true});
     return camera;
 }

@@ -167,7 +167,8 @@ void write_camera(Writer& out, const Camera& camera) {
         if (has_gap) data_set.entry(keys::data_set::kPoseGapMax, number(gap_ms));
         out.entry("  ", keys::camera::kDataSet, data_set.take());
     }
-    out.entry("  ", keys::camera::kPose, pose(camera.T_base_camera));
+    if (!camera.link.empty()) out.entry("  ", keys::camera::kLink, quoted(camera.link));
+    out.entry("  ", keys::camera::kPose, pose(camera.T_link_camera));
 }
 
 void write_board(Writer& out, const Board& board) {

@@ -82,7 +82,8 @@ struct Camera {
     double rate_hz = 0.0;
     double depth_min_m = kDepthMinDefault_m;
     double depth_max_m = kDepthMaxDefault_m;
-    Eigen::Isometry3d T_base_camera =
+    std::string link = {};  ///< that carries it; empty: the base link
+    Eigen::Isometry3d T_link_camera =
         Eigen::Isometry3d::Identity();  ///< optical frame: z forward, x right, y down
     DataSetKeys data_set = {};
 };
@@ -146,6 +147,10 @@ struct Rig {
         for (const JointSource& source : joint_sources)
             names.insert(names.end(), source.joints.begin(), source.joints.end());
         return names;
+    }
+    /// The camera beside the robot; empty if there is none, or if it is on a link.
+    [[nodiscard]] std::optional<Camera> external_camera() const {
+        return camera && camera->link.empty() ? camera : std::nullopt;
     }
     /// The number of joints of each source.
     [[nodiscard]] std::vector<std::size_t> joint_counts() const {

@@ -19,11 +19,12 @@ constexpr auto kPoseKeys = std::to_array<AnyKey>(
 constexpr auto kBusKeys = std::to_array<AnyKey>({&bus::kProtocol, &bus::kNominalBitrate, &bus::kDataBitrate});
 constexpr auto kRangeLimitsKeys = std::to_array<AnyKey>(
     {&range_limits::kMin, &range_limits::kMax, &range_limits::kSigmaMax, &range_limits::kTimeUncertaintyMax});
-constexpr auto kJointsKeys = std::to_array<AnyKey>({&joints::kNodeId, &joints::kNames, &joints::kRate, &joints::kWay});
+constexpr auto kJointsKeys =
+    std::to_array<AnyKey>({&joints::kNodeId, &joints::kNames, &joints::kRate, &joints::kWay});
 constexpr auto kCameraKeys =
     std::to_array<AnyKey>({&camera::kWidth, &camera::kHeight, &camera::kFx, &camera::kFy, &camera::kCx,
                            &camera::kCy, &camera::kDistortion, &camera::kRate, &camera::kDepthMin,
-                           &camera::kDepthMax, &camera::kDataSet, &camera::kPose});
+                           &camera::kDepthMax, &camera::kDataSet, &camera::kLink, &camera::kPose});
 constexpr auto kDataSetKeys =
     std::to_array<AnyKey>({&data_set::kDepthUnits, &data_set::kDepthNoValue, &data_set::kPoseGapMax});
 constexpr auto kDistortionKeys = std::to_array<AnyKey>(

@@ -50,7 +50,7 @@ void DepthSteps::clean(DepthImage& image, bool is_same_place) {
 }
 
 void DepthSteps::take(const DepthFrame& frame, const RobotPose& robot) {
-    const Eigen::Isometry3d T_map_camera = frame.T_map_camera.value_or(camera_.T_base_camera);
+    const Eigen::Isometry3d T_map_camera = frame.T_map_camera.value_or(camera_.T_link_camera);
     const bool is_same_place =
         T_map_camera_before_ && T_map_camera_before_->matrix() == T_map_camera.matrix();
     DepthImage image;

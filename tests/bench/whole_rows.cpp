@@ -35,7 +35,7 @@ HostRig rig_of(const RoomFrames& room) {
     rig.camera = HostCamera{.intrinsics = room.camera,
                             .depth_min_m = 0.001,
                             .depth_max_m = 65.535,
-                            .T_base_camera = room.frames.front().T_map_camera};
+                            .T_link_camera = room.frames.front().T_map_camera};
     return rig;
 }
 

@@ -83,10 +83,11 @@ void describe(const rig::Rig& rig, const HostSetup& host) {
         for (const std::string& line : rig::reflex_lines(node)) print("    {}\n", line);
     }
     for (const rig::JointSource& source : rig.joint_sources)
-        print("  node {} sends {} joints at {:g} Hz{}\n", source.node_id, source.joints.size(), source.rate_hz,
-              source.way == rig::JointWay::socket ? " through the joint socket" : "");
+        print("  node {} sends {} joints at {:g} Hz{}\n", source.node_id, source.joints.size(),
+              source.rate_hz, source.way == rig::JointWay::socket ? " through the joint socket" : "");
     if (rig.camera) {
-        print("  camera {} x {} at {:g} Hz\n", rig.camera->width, rig.camera->height, rig.camera->rate_hz);
+        print("  camera {} x {} at {:g} Hz{}\n", rig.camera->width, rig.camera->height, rig.camera->rate_hz,
+              rig.camera->link.empty() ? "" : " on " + rig.camera->link);
     }
     print("  CAN{} {} bit/s{}: load {:.1f} % in the worst case, at most {:.0f} %\n",
           rig.bus.uses_can_fd ? " FD" : "", rig.bus.nominal_bitrate,

@@ -79,6 +79,7 @@ rig::Rig rig_of_camera(const rig::Camera& camera, const std::string& name) {
     rig.name = name;
     rig.base_link = "map";
     rig.camera = camera;
+    rig.camera->link.clear();  // there is no robot: each image has its own pose
     return rig;
 }
 

@@ -22,8 +22,18 @@ Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request) {
                          : named_camera(request.camera.empty() ? tum::kDataSetCameras.front()
                                                                : std::string_view(request.camera));
     if (!camera) return camera;
-    if (*given) camera->T_base_camera = (*given)->T_map_base * camera->T_base_camera;
-    if (request.T_map_camera) camera->T_base_camera = *request.T_map_camera;
+    if (*given && !camera->link.empty() && !request.T_map_camera) {
+        return fail(ExitCode::bad_config,
+                    {.code = ErrorCode::conflict,
+                     .what = "the pose of a camera on a link is not known without joint states",
+                     .value = "'" + camera->link + "'",
+                     .remedy = "give --pose",
+                     .file = request.rig,
+                     .key = "camera.link"});
+    }
+    camera->link.clear();
+    if (*given) camera->T_link_camera = (*given)->T_map_base * camera->T_link_camera;
+    if (request.T_map_camera) camera->T_link_camera = *request.T_map_camera;
     return camera;
 }
 

@@ -57,18 +57,17 @@ Points end_of(const HostZone& zone, const Eigen::Isometry3d& T_base_sensor) {
     return edge;
 }
 
-std::vector<Points> pyramid_of(const HostCamera& camera) {
+std::vector<Points> pyramid_of(const HostCamera& camera, const Eigen::Isometry3d& T_base_camera) {
     const CameraIntrinsics& of = camera.intrinsics;
     Points corners;
     for (const auto& [u, v] :
          {std::pair{0.0, 0.0}, std::pair{1.0, 0.0}, std::pair{1.0, 1.0}, std::pair{0.0, 1.0}}) {
         const double x = (u * of.width - of.cx) / of.fx, y = (v * of.height - of.cy) / of.fy;
-        corners.push_back(camera.T_base_camera * (kPyramid_m * Eigen::Vector3d(x, y, 1.0)));
+        corners.push_back(T_base_camera * (kPyramid_m * Eigen::Vector3d(x, y, 1.0)));
     }
     std::vector<Points> lines{corners};
     lines.front().push_back(corners.front());
-    for (const Eigen::Vector3d& corner : corners)
-        lines.push_back({camera.T_base_camera.translation(), corner});
+    for (const Eigen::Vector3d& corner : corners) lines.push_back({T_base_camera.translation(), corner});
     return lines;
 }
 
@@ -92,7 +91,10 @@ Drawing drawing_of(const HostSetup& setup, std::span<const double> position) {
             drawing.sensors.push_back(std::move(drawn));
         }
     }
-    if (setup.rig.camera) drawing.camera = pyramid_of(*setup.rig.camera);
+    if (const auto& camera = setup.rig.camera) {
+        const auto link = setup.robot.find_link(camera->link);
+        drawing.camera = pyramid_of(*camera, T_base_link[link.value_or(0)] * camera->T_link_camera);
+    }
     for (const Points& line : drawing.camera)
         for (const Eigen::Vector3d& point : line) drawing.box.extend(point);
     return drawing;

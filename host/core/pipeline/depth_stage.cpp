@@ -44,7 +44,7 @@ DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned
       config_(config),
       self_margin_m_(rig.depth_self_margin_m),
       T_map_base_(rig.T_map_base),
-      T_map_camera_(rig.T_map_base * camera_.T_base_camera),
+      T_map_camera_(rig.T_map_base * camera_.T_link_camera),
       filter_(filter_of(config)),
       integrator_(config, camera_.intrinsics, threads) {
     if (config.depth_update == DepthUpdate::denoised) {
@@ -70,7 +70,7 @@ std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& rob
 std::uint64_t DepthStage::filter(DepthImage& image, const DepthFrame& frame, const RobotPose* robot) {
     if (config_.depth_filter.is_enabled) filter_.filter(image);
     if (certain_) seen_.everything = image;
-    return needs_robot() ? take_robot_out(image, *robot, T_base_camera_of(frame)) : 0;
+    return removes_robot() ? take_robot_out(image, *robot, T_base_camera_of(frame)) : 0;
 }
 
 /// The robot is removed first: so the memory keeps what is behind it while it passes.
@@ -78,7 +78,7 @@ std::uint64_t DepthStage::denoise(DepthImage& image, const DepthFrame& frame, co
     const auto memory =
         is_from_same_place(frame) ? DepthDenoiser::Memory::used : DepthDenoiser::Memory::of_other_place;
     const std::uint64_t robot_pixels =
-        needs_robot() ? take_robot_out(image, *robot, T_base_camera_of(frame)) : 0;
+        removes_robot() ? take_robot_out(image, *robot, T_base_camera_of(frame)) : 0;
     if (certain_) filter_for_cross_check(image);
     denoiser_->denoise(image, memory);
     return robot_pixels;
@@ -122,9 +122,9 @@ std::optional<CameraMemory> DepthStage::memory() const {
 
 bool DepthStage::resume_with(const CameraMemory& memory) {
     assert(memory.pixels.size() == std::size_t{memory.width} * memory.height);
-    const bool is_own = denoiser_ && memory.width == denoiser_->width() &&
-                        memory.height == denoiser_->height() &&
-                        memory.T_map_camera.matrix() == T_map_camera_.matrix();
+    const bool is_of_pose = !camera_.link.empty() || memory.T_map_camera.matrix() == T_map_camera_.matrix();
+    const bool is_own =
+        denoiser_ && memory.width == denoiser_->width() && memory.height == denoiser_->height() && is_of_pose;
     if (!is_own) return false;
     std::vector<EndMemory::End> ends;
     ends.reserve(memory.pixels.size());
@@ -139,6 +139,7 @@ bool DepthStage::resume_with(const CameraMemory& memory) {
 
 Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, const RobotPose* robot) {
     assert(robot != nullptr || !needs_robot());
+    assert(frame.T_map_camera || camera_.link.empty());
     Result<DepthImage, DepthFrameFault> converted =
         to_depth_image(frame, {camera_.depth_min_m, camera_.depth_max_m});
     if (!converted || converted->width != camera_.intrinsics.width ||

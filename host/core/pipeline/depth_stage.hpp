@@ -28,8 +28,10 @@ class DepthStage {
     DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads = 1,
                bool finds_certain = false);
 
-    /// True if a frame requires the robot's pose.
-    [[nodiscard]] bool needs_robot() const noexcept { return config_.removes_robot_from_depth; }
+    /// True if a frame requires the robot's pose: to remove the robot, or to place a camera on a link.
+    [[nodiscard]] bool needs_robot() const noexcept {
+        return config_.removes_robot_from_depth || !camera_.link.empty();
+    }
 
     /// `robot`: at the frame's capture time; may be null unless `needs_robot()`.
     [[nodiscard]] Result<DepthUpdates, DepthReason> updates(const DepthFrame& frame, const RobotPose* robot);
@@ -40,7 +42,8 @@ class DepthStage {
     /// may be in `updates`, which does not change it, but not in `keep`. O(pixels). Throws std::bad_alloc.
     [[nodiscard]] std::optional<CameraMemory> memory() const;
     /// Continues from this memory, of as many pixels as its size says (asserted). False: nothing is changed,
-    /// because the update has no memory, or the rig's camera has another size or pose. Throws std::bad_alloc.
+    /// because the update has no memory, or the rig's camera has another size or, unless it is on a link,
+    /// another pose. Throws std::bad_alloc.
     [[nodiscard]] bool resume_with(const CameraMemory& memory);
     /// The next frame builds on nothing.
     void forget() noexcept { T_map_camera_before_.reset(); }
@@ -68,13 +71,14 @@ class DepthStage {
     [[nodiscard]] const DepthPixelCounts& pixels() const noexcept { return pixels_; }
 
   private:
+    [[nodiscard]] bool removes_robot() const noexcept { return config_.removes_robot_from_depth; }
     /// Each of the two removes noise and the robot; returns the number of the robot's pixels.
     [[nodiscard]] std::uint64_t filter(DepthImage& image, const DepthFrame& frame, const RobotPose* robot);
     [[nodiscard]] std::uint64_t denoise(DepthImage& image, const DepthFrame& frame, const RobotPose* robot);
     void filter_for_cross_check(const DepthImage& without_robot);
     [[nodiscard]] bool is_from_same_place(const DepthFrame& frame) const;
     [[nodiscard]] Eigen::Isometry3d T_base_camera_of(const DepthFrame& frame) const {
-        return frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_base_camera;
+        return frame.T_map_camera ? T_map_base_.inverse() * *frame.T_map_camera : camera_.T_link_camera;
     }
     /// Returns the number of removed pixels.
     [[nodiscard]] std::uint64_t take_robot_out(DepthImage& image, const RobotPose& robot,
@@ -84,7 +88,8 @@ class DepthStage {
     MappingConfig config_;
     double self_margin_m_;
     Eigen::Isometry3d T_map_base_;
-    Eigen::Isometry3d T_map_camera_;  ///< for a frame without its own camera pose
+    Eigen::Isometry3d
+        T_map_camera_;  ///< for a frame without its own camera pose, if the camera is on no link
     DepthFilter filter_;
     std::optional<DepthDenoiser> denoiser_;
     std::optional<Eigen::Isometry3d> T_map_camera_before_;  ///< of the last frame that was kept

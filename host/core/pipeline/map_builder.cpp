@@ -81,17 +81,25 @@ Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotM
     if (!beams) {
         return unexpected(beams.error());
     }
+    std::optional<LinkId> camera_link;
+    if (rig.camera && !rig.camera->link.empty()) {
+        camera_link = robot.find_link(rig.camera->link);
+        if (!camera_link) return unexpected(RobotModelFault{RobotModelError::unreachable, rig.camera->link});
+    }
     auto tracker = RobotTracker::build(rig, std::move(robot), joints);
     if (!tracker) {
         return unexpected(tracker.error());
     }
-    return MapBuilder(rig, std::move(tracker).value(), std::move(beams).value(), mapping, maps,
+    return MapBuilder(rig, std::move(tracker).value(), camera_link, std::move(beams).value(), mapping, maps,
                       depth_threads);
 }
 
-MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams,
-                       const MappingConfig& mapping, const std::vector<MapFeed>& maps, unsigned depth_threads)
+MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, std::optional<LinkId> camera_link,
+                       BeamBuilder beams, const MappingConfig& mapping, const std::vector<MapFeed>& maps,
+                       unsigned depth_threads)
     : robot_(std::move(robot)),
+      T_map_base_(rig.T_map_base),
+      camera_link_(camera_link),
       beams_(std::move(beams)),
       ranges_(mapping, mapping.range_update == RangeUpdate::cone && sees_any_cone(rig)) {
     for (const MapFeed feed : maps) maps_.push_back({feed, FusedMap(mapping.map)});
@@ -183,10 +191,32 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     const Status<ReadingReason> added = is_out ? unexpected(ReadingReason::contradicts_camera)
                                                : watched([&] { return add_range(measurement, *beam); });
     if (cross_check_ && (added || is_out)) {
-        cross_check_->on_beam(*beam, beams_.T_map_sensor(source, *robot),
-                              beams_.twists_map(source, *robot, robot_.robot()));
+        cross_check_->on_beam(*beam, beams_.T_map_sensor(source, *robot), twists_of(measurement, *robot));
     }
     return added;
+}
+
+/// Relative to the camera, which a joint may move, too.
+JointTwists MapBuilder::twists_of(const RangeMeasurement& measurement, const RobotPose& robot) const {
+    JointTwists twists = beams_.twists_map(measurement.source, robot, robot_.robot());
+    if (!camera_link_) return twists;
+    JointTwists of_camera;
+    robot_.robot().twists(*camera_link_, robot.T_base_link, of_camera);
+    of_camera = placed(T_map_base_, of_camera);
+    for (std::size_t i = 0; i < twists.size(); ++i) {
+        twists[i].turn -= of_camera[i].turn;
+        twists[i].shift -= of_camera[i].shift;
+    }
+    return twists;
+}
+
+Status<DepthReason> MapBuilder::place_camera(DepthFrame& frame, const RobotPose& robot) const {
+    if (!camera_link_ || frame.T_map_camera) return Done{};
+    if ((robot_.robot().joints_above(*camera_link_) & robot.unknown) != 0)
+        return unexpected(DepthReason::joints_missing);
+    frame.T_map_camera =
+        T_map_base_ * robot.T_base_link[*camera_link_] * depth_stage_->camera().T_link_camera;
+    return Done{};
 }
 
 Status<ReadingReason> MapBuilder::add_range(const RangeMeasurement& measurement, const Beam& beam) {
@@ -221,6 +251,7 @@ Result<MapBuilder::DepthWork, DepthReason> MapBuilder::begin(DepthFrame frame) {
             return unexpected(DepthReason::joints_missing);
         }
         depth.robot = *robot;
+        if (const auto placed = place_camera(depth.frame, *robot); !placed) return unexpected(placed.error());
     }
     return depth;
 }

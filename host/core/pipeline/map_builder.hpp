@@ -135,8 +135,8 @@ class MapBuilder {
     }
 
   private:
-    MapBuilder(const HostRig& rig, RobotTracker robot, BeamBuilder beams, const MappingConfig& mapping,
-               const std::vector<MapFeed>& maps, unsigned depth_threads);
+    MapBuilder(const HostRig& rig, RobotTracker robot, std::optional<LinkId> camera_link, BeamBuilder beams,
+               const MappingConfig& mapping, const std::vector<MapFeed>& maps, unsigned depth_threads);
 
     [[nodiscard]] FusedMap& own_map() noexcept;
     [[nodiscard]] Status<ReadingReason> add_range(const RangeMeasurement& measurement, const Beam& beam);
@@ -145,7 +145,13 @@ class MapBuilder {
     template <class Apply>
     auto watched(const Apply& apply);
 
+    /// Gives a frame of a camera on a link its pose; `joints_missing`: the link is unplaced.
+    [[nodiscard]] Status<DepthReason> place_camera(DepthFrame& frame, const RobotPose& robot) const;
+    [[nodiscard]] JointTwists twists_of(const RangeMeasurement& measurement, const RobotPose& robot) const;
+
     RobotTracker robot_;
+    Eigen::Isometry3d T_map_base_;
+    std::optional<LinkId> camera_link_;  ///< that carries the camera; empty: the base link
     BeamBuilder beams_;
     RangeModel ranges_;
     std::optional<DepthStage> depth_stage_;

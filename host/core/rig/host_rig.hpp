@@ -57,8 +57,9 @@ struct HostCamera {
     CameraIntrinsics intrinsics;
     double depth_min_m = 0.5;  ///< along the optical axis
     double depth_max_m = 4.5;
+    std::string link = {};  ///< URDF link that carries it; empty: the base link
     /// Optical frame: z forward, x right, y down.
-    Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d T_link_camera = Eigen::Isometry3d::Identity();
     double rate_hz = 10.0;
 };
 
@@ -99,7 +100,7 @@ struct HostRig {
     std::string name;
     std::uint32_t rig_hash = 0;
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
-    std::vector<HostNode> nodes;  ///< sensor nodes, unique ids
+    std::vector<HostNode> nodes;                 ///< sensor nodes, unique ids
     std::vector<HostJointSource> joint_sources;  ///< unique ids and joints, at most kJointsMax in all
     std::optional<HostCamera> camera;
     std::vector<LinkCapsule> body;

@@ -117,7 +117,8 @@ HostCamera host_camera(const rig::Camera& camera) {
     host.intrinsics = {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, camera.lens};
     host.depth_min_m = camera.depth_min_m;
     host.depth_max_m = camera.depth_max_m;
-    host.T_base_camera = camera.T_base_camera;
+    host.link = camera.link;
+    host.T_link_camera = camera.T_link_camera;
     host.rate_hz = camera.rate_hz;
     return host;
 }

@@ -34,9 +34,9 @@ struct Ground {
 
 Result<rig::Rig, AppError> read_rig_with_camera(const DepthRequest& request) {
     auto rig = read_given_rig(request.rig);
-    if (rig && !rig->camera) {
+    if (rig && !rig->external_camera()) {
         return fail(ExitCode::bad_config, {.code = ErrorCode::missing_key,
-                                           .what = "expected a rig with a camera",
+                                           .what = "expected a rig with a camera that is on no link",
                                            .file = request.rig,
                                            .key = "camera"});
     }

@@ -133,7 +133,7 @@ class HandRun {
 
     [[nodiscard]] sim::World with_hand(double moved_s) const {
         std::vector<sim::Solid> solids = background_;
-        solids.push_back(hand_solid(camera_.T_base_camera, motion_.p_camera_front(moved_s)));
+        solids.push_back(hand_solid(camera_.T_link_camera, motion_.p_camera_front(moved_s)));
         return sim::World(std::move(solids));
     }
 

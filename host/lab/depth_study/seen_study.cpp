@@ -84,9 +84,9 @@ Result<std::vector<SeenFigures>, AppError> study_moving(const DepthCase& of, dou
     const std::uint32_t last = frame_at(end_s, of.camera.rate_hz);
     for (std::uint32_t i = 0; i <= last; ++i) {
         rig::Camera camera = of.camera;
-        camera.T_base_camera = circling(of.camera.T_base_camera, i / of.camera.rate_hz);
+        camera.T_link_camera = circling(of.camera.T_link_camera, i / of.camera.rate_hz);
         DepthFrame frame = NoisyCamera(of.world, camera, of.noise.noise, of.seed).frame(i);
-        frame.T_map_camera = of.T_map_base * camera.T_base_camera;
+        frame.T_map_camera = of.T_map_base * camera.T_link_camera;
         if (auto taken = study.take(frame); !taken) return unexpected(taken.error());
         if (i != 0 && i != last) continue;
         if (auto seen = study.look_from(camera); !seen) return unexpected(seen.error());

@@ -37,9 +37,9 @@ CleanView::CleanView(const sim::World& world, const rig::Camera& camera)
     for (const RaySlope& slope : slopes_)
         length_max = std::max(length_max, std::sqrt(1.0 + slope.x * slope.x + slope.y * slope.y));
     std::vector<sim::RayHit> hits(rays.size());
-    const Eigen::Vector3d p_base_camera = camera.T_base_camera.translation();
+    const Eigen::Vector3d p_base_camera = camera.T_link_camera.translation();
     world.cast_fan(p_base_camera, rays, camera.depth_max_m * length_max, hits);
-    const Eigen::Vector3d axis_base = camera.T_base_camera.linear().col(2);
+    const Eigen::Vector3d axis_base = camera.T_link_camera.linear().col(2);
     depth_m_.resize(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const double depth_m = hits[i].range_m * rays[i].dot(axis_base);
@@ -68,7 +68,7 @@ std::vector<Eigen::Vector3d> CleanView::rays_base() const {
     rays.reserve(slopes_.size());
     for (const RaySlope& slope : slopes_) {
         const Eigen::Vector3d ray_camera = Eigen::Vector3d(slope.x, slope.y, 1.0).normalized();
-        rays.emplace_back(camera_.T_base_camera.linear() * ray_camera);
+        rays.emplace_back(camera_.T_link_camera.linear() * ray_camera);
     }
     return rays;
 }
@@ -141,7 +141,7 @@ bool CleanView::block_sees_behind(std::size_t column, std::size_t row, const Rec
 }
 
 bool CleanView::is_clear(const Eigen::Vector3d& p_base, double radius_m) const {
-    const Ball ball{camera_.T_base_camera.inverse() * p_base, radius_m};
+    const Ball ball{camera_.T_link_camera.inverse() * p_base, radius_m};
     if (ball.p_camera.z() <= 2.0 * radius_m || !sees_behind_centre(ball)) return false;
     const Rectangle box = rectangle_round(ball);
     if (box.u_begin < 0.0 || box.v_begin < 0.0 || box.u_end > camera_.width || box.v_end > camera_.height)

@@ -23,7 +23,7 @@ struct ViewPoint {
 
 class CleanView {
   public:
-    /// The camera is at `camera.T_base_camera`. One ray a pixel.
+    /// The camera is at `camera.T_link_camera`. One ray a pixel.
     CleanView(const sim::World& world, const rig::Camera& camera);
 
     /// The points within the camera's depth limits, row by row.

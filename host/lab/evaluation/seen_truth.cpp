@@ -40,7 +40,7 @@ double footprint_m(const rig::Camera& camera, double depth_m) {
 
 SeenVoxel seen_voxel(VoxelKey key, const ViewPoint& point, const Thickness& thickness,
                      const rig::Camera& camera, const Eigen::Isometry3d& T_map_base) {
-    const Eigen::Vector3d to_camera = (camera.T_base_camera.translation() - point.p_base).normalized();
+    const Eigen::Vector3d to_camera = (camera.T_link_camera.translation() - point.p_base).normalized();
     const bool is_thinnest = thickness.of_class == ThicknessClass::rod_5_8_mm;
     return {.key = key,
             .thickness = thickness.of_class,

@@ -63,7 +63,7 @@ VoxelMask seen_mask(const sim::World& world, const TruthConfig& config, const Ke
     if (config.external_camera) {
         const VoxelLattice lattice(config.resolution_m);
         const auto& camera = *config.external_camera;
-        for (const auto& p_base : render_view(world, camera, camera.T_base_camera, 1).p_base_points) {
+        for (const auto& p_base : render_view(world, camera, camera.T_link_camera, 1).p_base_points) {
             mark(seen, lattice, T_map_base * p_base.cast<double>());
         }
     }

@@ -62,7 +62,7 @@ struct SurveyConfig {
                        .rate_hz = 10.0,
                        .depth_min_m = 0.5,
                        .depth_max_m = 4.5,
-                       .T_base_camera = Eigen::Isometry3d::Identity()};
+                       .T_link_camera = Eigen::Isometry3d::Identity()};
     std::uint32_t pixel_stride = 2;
 };
 

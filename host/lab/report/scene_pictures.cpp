@@ -53,12 +53,12 @@ struct CameraGlyph {
 
 CameraGlyph glyph_of(const rig::Camera& camera) {
     const auto corner = [&](double column, double row) -> Eigen::Vector3d {
-        return camera.T_base_camera *
+        return camera.T_link_camera *
                (CameraGlyph::kReach_m *
                 Eigen::Vector3d((column - camera.cx) / camera.fx, (row - camera.cy) / camera.fy, 1.0));
     };
-    return {camera.T_base_camera.translation(),
-            camera.T_base_camera.linear().col(0),
+    return {camera.T_link_camera.translation(),
+            camera.T_link_camera.linear().col(0),
             {corner(0, 0), corner(camera.width, 0), corner(camera.width, camera.height),
              corner(0, camera.height)}};
 }

@@ -125,7 +125,7 @@ Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const 
                                                SeedOutcome& outcome) {
     const PartTimer timer("ground truth");
     evaluation::TruthConfig config = ground.truth;
-    config.external_camera = rig.camera;
+    config.external_camera = rig.external_camera();
     if (auto fault = evaluation::region_fault(config.region, config.resolution_m, rig.T_map_base))
         return fail(ExitCode::bad_config, ground.scenario.error("region", std::move(*fault)));
     auto truth = evaluation::build_truth(ground.world, ground.survey, config, rig.T_map_base);

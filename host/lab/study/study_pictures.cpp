@@ -91,7 +91,7 @@ PicturePair draw_scene(const sim::World& world, const sim::Scenario& scenario, c
     report::SceneDressing dressing;
     dressing.stage = {scenario.region.p_base_min, scenario.region.p_base_max};
     if (scenario.region.floor_top_m) dressing.stage.min().z() = *scenario.region.floor_top_m;
-    dressing.camera = rig.camera;
+    dressing.camera = rig.external_camera();
     dressing.hidden_models = scenario.hidden_models;
     dress_with_robot(world, scenario, rig, dressing);
     report::ImagePair images = report::render_scene(world, dressing);

@@ -61,12 +61,12 @@ DepthCamera::DepthCamera(const World& world, const rig::Camera& camera, const De
     directions_base.reserve(std::size_t{camera.width} * camera.height);
     for (std::uint32_t v = 0; v < camera.height; ++v) {
         for (std::uint32_t u = 0; u < camera.width; ++u) {
-            directions_base.emplace_back(camera.T_base_camera.linear() * direction_camera(u, v));
+            directions_base.emplace_back(camera.T_link_camera.linear() * direction_camera(u, v));
         }
     }
     background_m_.resize(directions_base.size());
     // Noise may bring a surface back into the depth limits: cast well beyond them.
-    world.cast_fan(camera.T_base_camera.translation(), directions_base,
+    world.cast_fan(camera.T_link_camera.translation(), directions_base,
                    camera.depth_max_m + noise_margin_m(noise, camera.depth_max_m), background_m_);
 }
 
@@ -130,7 +130,7 @@ void DepthCamera::draw(const PosedMesh& mesh, std::vector<double>& depth_m) cons
 
 std::vector<std::uint16_t> DepthCamera::render(const PosedBody& body, std::uint32_t frame_index) const {
     std::vector<double> depth_m = background_m_;
-    const Eigen::Isometry3d T_camera_base = camera_.T_base_camera.inverse();
+    const Eigen::Isometry3d T_camera_base = camera_.T_link_camera.inverse();
     for (const BodyCapsule& capsule : body.capsules) {
         draw({T_camera_base * capsule.p_base_a, T_camera_base * capsule.p_base_b, capsule.radius_m}, depth_m);
     }

@@ -82,7 +82,8 @@ class RigInOneProcess {
         }
         std::size_t first = 0;
         for (const rig::JointSource& source : input.rig.joint_sources) {
-            const JointPositions positions = [&trajectory, first, count = source.joints.size()](SimTime time) {
+            const JointPositions positions = [&trajectory, first,
+                                              count = source.joints.size()](SimTime time) {
                 const Eigen::VectorXd q = trajectory.at(time);
                 return std::vector<double>(q.data() + first, q.data() + first + count);
             };
@@ -212,6 +213,14 @@ class RigInOneProcess {
 
 namespace {
 
+/// The rig's camera, as if fixed to the base where its link is.
+rig::Camera camera_at(const ExperimentInput& input, const Eigen::VectorXd& position) {
+    rig::Camera camera = *input.rig.camera;
+    if (!camera.link.empty())
+        camera.T_link_camera = input.arm.forward(position, camera.link) * camera.T_link_camera;
+    return camera;
+}
+
 Result<ExperimentSummary, Error> run(const ExperimentInput& input, const ExperimentOutput& output) {
     const SimTime start = from_seconds(input.scenario.rest_s);
     const auto trajectory = Trajectory::circle(input.arm, input.scenario.motion, start);
@@ -233,9 +242,11 @@ Result<ExperimentSummary, Error> run(const ExperimentInput& input, const Experim
             const SimTime captured{start.us + from_seconds(period_s * index).us};
             if (captured >= end) break;
             rig.run_until(captured);
-            // A camera casts a static world once. If models move, it is created again for each frame.
-            if (!camera || moving)
-                camera.emplace(moving ? moving(captured) : input.world, *input.rig.camera, noise, input.seed);
+            // A camera casts a static world once. If models or the camera move, it is created again for each
+            // frame.
+            if (!camera || moving || !input.rig.camera->link.empty())
+                camera.emplace(moving ? moving(captured) : input.world,
+                               camera_at(input, trajectory->at(captured)), noise, input.seed);
             output.on_depth(
                 SimulatedHostClock(kHostAtStart).at(captured), input.rig.camera->width,
                 input.rig.camera->height,

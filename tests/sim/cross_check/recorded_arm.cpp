@@ -53,7 +53,7 @@ Eigen::Isometry3d looking(const Eigen::Vector3d& from, const Eigen::Vector3d& at
 rig::Rig read_rig_of(const std::string& name, std::uint32_t pixel_divisor, const KeptChoice& choice) {
     rig::Rig rig = needed(rig::read_rig(kHw / "rigs" / name));
     if (choice.camera_at_m)
-        rig.camera->T_base_camera = looking((*choice.camera_at_m)[0], (*choice.camera_at_m)[1]);
+        rig.camera->T_link_camera = looking((*choice.camera_at_m)[0], (*choice.camera_at_m)[1]);
     rig::Camera& camera = *rig.camera;
     camera.width /= pixel_divisor;
     camera.height /= pixel_divisor;
@@ -122,7 +122,7 @@ class Rig {
           has_predictions_(choice.has_predictions),
           joint_offset_rad_(choice.joint_offset_rad) {
         run.rig = setup_.rig;
-        run.rig.camera->T_base_camera = reported(setup_.rig.camera->T_base_camera, choice.camera_error);
+        run.rig.camera->T_link_camera = reported(setup_.rig.camera->T_link_camera, choice.camera_error);
         std::uint32_t noise_id = 0;
         const auto scene_of = [&](const rig::Sensor& sensor, const Eigen::Isometry3d& T_link_sensor) {
             return sim::ranging_scene({stage.world, stage.arm, stage.trajectory, stage.body,
@@ -246,9 +246,9 @@ std::vector<KeptRun> keep_runs(const std::vector<std::string>& names, std::uint3
     const auto camera = std::make_shared<KeptCamera>();
     camera->intrinsics = host.camera->intrinsics;
     camera->ray_slope_max = LensInverse(host.camera->intrinsics.lens).radius();
-    camera->T_map_camera = host.T_map_base * host.camera->T_base_camera;
+    camera->T_map_camera = host.T_map_base * host.camera->T_link_camera;
     const PixelRays pixel_rays(camera->intrinsics);
-    const Eigen::Isometry3d T_camera_base = host.camera->T_base_camera.inverse();
+    const Eigen::Isometry3d T_camera_base = host.camera->T_link_camera.inverse();
     const bool is_full = pixel_divisor == 1;
     DepthFilter filter({.is_enabled = true,
                         .window = is_full ? 5U : 3U,

@@ -91,7 +91,7 @@ TEST_F(ExperimentTruth, the_external_camera_sees_nothing_of_the_hidden_objects) 
 /// The map of one image by OctoMap's own rule, any end is a hit, with space round the region.
 FusedMap map_of_image(const sim::World& world, const rig::Camera& camera, const SeenTruth& truth,
                       const Eigen::Isometry3d& T_map_base) {
-    const Survey one_view{{render_view(world, camera, camera.T_base_camera, 1)}};
+    const Survey one_view{{render_view(world, camera, camera.T_link_camera, 1)}};
     const KeyBox box = truth.region().padded(4);
     const auto grid = camera_truth(one_view, CameraTruthConfig{}, box, truth.resolution_m, T_map_base);
     std::vector<VoxelUpdate> terms;

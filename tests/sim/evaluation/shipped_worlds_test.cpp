@@ -197,8 +197,8 @@ TEST_P(WorldBeforeCamera, hides_its_hidden_objects_from_every_pixel_of_the_camer
         for (std::uint32_t u = 0; u < camera.width; ++u) {
             const Eigen::Vector3d ray((u + 0.5 - camera.cx) / camera.fx, (v + 0.5 - camera.cy) / camera.fy,
                                       1.0);
-            const auto hit = world_.cast(camera.T_base_camera.translation(),
-                                         camera.T_base_camera.linear() * ray.normalized(), 20.0);
+            const auto hit = world_.cast(camera.T_link_camera.translation(),
+                                         camera.T_link_camera.linear() * ray.normalized(), 20.0);
             if (hit) seen.insert(world_.solids()[hit->solid].model);
         }
     }

@@ -115,7 +115,7 @@ std::vector<PosedCapsule> MeshRobot::capsules_at(const Eigen::VectorXd& joints) 
     setup_.robot.forward(std::span(joints.data(), static_cast<std::size_t>(joints.size())), T_base_link);
     std::vector<PosedCapsule> capsules;
     capsules_.pose(T_base_link, capsules);
-    const Eigen::Isometry3d T_camera_base = rig_.camera->T_base_camera.inverse();
+    const Eigen::Isometry3d T_camera_base = rig_.camera->T_link_camera.inverse();
     for (PosedCapsule& capsule : capsules) {
         capsule.p_a = T_camera_base * capsule.p_a;
         capsule.p_b = T_camera_base * capsule.p_b;
@@ -177,7 +177,7 @@ MeshRobot::Pixels MeshRobot::filter(int frames, double late_s) const {
             const auto v = static_cast<std::uint32_t>(i / camera.width);
             const RaySlope ray = rays.at(u, v);
             const Eigen::Vector3d p_base =
-                camera.T_base_camera * (1e-3 * with[i] * Eigen::Vector3d(ray.x, ray.y, 1.0));
+                camera.T_link_camera * (1e-3 * with[i] * Eigen::Vector3d(ray.x, ray.y, 1.0));
             const double distance_m = distance_to_mesh(body, p_base, 0.3);
             pixels.farthest_removed_m = std::max(pixels.farthest_removed_m, distance_m);
             pixels.beyond_margin += distance_m > rig_.depth_self_margin_m ? 1U : 0U;

@@ -75,7 +75,7 @@ class MovingRobot : public testing::Test {
     [[nodiscard]] MapBuilder builder(const Injected& injected, double margin_m,
                                      const MappingConfig& mapping) const {
         HostSetup setup = make_host_setup(rig_).value();
-        setup.rig.camera->T_base_camera.pretranslate(injected.camera_off_m);
+        setup.rig.camera->T_link_camera.pretranslate(injected.camera_off_m);
         setup.rig.depth_self_margin_m = margin_m;
         MapBuilder builder =
             MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {}, {MapFeed::both}).value();

@@ -51,6 +51,7 @@ camera:
   depth_min_m: 0.3
   depth_max_m: 4.25
   data_set: {depth_units_per_m: 1000, depth_no_value: 65535, pose_gap_max_ms: 150}
+  link: arm
   pose: {xyz_m: [2.7, 0, 1.8], looking_at_m: [0.4, 0, 0.45]}
 nodes:
   - name: board
@@ -153,6 +154,7 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     EXPECT_EQ(rig.camera->fy, 60.5);
     EXPECT_EQ(rig.camera->lens,
               (LensDistortion{.k1 = 0.125, .k2 = -0.25, .p1 = 0.001, .p2 = -0.002, .k3 = 0.0625}));
+    EXPECT_EQ(rig.camera->link, "arm");
     EXPECT_EQ(rig.camera->data_set,
               (DataSetKeys{.units_per_m = 1000.0, .no_value = 65'535, .pose_gap_max_ms = 150.0}));
     EXPECT_EQ(rig.joint_sources.at(0).rate_hz, 100.5);
@@ -190,7 +192,7 @@ TEST_F(RigText, canonical_text_reads_back_to_the_same_text_and_the_same_numbers)
     const Rig again = read_good(text);
     EXPECT_EQ(canonical_text(again, "two-links.urdf"), text);
     EXPECT_TRUE(again.T_map_base.matrix() == rig.T_map_base.matrix());
-    EXPECT_TRUE(again.camera->T_base_camera.matrix() == rig.camera->T_base_camera.matrix());
+    EXPECT_TRUE(again.camera->T_link_camera.matrix() == rig.camera->T_link_camera.matrix());
     EXPECT_EQ(again.camera->lens, rig.camera->lens);
     EXPECT_EQ(again.camera->data_set, rig.camera->data_set);
     EXPECT_TRUE(again.nodes[0].sensors[0].T_link_sensor.matrix() ==

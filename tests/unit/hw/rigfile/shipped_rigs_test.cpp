@@ -119,7 +119,7 @@ TEST(ShippedRigs, camera_looks_at_its_point_with_the_picture_upright) {
     for (const auto& [name, height_m] :
          {std::pair{"experiment.yaml", 1.8}, std::pair{"experiment_low_camera.yaml", 0.6}}) {
         const Rig rig = shipped(name);
-        const Eigen::Isometry3d& T_base_camera = rig.camera->T_base_camera;
+        const Eigen::Isometry3d& T_base_camera = rig.camera->T_link_camera;
         EXPECT_TRUE(T_base_camera.translation().isApprox(Eigen::Vector3d(2.7, 0.0, height_m))) << name;
         const Eigen::Vector3d p_camera_target = T_base_camera.inverse() * Eigen::Vector3d(0.4, 0.0, 0.45);
         EXPECT_NEAR(p_camera_target.x(), 0.0, 1e-12) << name;
@@ -192,10 +192,10 @@ TEST(ShippedRigs, i2c_load_equals_the_count_of_bits) {
 
 /// cupboard_zones.yaml is not among them: it keeps the phases that are made for a period of 40 ms.
 TEST(ShippedRigs, sensors_take_turns_on_every_bus_and_in_the_light) {
-    for (const char* name :
-         {"experiment.yaml", "experiment_classical.yaml", "experiment_low_camera.yaml",
-          "bench_one_board.yaml", "one_board_17.yaml", "cell.yaml", "cupboard.yaml", "experiment_cone.yaml",
-          "cell_cone.yaml", "cupboard_cone.yaml", "experiment_zones.yaml", "cell_zones.yaml"}) {
+    for (const char* name : {"experiment.yaml", "experiment_classical.yaml", "experiment_low_camera.yaml",
+                             "experiment_eye_in_hand.yaml", "bench_one_board.yaml", "one_board_17.yaml",
+                             "cell.yaml", "cupboard.yaml", "experiment_cone.yaml", "cell_cone.yaml",
+                             "cupboard_cone.yaml", "experiment_zones.yaml", "cell_zones.yaml"}) {
         const Rig rig = shipped(name);
         for (const Node& node : rig.nodes) {
             for (std::uint8_t bus = 0; bus < node.board.i2c_bus_count; ++bus) {

@@ -235,7 +235,7 @@ TEST_F(CameraProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) 
     play(daemon_scene(), 3.95);
     view_.camera->newest = view_.now;
     EXPECT_EQ(reported(ProblemCode::depth_unused), std::nullopt) << "none has come";
-    play_changed([](Scene& scene) { scene.rig.camera->T_base_camera.translation().x() = 2000.0; });
+    play_changed([](Scene& scene) { scene.rig.camera->T_link_camera.translation().x() = 2000.0; });
     view_.camera->newest = view_.now;
     EXPECT_THAT(reported(ProblemCode::depth_unused),
                 Optional(AllOf(what_has("6 of 6"), what_has("outside_map (6)"), what_has("camera's pose"))));

@@ -102,7 +102,7 @@ TEST_F(DataSetPlayback, maps_each_image_from_where_the_camera_was) {
         DepthFrame frame{HostTime{i}, 640, 480, {}};
         for (const std::uint16_t value : wall(static_cast<unsigned>(i)).values)
             frame.depth_mm.push_back(static_cast<std::uint16_t>(value / 5));
-        rig.camera->T_base_camera = pose_of(i);
+        rig.camera->T_link_camera = pose_of(i);
         MappingConfig mapping = request().mapping;
         mapping.removes_robot_from_depth = false;
         expected.apply(DepthStage(rig, mapping).updates(frame, nullptr)->terms);

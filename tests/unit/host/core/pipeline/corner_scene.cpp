@@ -75,7 +75,7 @@ RangeMeasurement CornerLooks::reading(std::uint8_t sensor, double angle, double 
 }
 
 DepthFrame CornerLooks::frame() const {
-    const Eigen::Isometry3d& T_base_camera = rig_.camera->T_base_camera;
+    const Eigen::Isometry3d& T_base_camera = rig_.camera->T_link_camera;
     DepthFrame frame{.captured = now_, .width = 100, .height = 100, .depth_mm = {}};
     for (int v = 0; v < 100; ++v) {
         for (int u = 0; u < 100; ++u) {

@@ -63,7 +63,7 @@ TEST(VoxelTraceEntry,
 TEST(VoxelTraceEntry, sees_through_in_front_of_the_robot) {
     HostRig rig = one_joint_rig();
     rig.camera->intrinsics = {.width = 20, .height = 20, .fx = 40.0, .fy = 40.0, .cx = 10.0, .cy = 10.0};
-    rig.camera->T_base_camera.translation().z() = 0.0;
+    rig.camera->T_link_camera.translation().z() = 0.0;
     auto builder = MapBuilder::build(rig, one_joint_robot(), plain_mapping(), {}, every_feed()).value();
     const HostTime now = host_at(1.0);
     ASSERT_TRUE(builder.add({now, {0.0}}));

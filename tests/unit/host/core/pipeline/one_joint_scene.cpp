@@ -44,8 +44,8 @@ HostCamera camera() {
     HostCamera camera;
     camera.intrinsics = {.width = 16, .height = 12, .fx = 20.0, .fy = 20.0, .cx = 8.0, .cy = 6.0};
     // At (2, 0, 0.5), looking along -x; the image's right is +y.
-    camera.T_base_camera.translation() = Eigen::Vector3d(2.0, 0.0, 0.5);
-    camera.T_base_camera.linear() << 0, 0, -1, 1, 0, 0, 0, -1, 0;
+    camera.T_link_camera.translation() = Eigen::Vector3d(2.0, 0.0, 0.5);
+    camera.T_link_camera.linear() << 0, 0, -1, 1, 0, 0, 0, -1, 0;
     return camera;
 }
 

@@ -272,7 +272,7 @@ TEST(DepthReasonsAll, reject_every_frame_without_a_camera_in_the_rig) {
 }
 TEST(DepthReasonsAll, reject_every_frame_of_a_camera_outside_the_octree) {
     Scene scene = good_scene();
-    scene.rig.camera->T_base_camera.translation().x() = 2000.0;
+    scene.rig.camera->T_link_camera.translation().x() = 2000.0;
     const RunResult result = run(scene);
     EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::outside_map), 6U);
     EXPECT_EQ(result.fused_ot, result.proximity_ot);

@@ -113,7 +113,7 @@ TEST(Pipeline, places_a_depth_frame_and_leaves_the_robot_out) {
     Scene scene = quiet_scene();
     // One pixel, from (1.02, 0.02, 0.02) in the map along -x.
     scene.rig.camera->intrinsics = {.width = 1, .height = 1, .fx = 1.0, .fy = 1.0, .cx = 0.5, .cy = 0.5};
-    scene.rig.camera->T_base_camera.translation() = Eigen::Vector3d(1.0, 0.0, 0.0);
+    scene.rig.camera->T_link_camera.translation() = Eigen::Vector3d(1.0, 0.0, 0.0);
     const auto pixel = [](double captured_s, std::uint16_t depth_mm) {
         return DepthFrame{.captured = host_at(captured_s), .width = 1, .height = 1, .depth_mm = {depth_mm}};
     };

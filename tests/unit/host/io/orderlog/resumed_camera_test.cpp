@@ -213,7 +213,7 @@ TEST(ResumedCamera, of_another_size_or_pose_or_without_a_memory_is_left_out) {
     other.rig.camera->intrinsics.height = 16;
     EXPECT_TRUE(is_left_out(other)) << "as many pixels";
     other = scene;
-    other.rig.camera->T_base_camera.translation().x() += 1e-9;
+    other.rig.camera->T_link_camera.translation().x() += 1e-9;
     EXPECT_TRUE(is_left_out(other));
     other = scene;
     other.mapping.depth_update = DepthUpdate::paper;

@@ -128,7 +128,7 @@ TEST(HostRigReader, takes_over_the_camera_or_its_absence) {
     EXPECT_EQ(with->rig.camera->depth_min_m, 0.5);
     EXPECT_EQ(with->rig.camera->depth_max_m, 4.5);
     EXPECT_EQ(with->rig.camera->rate_hz, 10.0);
-    EXPECT_TRUE(with->rig.camera->T_base_camera.matrix() == rig.camera->T_base_camera.matrix());
+    EXPECT_TRUE(with->rig.camera->T_link_camera.matrix() == rig.camera->T_link_camera.matrix());
     rig.camera.reset();
     EXPECT_FALSE(make_host_setup(rig)->rig.camera);
 }

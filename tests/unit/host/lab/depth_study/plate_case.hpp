@@ -20,7 +20,7 @@ inline rig::Camera small_camera() {
     camera.rate_hz = 10.0;
     camera.depth_min_m = 0.3;
     camera.depth_max_m = 4.5;
-    camera.T_base_camera = evaluation::T_base_camera_of({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
+    camera.T_link_camera = evaluation::T_base_camera_of({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
     return camera;
 }
 

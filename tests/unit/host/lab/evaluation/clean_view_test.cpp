@@ -15,7 +15,7 @@ rig::Camera wide_camera() {
     rig::Camera camera{.width = 101, .height = 101, .fx = 50.5, .fy = 50.5, .cx = 50.5, .cy = 50.5};
     camera.depth_min_m = 0.2;
     camera.depth_max_m = 3.0;
-    camera.T_base_camera = T_base_camera_of({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
+    camera.T_link_camera = T_base_camera_of({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
     return camera;
 }
 

@@ -24,7 +24,7 @@ rig::Camera camera(double focal_px = 400.0) {
     rig::Camera camera{.width = 401, .height = 401, .fx = focal_px, .fy = focal_px, .cx = 200.5, .cy = 200.5};
     camera.depth_min_m = 0.2;
     camera.depth_max_m = 4.5;
-    camera.T_base_camera = T_base_camera_of({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
+    camera.T_link_camera = T_base_camera_of({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
     return camera;
 }
 

@@ -23,7 +23,7 @@ TruthConfig config() {
 /// Looks along -x at the cube's face at x = 0.55 from its axis: no other face can be seen.
 rig::Camera camera_at_positive_x() {
     rig::Camera camera{.width = 200, .height = 200, .fx = 400.0, .fy = 400.0, .cx = 100.0, .cy = 100.0};
-    camera.T_base_camera = T_base_camera_of({{2.0, 0.3, 0.3}, {0.0, 0.3, 0.3}});
+    camera.T_link_camera = T_base_camera_of({{2.0, 0.3, 0.3}, {0.0, 0.3, 0.3}});
     return camera;
 }
 

@@ -152,7 +152,7 @@ TEST(RenderScene, never_cuts_a_camera_off) {
     dressing.stage = Eigen::AlignedBox3d(Eigen::Vector3d(-0.5, -1.0, 0.0), Eigen::Vector3d(1.2, 1.0, 1.0));
     dressing.camera = rig::Camera{.width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15};
     for (const double y : {0.0, 0.3, 0.4, 0.5, 0.6, 0.9}) {
-        dressing.camera->T_base_camera.translation() << 0.6, y, 0.3;
+        dressing.camera->T_link_camera.translation() << 0.6, y, 0.3;
         const ImagePair images = render_scene(world, dressing);
         for (const Image& image : {images.front, images.back}) {
             for (std::uint32_t row = 0; row < image.height; ++row) {
@@ -177,7 +177,7 @@ TEST(RenderScene, shows_world_robot_camera_and_beams) {
     dressing.hidden_models = {"crate"};
     dressing.beams.push_back({{0.0, 0.0, 0.5}, {9.0, 0.0, 0.5}});
     dressing.camera = rig::Camera{.width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15};
-    dressing.camera->T_base_camera.translation() << 2.0, 0.0, 1.0;
+    dressing.camera->T_link_camera.translation() << 2.0, 0.0, 1.0;
     const ImagePair dressed = render_scene(world, dressing);
     EXPECT_NE(dressed.front.rgba, plain.front.rgba);
     EXPECT_NE(dressed.back.rgba, plain.back.rgba);

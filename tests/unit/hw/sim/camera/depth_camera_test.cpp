@@ -25,8 +25,8 @@ rig::Camera camera_at(const Eigen::Vector3d& p_base_camera) {
         .width = 512, .height = 424, .fx = 365, .fy = 365, .cx = 256, .cy = 212, .rate_hz = 10};
     camera.depth_min_m = 0.5;
     camera.depth_max_m = 4.5;
-    camera.T_base_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-    camera.T_base_camera.translation() = p_base_camera;
+    camera.T_link_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    camera.T_link_camera.translation() = p_base_camera;
     return camera;
 }
 
