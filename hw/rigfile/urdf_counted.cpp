@@ -35,7 +35,8 @@ void keep_children(Element& parent, Names names) {
     for (tinyxml2::XMLNode* child = parent.FirstChild(); child != nullptr;) {
         tinyxml2::XMLNode* const next = child->NextSibling();
         const Element* const element = child->ToElement();
-        const bool is_kept = element != nullptr && (is_one_of(element->Name(), names) || is_xacro(*element));
+        const bool is_kept = element != nullptr && !is_xacro_definition(element->Name()) &&
+                             (is_one_of(element->Name(), names) || is_xacro(*element));
         if (!is_kept) parent.DeleteChild(child);
         child = next;
     }
@@ -186,7 +187,7 @@ std::optional<Error> find_xacro(const std::filesystem::path& file, const Element
         left.pop_back();
         if (is_xacro(element)) {
             return Error{.code = ErrorCode::unsupported,
-                         .what = "a macro that is not expanded",
+                         .what = "an element of xacro that is not expanded",
                          .remedy = xacro_remedy(file),
                          .file = file,
                          .line = element.GetLineNum(),

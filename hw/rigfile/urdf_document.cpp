@@ -146,6 +146,10 @@ Result<UrdfDocument, Error> UrdfDocument::read(const FilePlace& place) {
         return unexpected(
             Error{.code = ErrorCode::bad_value,
                   .what = "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint),
+                  .remedy = complaint.find("No name given for the robot") == std::string::npos
+                                ? ""
+                                : "name it in <robot name=\"...\">. If a xacro was expanded, it may only define "
+                                  "macros: expand the file that uses them",
                   .file = file});
     }
     std::vector<ElementFault> faults;

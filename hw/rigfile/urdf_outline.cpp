@@ -63,9 +63,10 @@ Result<UrdfOutline, Error> UrdfOutline::read(const std::filesystem::path& file,
     std::vector<ElementFault> faults;
     for (const auto* element = robot.FirstChildElement(); element; element = element->NextSiblingElement()) {
         const std::string tag = element->Name();
+        if (is_xacro_definition(tag)) continue;
         if (tag.starts_with("xacro:")) {
             return unexpected(Error{.code = ErrorCode::unsupported,
-                                    .what = "a macro that is not expanded",
+                                    .what = "an element of xacro that is not expanded",
                                     .remedy = xacro_remedy(file),
                                     .file = file,
                                     .line = element->GetLineNum(),

@@ -12,6 +12,7 @@
 #include "host/apps/version/version.hpp"
 #include "host/io/robot/fit_store.hpp"
 #include "host/io/robot/robot_fit.hpp"
+#include "hw/rigfile/shell_word.hpp"
 
 namespace octoskin {
 namespace {
@@ -35,7 +36,7 @@ Unexpected<AppError> without_fit(const rig::Rig& rig, const FitStore& store) {
          .what = "its links have meshes, and this user has no capsules fitted to them",
          .remedy = fmt::format("run `octoskin robot {} --base {} --out FITTED.urdf`, with the same "
                                "--package-path, and use FITTED.urdf in the rig",
-                               urdf, rig.base_link),
+                               rig::shell_word(urdf), rig::shell_word(rig.base_link)),
          .file = urdf,
          .others = store.folder().empty() ? std::string()
                                           : fmt::format("Fits are kept in {}", store.folder().string())});

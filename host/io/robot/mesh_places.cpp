@@ -200,7 +200,10 @@ Result<FilePlace, Error> MeshPlaces::find_in_package(const std::string& uri) con
             tried.push_back(copy);
         }
     }
-    return unexpected(not_found(uri, tried, fmt::format("give --package-path {}=DIR", package)));
+    const std::string remedy =
+        *folder ? fmt::format("add the file there, or give another --package-path {}=DIR", package)
+                : fmt::format("give --package-path {}=DIR", package);
+    return unexpected(not_found(uri, tried, remedy));
 }
 
 Result<FilePlace, Error> MeshPlaces::find_below_roots(const fs::path& file, const std::string& uri) const {
@@ -227,6 +230,10 @@ Result<FilePlace, Error> MeshPlaces::find_below_roots(const fs::path& file, cons
 }
 
 Result<FilePlace, Error> MeshPlaces::find(const std::string& uri) const {
+    if (uri.find("${") != std::string::npos || uri.find("$(") != std::string::npos)
+        return unexpected(Error{ErrorCode::unsupported,
+                                "expected a file, because xacro expressions are not evaluated", uri,
+                                "expand the xacro: `xacro FILE > EXPANDED.urdf`"});
     if (recording_ &&
         (uri.starts_with(kPackage) || uri.starts_with(kFile) || uri.find("://") == std::string::npos))
         return find_in_recording(uri);

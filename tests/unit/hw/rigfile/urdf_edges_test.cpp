@@ -12,6 +12,7 @@
 #include "hw/rigfile/rig.hpp"
 #include "hw/rigfile/robot_description.hpp"
 #include "hw/rigfile/urdf_document.hpp"
+#include "hw/rigfile/xacro_remedy.hpp"
 #include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
 
@@ -125,6 +126,32 @@ TEST_F(UrdfEdges, what_xacro_has_not_expanded_is_named_with_its_line) {
                                             remedy_is(HasSubstr("run `xacro "))));
         EXPECT_TRUE(has_its_fields(document.error()));
     }
+}
+
+// Some vendors' URDFs have a definition of xacro that no element uses.
+TEST_F(UrdfEdges, definitions_of_xacro_that_no_element_uses_are_left_out) {
+    const std::string arm_text = arm("");
+    const std::size_t end = arm_text.rfind("</robot>");
+    ASSERT_NE(end, std::string::npos);
+    const auto with = [&](const std::string& element) {
+        return read(arm_text.substr(0, end) + element + arm_text.substr(end));
+    };
+    EXPECT_TRUE(with("<xacro:property name=\"width\" value=\".2\"/>"));
+    EXPECT_TRUE(with("<xacro:arg name=\"prefix\" default=\"${a}\"/>"));
+    for (const char* element : {"<xacro:include filename=\"a.xacro\"/>", "<xacro:arm/>", "<xacro:macro name=\"m\"/>"}) {
+        const auto document = with(element);
+        ASSERT_FALSE(document) << element;
+        EXPECT_THAT(document.error(), code_is(ErrorCode::unsupported));
+    }
+    EXPECT_FALSE(read(arm("", "<origin xyz=\"${width} 0 0\"/><!-- --><xacro:property name=\"width\"/>")));
+}
+
+TEST(XacroRemedy, can_be_pasted_into_a_shell) {
+    EXPECT_THAT(xacro_remedy("/a/arm.urdf.xacro"), HasSubstr("run `xacro /a/arm.urdf.xacro > arm.urdf`"));
+    EXPECT_THAT(xacro_remedy("/a/my arm.urdf.xacro"),
+                HasSubstr("run `xacro '/a/my arm.urdf.xacro' > 'my arm.urdf'`"));
+    EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+    EXPECT_EQ(shell_word(""), "''");
 }
 
 TEST_F(UrdfEdges, a_file_in_utf_16_is_named_as_such) {
@@ -267,7 +294,7 @@ TEST_P(ElementNames, of_links_and_joints_work_in_a_rig) {
                         name + "\"}\n");
     const auto rig = read_rig(file);
     ASSERT_TRUE(rig) << rig.error().message();
-    EXPECT_EQ(rig->joints.joints, std::vector<std::string>{joint});
+    EXPECT_EQ(rig->joint_names(), std::vector<std::string>{joint});
     EXPECT_EQ(rig->links_ignored_by_sensors, std::vector<std::string>{name});
     EXPECT_EQ(rig->link_padding_m.at(name), 0.01);
     const auto again = read_rig(folder.write("again.yaml", canonical_text(*rig, "arm.urdf")));
