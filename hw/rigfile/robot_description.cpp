@@ -16,6 +16,7 @@
 namespace octoskin::rig {
 namespace {
 
+constexpr double kRoundingM = 1e-9;
 constexpr double kSameM = 1e-4;  ///< a sphere is a cylinder's end if place and radius differ by at most this
 constexpr double kRadiusMaxM = 5.0;
 constexpr std::size_t kCollisionsMax = 1000;  ///< of one link: each sphere is compared with each cylinder
@@ -139,13 +140,13 @@ std::optional<Error> add_body(const urdf::Collision& collision, const std::strin
                  .remedy = "is it written in metres?"};
 }
 
-/// The end of a cylinder is set to the centre of the sphere at that end, which has no rounding from a
-/// rotation.
+/// The end of a cylinder is set to the centre of the first sphere at that end, which has no rounding from a
+/// rotation. Further spheres there do not move it on.
 bool absorb(const Capsule& sphere, Cylinder& cylinder) {
     if (std::abs(sphere.radius_m - cylinder.capsule.radius_m) > kSameM) return false;
     const auto is_end = [&](Eigen::Vector3d& end, bool& is_round) {
-        if ((end - sphere.p_link_a).norm() > kSameM) return false;
-        end = sphere.p_link_a;
+        if ((end - sphere.p_link_a).norm() > (is_round ? kRoundingM : kSameM)) return false;
+        if (!is_round) end = sphere.p_link_a;
         is_round = true;
         return true;
     };

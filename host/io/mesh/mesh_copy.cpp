@@ -51,12 +51,19 @@ Result<MeshCopy, Error> copy_mesh(const FilePlace& file) {
     return MeshCopy{file.filename(), *std::move(bytes), digest.hexadecimal()};
 }
 
-Result<std::string, Error> mesh_sha256(const FilePlace& file) {
+Result<std::string, Error> mesh_sha256(const FilePlace& file, std::uintmax_t& bytes_left) {
     Sha256 digest;
+    bool has_room = true;
     const auto read = read_parts(file, [&](std::string_view part) {
+        has_room = part.size() <= bytes_left;
+        if (!has_room) return false;
+        bytes_left -= part.size();
         digest.add(part);
         return true;
     });
+    if (!has_room)
+        return unexpected(in_file({ErrorCode::too_large, "expected meshes of at most 1 GiB together", "more"},
+                                  file.shown()));
     if (!read) return unexpected(read.error());
     return digest.hexadecimal();
 }

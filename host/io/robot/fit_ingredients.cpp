@@ -1,6 +1,9 @@
 #include "host/io/robot/fit_ingredients.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <map>
 #include <utility>
 
 #include "host/io/digest/sha256.hpp"
@@ -15,15 +18,34 @@ namespace {
 using rig::LinkShape;
 using rig::ShapeKind;
 
-Result<std::string, Error> digest_of(const MeshPlaces& places, const std::string& mesh) {
-    const auto place = places.find(mesh);
-    if (!place) return unexpected(place.error());
-    auto digest = mesh_sha256(*place);
-    if (digest) return digest;
-    Error error = digest.error();
-    error.what = error.file.string() + ": " + error.what;
-    return unexpected(std::move(error));
-}
+constexpr std::uintmax_t kRobotBytesMax = std::uintmax_t{1} << 30U;
+
+/// The digests of a robot's meshes. A file is read once, whatever names it has.
+class Digests {
+  public:
+    explicit Digests(const RobotText& robot, const MeshSearch& search) : places_(robot.file, search) {}
+
+    [[nodiscard]] Result<std::string, Error> of(const std::string& mesh) {
+        const auto place = places_.find(mesh);
+        if (!place) return unexpected(place.error());
+        const auto known = of_files_.find(place->shown());
+        return known != of_files_.end() ? known->second
+                                        : of_files_.emplace(place->shown(), read(*place)).first->second;
+    }
+
+  private:
+    [[nodiscard]] Result<std::string, Error> read(const FilePlace& place) {
+        auto digest = mesh_sha256(place, bytes_left_);
+        if (digest) return digest;
+        Error error = digest.error();
+        error.what = error.file.string() + ": " + error.what;
+        return unexpected(std::move(error));
+    }
+
+    MeshPlaces places_;
+    std::uintmax_t bytes_left_ = kRobotBytesMax;
+    std::map<std::filesystem::path, Result<std::string, Error>> of_files_;
+};
 
 }  // namespace
 
@@ -55,12 +77,12 @@ std::string FitIngredients::key(std::string_view program) const {
 
 Result<FitIngredients, Error> find_ingredients(const RobotText& robot, const MeshSearch& search) {
     FitIngredients found{robot.shapes.base_link, robot.text, {}};
-    const MeshPlaces places(robot.file, search);
+    Digests digests(robot, search);
     std::vector<rig::ElementFault> faults;
     for (const rig::ShapedLink& link : robot.shapes.links) {
         for (const LinkShape& shape : body_shapes(link)) {
             if (shape.kind != ShapeKind::mesh || found.mesh_sha256.contains(shape.mesh)) continue;
-            auto digest = digest_of(places, shape.mesh);
+            auto digest = digests.of(shape.mesh);
             if (!digest) {
                 Error error = digest.error();
                 error.file = robot.file.shown();

@@ -16,6 +16,8 @@ namespace octoskin {
 namespace {
 
 constexpr std::uint64_t kRobotWorkMost = 20 * FitWork::kMost;
+/// The search of one link's capsules, which FitWork does not count: about a second.
+constexpr std::uint64_t kSearchWork = FitWork::kMost / 16;
 
 using rig::LinkShape;
 using rig::ShapedLink;
@@ -107,7 +109,7 @@ class Fitting {
             return body;
         }
         body.fit = moved(*fit, T_link_surface);
-        work_ += fit->work;
+        work_ += fit->work + (box ? 0 : kSearchWork);
         if (work_ > kRobotWorkMost) {
             surfaces_.fail(link,
                            {.code = ErrorCode::too_large,

@@ -53,6 +53,21 @@ Error too_many(const std::string& of, std::size_t most, std::size_t found) {
             .remedy = "export the meshes with fewer triangles"};
 }
 
+constexpr Nanoseconds kReadingMax = std::chrono::seconds(300);
+
+/// Adds the time of its life to `sum`.
+class Stopwatch {
+  public:
+    explicit Stopwatch(Nanoseconds& sum) : sum_(sum) {}
+    ~Stopwatch() { sum_ += std::chrono::steady_clock::now() - begun_; }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+  private:
+    Nanoseconds& sum_;
+    std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+};
+
 std::optional<Error> size_fault(const SurfaceMesh& surface, const Eigen::Isometry3d& T_link_surface) {
     if (surface.vertices.empty()) return std::nullopt;
     double farthest_m = 0.0;
@@ -64,10 +79,11 @@ std::optional<Error> size_fault(const SurfaceMesh& surface, const Eigen::Isometr
         box.extend(at);
     }
     if (!(farthest_m <= kReachMax_m)) {
-        return Error{.code = ErrorCode::too_large,
-                     .what = fmt::format("expected a mesh within {} m of its link's origin", kReachMax_m),
-                     .value = fmt::format("{:.4g} m", farthest_m),
-                     .remedy = "is it written in millimetres? Then add scale=\"0.001 0.001 0.001\""};
+        return Error{
+            .code = ErrorCode::too_large,
+            .what = fmt::format("expected a shape within {} m of its link's origin", kReachMax_m),
+            .value = fmt::format("{:.4g} m", farthest_m),
+            .remedy = "is it a mesh that is written in millimetres? Then add scale=\"0.001 0.001 0.001\""};
     }
     const double extent_m = box.sizes().maxCoeff();
     if (extent_m >= kExtentMin_m - 1e-9) return std::nullopt;
@@ -93,6 +109,9 @@ std::optional<SurfaceMesh> SurfaceReader::read(const ShapedLink& link,
     }
     triangles_ += surface->triangles.size();
     if (auto fault = size_fault(*surface, T_link_surface)) {
+        // A mark that shows where a frame is, and no body.
+        const bool is_mark = fault->code == ErrorCode::out_of_range && source_of(link) == BodySource::visual;
+        if (is_mark) return SurfaceMesh{};
         const char* const kind = fault->code == ErrorCode::too_large ? "too large" : "too small";
         fail(link, *std::move(fault), kind);
         return std::nullopt;
@@ -163,6 +182,15 @@ Result<SurfaceMesh, Error> SurfaceReader::read_mesh(const LinkShape& shape) {
         error.file.clear();
         return unexpected(std::move(error));
     }
+    // Each link reads its meshes anew, and a file may have any number of names.
+    if (reading_ > kReadingMax) {
+        return unexpected(Error{.code = ErrorCode::limit_exceeded,
+                                .what = "expected meshes that are read within 300 s together",
+                                .remedy = "export them with fewer triangles"});
+    }
+    const Stopwatch watch(reading_);
+    if (const auto failed = unreadable_.find(place->shown()); failed != unreadable_.end())
+        return unexpected(failed->second);
     const auto copy = copy_mesh(*place);
     if (!copy) return unexpected(copy.error());
     const auto [known, is_new] = sha256_.emplace(shape.mesh, copy->sha256);
@@ -172,8 +200,6 @@ Result<SurfaceMesh, Error> SurfaceReader::read_mesh(const LinkShape& shape) {
                                 .remedy = "try again",
                                 .file = place->shown()});
     }
-    if (const auto failed = unreadable_.find(place->shown()); failed != unreadable_.end())
-        return unexpected(failed->second);
     auto read = read_mesh_in_process(*copy);
     if (!read) {
         unreadable_.emplace(place->shown(), read.error());

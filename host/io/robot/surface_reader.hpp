@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/result.hpp"
+#include "common/time.hpp"
 #include "host/core/body_fit/surface_mesh.hpp"
 #include "host/io/robot/fit_ingredients.hpp"
 #include "hw/rigfile/element_fault.hpp"
@@ -31,7 +32,7 @@ class SurfaceReader {
     [[nodiscard]] const std::vector<rig::ElementFault>& faults() const noexcept { return faults_; }
     /// All faults in one error: meshes that are missing or cannot be read; mismatch if a mesh changed
     /// meanwhile; limit_exceeded beyond 1000 shapes of a link; too_large beyond 5 m, beyond two million
-    /// triangles of a link or eight of the robot; out_of_range below 5 mm.
+    /// triangles of a link or eight of the robot, or 300 s of reading; out_of_range below 5 mm.
     [[nodiscard]] std::optional<Error> error() const;
 
     /// The file of each mesh so far, by its name in the URDF.
@@ -54,6 +55,7 @@ class SurfaceReader {
     std::map<std::string, std::filesystem::path> files_;
     std::map<std::filesystem::path, Error> unreadable_;  ///< by file: it may have several names
     std::size_t triangles_ = 0;                          ///< of all links so far
+    Nanoseconds reading_{0};                             ///< time of reading all meshes so far
     std::vector<rig::ElementFault> faults_;
 };
 

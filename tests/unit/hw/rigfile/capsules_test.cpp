@@ -115,6 +115,16 @@ TEST_F(Capsules, sphere_where_two_cylinders_meet_ends_both) {
     EXPECT_EQ(capsules->size(), 2U);
 }
 
+// Each is within the tolerance of the one before.
+TEST_F(Capsules, spheres_do_not_shorten_a_cylinder_step_by_step) {
+    std::string spheres;
+    for (int i = 0; i < 500; ++i) spheres += sphere(fmt::format("0 0 {}", 0.4 - 0.00009 * i), "0.1");
+    const auto capsules = read(cylinder("xyz=\"0 0 0.2\"", "0.1", "0.4") + sphere("0 0 0", "0.1") + spheres);
+    ASSERT_TRUE(capsules);
+    EXPECT_EQ(capsules->front().p_link_a, Eigen::Vector3d(0, 0, 0));
+    EXPECT_EQ(capsules->front().p_link_b, Eigen::Vector3d(0, 0, 0.4));
+}
+
 TEST_F(Capsules, sphere_of_another_size_or_place_stands_for_itself) {
     EXPECT_EQ(read(cylinder("xyz=\"0 0 0.2\"", "0.1", "0.4") + sphere("0 0 0.4", "0.12"))->size(), 2U);
     EXPECT_EQ(read(cylinder("xyz=\"0 0 0.2\"", "0.1", "0.4") + sphere("0 0 0.41", "0.1"))->size(), 2U);

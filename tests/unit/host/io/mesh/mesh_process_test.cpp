@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "host/io/digest/sha256.hpp"
@@ -21,6 +22,21 @@ Result<TriangleMesh, Error> read(const FilePlace& file,
                                  const std::optional<std::filesystem::path>& helper = {}) {
     const auto copy = copy_mesh(file);
     return copy ? read_mesh_in_process(*copy, helper) : unexpected(copy.error());
+}
+
+Result<std::string, Error> digest_of(const FilePlace& file, std::uintmax_t bytes_left = 2 * kMeshBytesMax) {
+    return mesh_sha256(file, bytes_left);
+}
+
+TEST(MeshCopy, digests_take_from_the_bytes_that_are_left_for_all) {
+    const ScratchFolder folder;
+    const std::string wedge = testing_support::wedge_stl();
+    const auto file = folder.write("a.stl", wedge);
+    std::uintmax_t left = 2 * wedge.size() + 1;
+    EXPECT_TRUE(mesh_sha256(file, left));
+    EXPECT_TRUE(mesh_sha256(file, left));
+    EXPECT_EQ(left, 1U);
+    EXPECT_EQ(mesh_sha256(file, left).error().code, ErrorCode::too_large);
 }
 
 TEST(MeshProcess, gives_the_triangles_of_a_file_of_each_format) {
@@ -60,12 +76,12 @@ TEST(MeshCopy, is_the_file_as_it_was) {
     const auto copy = copy_mesh(file);
     ASSERT_TRUE(copy);
     EXPECT_EQ(copy->sha256, sha256_of(wedge));
-    EXPECT_EQ(*mesh_sha256(file), copy->sha256);
+    EXPECT_EQ(*digest_of(file), copy->sha256);
     std::filesystem::resize_file(file, 100);
     const auto mesh = read_mesh_in_process(*copy);
     ASSERT_TRUE(mesh);
     EXPECT_EQ(mesh->triangles.size(), 4U);
-    EXPECT_NE(*mesh_sha256(file), copy->sha256);
+    EXPECT_NE(*digest_of(file), copy->sha256);
 }
 
 TEST(MeshCopy, of_a_pipe_or_a_file_beyond_the_limit_is_refused) {
@@ -76,8 +92,8 @@ TEST(MeshCopy, of_a_pipe_or_a_file_beyond_the_limit_is_refused) {
     for (const auto& [name, code] : {std::pair{"pipe.stl", ErrorCode::wrong_kind_of_file},
                                      std::pair{"large.stl", ErrorCode::too_large}}) {
         EXPECT_EQ(copy_mesh(folder / name).error().code, code);
-        EXPECT_EQ(mesh_sha256(folder / name).error().code, code);
-        EXPECT_EQ(mesh_sha256(folder / name).error().file, folder / name);
+        EXPECT_EQ(digest_of(folder / name).error().code, code);
+        EXPECT_EQ(digest_of(folder / name).error().file, folder / name);
     }
 }
 

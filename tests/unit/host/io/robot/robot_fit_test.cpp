@@ -37,6 +37,27 @@ Result<RobotFit, Error> fitted(const FilePlace& urdf, const std::string& base_li
     return robot ? fit_robot(*robot, {}) : unexpected(robot.error());
 }
 
+// HEBI's kits have a box of 1 mm where the tool's frame is.
+TEST(RobotFit, takes_a_visual_mark_for_a_frame_but_no_collision) {
+    const testing_support::ScratchFolder folder;
+    folder.write("a.stl", testing_support::wedge_stl());
+    const auto urdf_with = [&](const std::string& tag) {
+        return folder.write("arm.urdf", "<robot name=\"r\">" + link("base", "") +
+                                            link("upper", mesh("collision", "a.stl")) +
+                                            link("tip", "<" + tag + "><geometry><box size=\"0.001 0.001 0.001\"/>"
+                                                                    "</geometry></" + tag + ">") +
+                                            joint("base", "upper", "revolute") + joint("upper", "tip", "fixed") +
+                                            "</robot>");
+    };
+    const auto mark = fitted(urdf_with("visual"));
+    ASSERT_TRUE(mark) << mark.error().message();
+    EXPECT_TRUE(mark->links.at(1).fit.has_value());
+    EXPECT_FALSE(mark->links.at(2).fit.has_value());
+    const auto body = fitted(urdf_with("collision"));
+    ASSERT_FALSE(body);
+    EXPECT_EQ(body.error().code, ErrorCode::out_of_range);
+}
+
 TEST(RobotFit, takes_collisions_and_the_visual_of_a_moving_link_without_one) {
     const testing_support::ScratchFolder folder;
     folder.write("a.stl", testing_support::wedge_stl());
