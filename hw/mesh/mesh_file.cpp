@@ -7,12 +7,15 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hw/mesh/mesh_kinds.hpp"
@@ -43,37 +46,75 @@ void keep_readers_of_our_kinds(Assimp::Importer& importer) {
     }
 }
 
+Eigen::Affine3d transform_of(const aiNode& node) {
+    const aiMatrix4x4& from = node.mTransformation;
+    Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            transform(row, column) =
+                static_cast<double>(from[static_cast<unsigned>(row)][static_cast<unsigned>(column)]);
+    return transform;
+}
+
+/// Calls `use(part, transform)` for each mesh of each node. assimp's own step for this,
+/// aiProcess_PreTransformVertices, leaves out a transform whose entries differ by less than 0.01 from the
+/// identity's, that is, up to 10 mm. Without recursion: the depth is the file's.
+template <class Use>
+void for_each_part(const aiScene& scene, Use&& use) {
+    std::vector<std::pair<const aiNode*, Eigen::Affine3d>> open{
+        {scene.mRootNode, Eigen::Affine3d::Identity()}};
+    while (!open.empty()) {
+        const aiNode& node = *open.back().first;
+        const Eigen::Affine3d transform = open.back().second * transform_of(node);
+        open.pop_back();
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) use(*scene.mMeshes[node.mMeshes[i]], transform);
+        for (unsigned i = node.mNumChildren; i-- > 0;) open.emplace_back(node.mChildren[i], transform);
+    }
+}
+
 /// The triangles and their corners: points and lines have no surface, and no part in the mesh's size.
-void append(const aiMesh& part, TriangleMesh& mesh) {
+/// Triangles of a mirrored part have their corners in the other order, to run anticlockwise.
+void append(const aiMesh& part, const Eigen::Affine3d& transform, TriangleMesh& mesh) {
     constexpr int kUnused = -1;
+    const bool is_mirrored = transform.linear().determinant() < 0.0;
     std::vector<int> number_of(part.mNumVertices, kUnused);
     const auto number = [&](unsigned corner) {
         int& known = number_of[corner];
         if (known != kUnused) return known;
         const aiVector3D& vertex = part.mVertices[corner];
         known = static_cast<int>(mesh.vertices.size());
-        mesh.vertices.emplace_back(static_cast<double>(vertex.x), static_cast<double>(vertex.y),
-                                   static_cast<double>(vertex.z));
+        mesh.vertices.push_back(transform * Eigen::Vector3d(static_cast<double>(vertex.x),
+                                                            static_cast<double>(vertex.y),
+                                                            static_cast<double>(vertex.z)));
         return known;
     };
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
         const aiFace& face = part.mFaces[i];
         if (face.mNumIndices != 3) continue;
         const int a = number(face.mIndices[0]);
-        const int b = number(face.mIndices[1]);
-        mesh.triangles.emplace_back(a, b, number(face.mIndices[2]));
+        const int b = number(face.mIndices[is_mirrored ? 2 : 1]);
+        mesh.triangles.emplace_back(a, b, number(face.mIndices[is_mirrored ? 1 : 2]));
     }
 }
 
-/// The triangles that all polygons are, whether or not they are cut yet; points and lines have none.
-std::size_t triangles_in(const aiScene& scene) {
+/// The triangles that all polygons of a part are, whether or not they are cut yet; points and lines have
+/// none.
+std::size_t triangles_in(const aiMesh& part) {
     std::size_t count = 0;
-    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
-        for (unsigned k = 0; k < scene.mMeshes[i]->mNumFaces; ++k) {
-            const unsigned corners = scene.mMeshes[i]->mFaces[k].mNumIndices;
-            if (corners > 2) count += corners - 2;
-        }
+    for (unsigned k = 0; k < part.mNumFaces; ++k) {
+        const unsigned corners = part.mFaces[k].mNumIndices;
+        if (corners > 2) count += corners - 2;
     }
+    return count;
+}
+
+/// Those of a part that several nodes show count several times.
+std::size_t triangles_in(const aiScene& scene) {
+    std::map<const aiMesh*, std::size_t> counts;
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+        counts[scene.mMeshes[i]] = triangles_in(*scene.mMeshes[i]);
+    std::size_t count = 0;
+    for_each_part(scene, [&](const aiMesh& part, const Eigen::Affine3d&) { count += counts[&part]; });
     return count;
 }
 
@@ -138,14 +179,13 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
                           std::to_string(expected - triangles_in(*scene)) + " of " +
                           std::to_string(expected) + " triangles are lost; export it as triangles");
     }
-    if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_PreTransformVertices);
     if (scene == nullptr) {
         return unexpected("cannot read mesh " + file.string() + ": " + importer.GetErrorString());
     }
     TriangleMesh mesh;
-    for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-        append(*scene->mMeshes[i], mesh);
-    }
+    for_each_part(*scene, [&mesh](const aiMesh& part, const Eigen::Affine3d& transform) {
+        append(part, transform, mesh);
+    });
     if (mesh.triangles.empty()) {
         return unexpected("mesh " + file.string() + " has no triangles");
     }

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/scratch_folder.hpp"
@@ -84,6 +86,65 @@ TEST(MeshFile, applies_the_transform_of_an_inner_node_in_the_unit_of_the_file) {
                     return Vector3d(0.1 - at.y(), 0.2 + 2.0 * at.x(), 0.3 + at.z());
                 }),
                 "node.dae");
+}
+
+TEST(MeshFile, applies_a_transform_that_is_close_to_none) {
+    constexpr double kTurn = 0.3 * 3.14159265358979323846 / 180.0;
+    const auto same = [](const Vector3d& at) { return at; };
+    const auto turned = [](const Vector3d& at) {
+        return Vector3d(at.x() * std::cos(kTurn) - at.y() * std::sin(kTurn),
+                        at.x() * std::sin(kTurn) + at.y() * std::cos(kTurn), at.z());
+    };
+    const std::vector<std::pair<std::string, std::function<Vector3d(const Vector3d&)>>> cases{
+        {"<translate>0 0 0</translate>", same},
+        {"<translate>0 0.003 0</translate>",
+         [](const Vector3d& at) { return Vector3d(at.x(), at.y() + 0.003, at.z()); }},
+        {"<translate>1 0 0</translate>",
+         [](const Vector3d& at) { return Vector3d(at.x() + 1.0, at.y(), at.z()); }},
+        {"<rotate>0 0 1 0.3</rotate>", turned},
+        {"<rotate>0 0 1 0.3</rotate><translate>1 0 0</translate>",
+         [&](const Vector3d& at) { return turned(at + Vector3d::UnitX()); }},
+        {"<scale>1.005 1.005 1.005</scale>", [](const Vector3d& at) { return Vector3d(1.005 * at); }},
+        {"<scale>1 1 -1</scale>", [](const Vector3d& at) { return Vector3d(at.x(), at.y(), -at.z()); }}};
+    const ScratchFolder folder;
+    for (const auto& [node, move] : cases) {
+        const auto mesh = read_mesh(folder.write("close.dae", testing_support::wedge_dae("Z_UP", 1.0, node)));
+        ASSERT_TRUE(mesh) << mesh.error();
+        expect_same(corners_of(*mesh), wedge_moved(move), node);
+    }
+}
+
+/// Positive if the corners run anticlockwise seen from outside.
+double volume_of(const TriangleMesh& mesh) {
+    double volume = 0.0;
+    for (const auto& triangle : mesh.triangles) {
+        const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(triangle[i])]; };
+        volume += corner(0).dot(corner(1).cross(corner(2))) / 6.0;
+    }
+    return volume;
+}
+
+TEST(MeshFile, has_corners_that_run_anticlockwise_in_a_mirrored_part) {
+    const ScratchFolder folder;
+    for (const char* const node : {"", "<scale>1 1 -1</scale>", "<scale>-1 -1 -1</scale>"}) {
+        const auto mesh = read_mesh(folder.write("a.dae", testing_support::wedge_dae("Z_UP", 1.0, node)));
+        ASSERT_TRUE(mesh) << mesh.error();
+        EXPECT_GT(volume_of(*mesh), 0.0) << node;
+    }
+}
+
+TEST(MeshFile, has_each_instance_of_a_part_at_its_place) {
+    const ScratchFolder folder;
+    std::string text = testing_support::wedge_dae("Z_UP", 1.0);
+    text.insert(text.find("</visual_scene>"),
+                "<node><translate>0 0 0.003</translate><instance_geometry url=\"#wedge\"/></node>");
+    const auto mesh = read_mesh(folder.write("two.dae", text));
+    ASSERT_TRUE(mesh) << mesh.error();
+    Corners wanted = wedge_moved([](const Vector3d& at) { return at; });
+    for (const Vector3d& at :
+         wedge_moved([](const Vector3d& from) { return Vector3d(from + Vector3d(0, 0, 0.003)); }))
+        wanted.push_back(at);
+    expect_same(corners_of(*mesh), sorted(wanted), "two.dae");
 }
 
 /// Prints the corners in metres, without the up axis: what pycollada calls the bound geometry.
