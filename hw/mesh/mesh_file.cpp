@@ -14,6 +14,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -143,6 +144,29 @@ Result<MeshText, std::string> checked_text(const std::filesystem::path& file, co
     return check_mesh_text(file.extension().string(), bytes);
 }
 
+/// What the text's corners and those that are read may differ by: assimp has floats.
+bool is_same_box(const Eigen::AlignedBox3d& text, const Eigen::AlignedBox3d& found) {
+    constexpr double kRelative = 1e-5;
+    const double largest = std::max(text.min().cwiseAbs().maxCoeff(), text.max().cwiseAbs().maxCoeff());
+    const double difference = std::max((text.min() - found.min()).cwiseAbs().maxCoeff(),
+                                       (text.max() - found.max()).cwiseAbs().maxCoeff());
+    return difference <= kRelative * largest;
+}
+
+/// It goes on behind the mesh's name.
+std::optional<std::string> fault_of(const TriangleMesh& mesh, const MeshText& text) {
+    if (mesh.triangles.empty()) return " has no triangles";
+    Eigen::AlignedBox3d box;
+    for (const auto& vertex : mesh.vertices) {
+        if (!vertex.allFinite()) return " has a coordinate that is not a finite number";
+        box.extend(vertex);
+    }
+    if (text.box && !is_same_box(*text.box, box))
+        return " has corners at other places than are read: it is of an unusual form; export it anew as "
+               "binary STL";
+    return std::nullopt;
+}
+
 }  // namespace
 
 Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, const AllowedFiles* files) {
@@ -168,8 +192,8 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
     const std::size_t expected = scene == nullptr ? 0 : triangles_in(*scene);
     if (scene != nullptr && (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0)
         return unexpected("mesh " + file.string() + " is not complete");
-    if (scene != nullptr && text->triangles && *text->triangles != expected) {
-        return unexpected("mesh " + file.string() + " has " + std::to_string(*text->triangles) +
+    if (scene != nullptr && text->triangles != expected) {
+        return unexpected("mesh " + file.string() + " has " + std::to_string(text->triangles) +
                           " triangles in its text, and " + std::to_string(expected) +
                           " are read: it is damaged, or of an unusual form; export it anew as binary STL");
     }
@@ -186,14 +210,7 @@ Result<TriangleMesh, std::string> read_mesh(const std::filesystem::path& file, c
     for_each_part(*scene, [&mesh](const aiMesh& part, const Eigen::Affine3d& transform) {
         append(part, transform, mesh);
     });
-    if (mesh.triangles.empty()) {
-        return unexpected("mesh " + file.string() + " has no triangles");
-    }
-    for (const auto& vertex : mesh.vertices) {
-        if (!vertex.allFinite()) {
-            return unexpected("mesh " + file.string() + " has a coordinate that is not a finite number");
-        }
-    }
+    if (auto fault = fault_of(mesh, *text)) return unexpected("mesh " + file.string() + *fault);
     return mesh;
 }
 

@@ -2,6 +2,7 @@
 // a link of a robot would have a part of its body.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -12,19 +13,20 @@
 namespace octoskin {
 
 struct MeshText {
-    /// Triangles that a reader has to find; none where this is not counted (COLLADA).
-    std::optional<std::size_t> triangles;
+    /// Triangles that a reader has to find; an instance of a part counts like the part.
+    std::size_t triangles = 0;
+    /// Of the triangles' corners; none where they are not read (STL, COLLADA).
+    std::optional<Eigen::AlignedBox3d> box;
 };
 
 /// `ending`: ".stl", ".obj" or ".dae", in letters of any case. The error ends a sentence that begins with the
-/// mesh: "line 3: a vertex has 5 numbers, expected 3".
-/// - STL: as text, it has only solids of triangles, up to an `endsolid`; in binary form, all of its
-/// triangles.
+/// mesh: "line 3: a vertex has 5 numbers, expected 3". A number has at most 15 digits before its point.
+/// - STL: as text, it has only solids of triangles, up to an `endsolid`, and no words behind the numbers; in
+///   binary form, all of its triangles.
 /// - OBJ: each vertex has 3 numbers, 4 with a weight, or 6 with a colour, each with a digit first; its
-/// keywords
-///   are in small letters; no line goes on with a backslash.
-/// - COLLADA: each `url` of an instance is an element of this file, `<unit>` is positive, the last row of a
-///   `<matrix>` is 0 0 0 1, no index of a surface is negative.
+///   keywords are in small letters at the begin of a line; no line goes on with a backslash; no comment
+///   behind a vertex has numbers; no surface is curved; there is no byte order mark.
+/// - COLLADA: see collada_text.hpp.
 [[nodiscard]] Result<MeshText, std::string> check_mesh_text(std::string_view ending, std::string_view bytes);
 
 }  // namespace octoskin

@@ -161,7 +161,8 @@ TEST(MeshFile, of_collada_agrees_with_a_reader_that_is_not_assimp) {
         GTEST_SKIP() << "python3-collada is not installed";
     const ScratchFolder folder;
     const auto script = folder.write("read.py", kForeignReader);
-    const std::string node = "<translate>10 -20 30</translate><rotate>1 2 3 40</rotate>";
+    const std::string node =
+        "<translate>10 -20 30</translate><rotate>0.2857142857 0.4285714286 0.8571428571 40</rotate>";
     for (const char* const up : {"Y_UP", "Z_UP"}) {
         const auto file = folder.write("node.dae", testing_support::wedge_dae(up, 0.01, node));
         const std::string command = "/usr/bin/python3 " + script.string() + " " + file.string();
@@ -205,6 +206,43 @@ TEST(MeshFile, is_not_read_in_part) {
           std::pair{"none.dae", with_node("<instance_geometry url=\"#none\"/>")}})
         EXPECT_FALSE(read_mesh(folder.write(name, text))) << name;
     ASSERT_TRUE(read_mesh(folder.write("whole.dae", with_node(""))));
+}
+
+/// The wedge's file with `from` replaced by `to`.
+std::string wedge_with(const std::string& from, const std::string& to) {
+    std::string text = testing_support::wedge_dae("Z_UP", 1.0);
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+TEST(MeshFile, has_the_triangles_of_each_surface_that_the_text_of_collada_has) {
+    const ScratchFolder folder;
+    const std::string input = "<input semantic=\"VERTEX\" source=\"#vertices\" offset=\"0\"/>";
+    const std::string triangles =
+        "<triangles count=\"4\">" + input + "<p>0 2 1 0 1 3 1 2 3 2 0 3 </p></triangles>";
+    for (const auto& [surface, count] :
+         {std::pair{triangles, 4U}, std::pair{triangles + triangles, 8U},
+          std::pair{"<polylist count=\"2\">" + input + "<vcount>3 4</vcount><p>0 2 1 0 1 3 2</p></polylist>",
+                    3U},
+          std::pair{"<polygons count=\"2\">" + input + "<p>0 2 1</p><p>0 1 3</p></polygons>", 2U},
+          std::pair{"<tristrips count=\"2\">" + input + "<p>0 2 1 3</p><p>0 1 3</p></tristrips>", 3U},
+          std::pair{triangles + "<lines count=\"1\">" + input + "<p>0 1</p></lines>", 4U}}) {
+        const auto mesh = read_mesh(folder.write("surface.dae", wedge_with(triangles, surface)));
+        ASSERT_TRUE(mesh) << mesh.error() << surface;
+        EXPECT_EQ(mesh->triangles.size(), count) << surface;
+    }
+}
+
+TEST(MeshFile, of_collada_has_no_surfaces_that_only_one_of_the_readers_finds) {
+    const ScratchFolder folder;
+    const std::string extra =
+        "<extra><technique profile=\"x\"><triangles count=\"1\"><input semantic=\"VERTEX\" "
+        "source=\"#vertices\" offset=\"0\"/><p>0 1 2</p></triangles></technique></extra>";
+    const auto mesh = read_mesh(folder.write("extra.dae", wedge_with("</mesh>", extra + "</mesh>")));
+    ASSERT_FALSE(mesh);
+    EXPECT_NE(mesh.error().find("has 4 triangles in its text, and 5 are read"), std::string::npos)
+        << mesh.error();
 }
 
 TEST(MeshFile, opens_only_the_files_that_are_allowed) {
