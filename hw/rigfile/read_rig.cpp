@@ -51,21 +51,12 @@ void require_link(const Value& value, const std::string& path, const std::string
 /// Its place in the map is fixed, so no joint of the robot may move it. A mobile robot's place is that of its
 /// base: a `floating` or `planar` joint above it has no position here.
 void refuse_moved_base(const Table& table, const std::string& base_link, const UrdfDocument& robot) {
-    const auto is_moving = [](int type) {
-        return type == urdf::Joint::REVOLUTE || type == urdf::Joint::CONTINUOUS ||
-               type == urdf::Joint::PRISMATIC;
-    };
-    const auto& links = robot.model().links_;
-    for (auto link = links.at(base_link); link->parent_joint != nullptr;
-         link = links.at(link->parent_joint->parent_link_name)) {
-        const urdf::Joint& joint = *link->parent_joint;
-        if (!is_moving(joint.type)) continue;
-        table.fail(
-            keys::robot::kBaseLink,
-            {ErrorCode::conflict, "expected a link that no joint moves",
-             fmt::format("'{}', which joint '{}' moves", base_link, joint.name),
-             fmt::format("name '{}' or a link fixed to it above that joint", robot.model().getRoot()->name)});
-    }
+    const auto joint = robot.joint_moving(base_link);
+    if (!joint) return;
+    table.fail(keys::robot::kBaseLink, {ErrorCode::conflict, "expected a link that no joint moves",
+                                        fmt::format("'{}', which joint '{}' moves", base_link, *joint),
+                                        fmt::format("name '{}' or a link fixed to it above that joint",
+                                                    robot.model().getRoot()->name)});
 }
 
 void read_self_filter(const Table& robot, const UrdfDocument& document, Rig& rig) {
@@ -258,9 +249,9 @@ Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instea
         rig.camera = read_camera(*camera, urdf, rig.base_link);
     rig.nodes = read_nodes(top.require(keys::kNodes), top.path_of(keys::kNodes),
                            {urdf, rig.base_link, rig.bus, top.find(keys::kSensorDefaults)});
+    refuse_moved_base(robot, rig.base_link, urdf);
     rig.joint_sources = read_joint_sources(top.require(keys::kJointsTable), urdf, rig);
     refuse_overloaded_bus(top, rig);
-    refuse_moved_base(robot, rig.base_link, urdf);
     return rig;
 }
 

@@ -143,14 +143,14 @@ Result<UrdfDocument, Error> UrdfDocument::read(const FilePlace& place) {
     if (!counted) return unexpected(counted.error());
     auto [model, complaint] = parse(*counted);
     if (!model || !model->getRoot()) {
-        return unexpected(
-            Error{.code = ErrorCode::bad_value,
-                  .what = "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint),
-                  .remedy = complaint.find("No name given for the robot") == std::string::npos
-                                ? ""
-                                : "name it in <robot name=\"...\">. If a xacro was expanded, it may only define "
-                                  "macros: expand the file that uses them",
-                  .file = file});
+        return unexpected(Error{
+            .code = ErrorCode::bad_value,
+            .what = "not a usable URDF: " + (complaint.empty() ? "no robot found" : complaint),
+            .remedy = complaint.find("No name given for the robot") == std::string::npos
+                          ? ""
+                          : "name it in <robot name=\"...\">. If a xacro was expanded, it may only define "
+                            "macros: expand the file that uses them",
+            .file = file});
     }
     std::vector<ElementFault> faults;
     for (const auto& [name, joint] : model->joints_) {
@@ -161,6 +161,18 @@ Result<UrdfDocument, Error> UrdfDocument::read(const FilePlace& place) {
     if (!faults.empty()) return unexpected(one_error_of(std::move(faults)));
     document.model_ = std::move(model);
     return document;
+}
+
+std::optional<std::string> UrdfDocument::joint_moving(const std::string& link) const {
+    const auto is_moving = [](int type) {
+        return type == urdf::Joint::REVOLUTE || type == urdf::Joint::CONTINUOUS ||
+               type == urdf::Joint::PRISMATIC;
+    };
+    for (auto at = model_->links_.at(link); at->parent_joint != nullptr;
+         at = model_->links_.at(at->parent_joint->parent_link_name)) {
+        if (is_moving(at->parent_joint->type)) return at->parent_joint->name;
+    }
+    return std::nullopt;
 }
 
 bool UrdfDocument::is_below(const std::string& base_link, const std::string& link) const {

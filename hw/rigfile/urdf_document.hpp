@@ -39,6 +39,9 @@ class UrdfDocument {
     [[nodiscard]] const urdf::ModelInterface& model() const noexcept { return *model_; }
     [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
     /// True if `link` is `base_link` or below it; false also if the robot has no such links.
+    /// The joint that moves a link against the root: revolute, continuous or prismatic, the nearest above it;
+    /// empty if there is none. The link must exist (asserted).
+    [[nodiscard]] std::optional<std::string> joint_moving(const std::string& link) const;
     [[nodiscard]] bool is_below(const std::string& base_link, const std::string& link) const;
     /// At or below `base_link`, by name; all of them if that is empty.
     [[nodiscard]] std::vector<std::string> link_names(const std::string& base_link = {}) const;

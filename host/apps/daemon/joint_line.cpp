@@ -29,12 +29,19 @@ bool is_too_large(double position) {
 struct Words {
     std::optional<double> time_s;
     std::vector<double> numbers;            ///< of a line of numbers, with its time
-    std::map<std::string, double> by_name;  ///< of a line of names
-    [[nodiscard]] bool are_named() const { return !by_name.empty(); }
+    std::map<std::string, double> by_name;  ///< of a line of names: those that the rig has
+    bool are_named = false;
 };
 
-/// Splits "NAME=Q" words; the error is the word that is none.
-Result<Words, std::string> read_named(std::string_view text) {
+bool has_name(const LineJoints& joints, std::string_view name) {
+    return std::ranges::any_of(joints.sources, [name](const LineJoints::Source& source) {
+        return std::ranges::find(source.names, name) != source.names.end();
+    });
+}
+
+/// Splits "NAME=Q" words; the error is the word that is none. Of names that the rig does not have, the
+/// position may be anything.
+Result<Words, std::string> read_named(std::string_view text, const LineJoints& joints) {
     constexpr std::string_view kBetween = " \t\r\n,";
     Words words;
     while (true) {  // each round removes one word
@@ -43,35 +50,36 @@ Result<Words, std::string> read_named(std::string_view text) {
         const std::string_view word = text.substr(0, text.find_first_of(kBetween));
         text = text.substr(word.size());
         const std::size_t equals = word.rfind('=');
-        const bool is_time = equals == std::string_view::npos && !words.time_s && words.by_name.empty();
+        const std::string_view name = word.substr(0, std::min(equals, word.size()));
+        words.are_named = words.are_named || equals != std::string_view::npos;
+        if (equals != std::string_view::npos && !has_name(joints, name)) continue;
+        const bool is_time = equals == std::string_view::npos && !words.time_s && !words.are_named;
         const auto number = read_numbers(is_time ? word : word.substr(std::min(equals, word.size() - 1) + 1));
         if (!number || number->size() != 1 || (!is_time && equals == std::string_view::npos))
             return unexpected(std::string(word));
         if (is_time) {
             words.time_s = number->front();
-        } else if (!words.by_name.try_emplace(std::string(word.substr(0, equals)), number->front()).second) {
+        } else if (!words.by_name.try_emplace(std::string(name), number->front()).second) {
             return unexpected(std::string(word));  // a name twice has no one position
         }
     }
 }
 
-Result<Words, std::string> read_words(std::string_view text, std::size_t joint_count) {
-    if (text.find('=') != std::string_view::npos) return read_named(text);
+Result<Words, std::string> read_words(std::string_view text, const LineJoints& joints) {
+    if (text.find('=') != std::string_view::npos) return read_named(text, joints);
     auto numbers = read_numbers(text);
     if (!numbers) return unexpected(numbers.error());
     Words words{.time_s = {}, .numbers = std::move(*numbers), .by_name = {}};
-    if (words.numbers.size() == joint_count + 1) words.time_s = words.numbers.front();
+    if (words.numbers.size() == joints.count() + 1) words.time_s = words.numbers.front();
     return words;
 }
 
-/// What the line has of a source; empty: not all of its joints.
-std::optional<std::vector<double>> position_of(const Words& words, const LineJoints::Source& source) {
+/// What the line has of a source: all of its joints, some or none.
+std::vector<double> position_of(const Words& words, const LineJoints::Source& source) {
     std::vector<double> position;
-    for (const std::string& name : source.names) {
-        const auto found = words.by_name.find(name);
-        if (found == words.by_name.end()) return std::nullopt;
-        position.push_back(found->second);
-    }
+    for (const std::string& name : source.names)
+        if (const auto found = words.by_name.find(name); found != words.by_name.end())
+            position.push_back(found->second);
     return position;
 }
 
@@ -81,10 +89,11 @@ void unwind(const LineJoints::Source& source, std::vector<double>& position) {
         if (source.turns[i]) position[i] = std::remainder(position[i], 2.0 * std::numbers::pi);
 }
 
+/// Empty if the line has another number of joints, or a part of a source.
 std::vector<JointSample> samples_of(const Words& words, const LineJoints& joints) {
     std::vector<JointSample> samples;
     std::span<const double> rest = words.numbers;
-    if (!words.are_named()) {
+    if (!words.are_named) {
         if (rest.size() != joints.count() + (words.time_s ? 1U : 0U)) return {};
         rest = rest.last(joints.count());
     }
@@ -92,10 +101,10 @@ std::vector<JointSample> samples_of(const Words& words, const LineJoints& joints
         const LineJoints::Source& source = joints.sources[i];
         JointSample sample;
         sample.source = i;
-        if (words.are_named()) {
-            auto position = position_of(words, source);
-            if (!position) continue;
-            sample.position = std::move(*position);
+        if (words.are_named) {
+            sample.position = position_of(words, source);
+            if (sample.position.empty()) continue;
+            if (sample.position.size() < source.names.size()) return {};
         } else {
             const auto own = rest.first(source.names.size());
             sample.position.assign(own.begin(), own.end());
@@ -125,7 +134,7 @@ std::string describe_too_large(const Words& words, const LineJoints& joints) {
             ++number;
             if (!is_too_large(sample.position[i])) continue;
             const std::string joint =
-                words.are_named() ? source.names[i] : fmt::format("joint {} of {}", number, joints.count());
+                words.are_named ? source.names[i] : fmt::format("joint {} of {}", number, joints.count());
             return fmt::format(": {} is {}, beyond +-{}: degrees, or millimetres?", joint, sample.position[i],
                                LocalJoints::kLargest);
         }
@@ -170,7 +179,7 @@ LineJoints LineJoints::local(const HostRig& rig, std::span<const JointLimits> li
 Result<JointLine, JointTextFault> parse_joints(std::string_view text, const LineJoints& joints, HostTime now,
                                                std::optional<HostTime> came) {
     if (text.size() > kJointTextMax) return unexpected(JointTextFault::too_long);
-    const auto words = read_words(text, joints.count());
+    const auto words = read_words(text, joints);
     if (!words) return unexpected(JointTextFault::not_a_number);
     const bool has_time = words->time_s.has_value();
     if (has_time && std::abs(*words->time_s - seconds_at(now)) > kTimeOffMaxS)
@@ -189,9 +198,9 @@ Result<JointLine, JointTextFault> parse_joints(std::string_view text, const Line
 std::string describe(JointTextFault fault, std::string_view text, const LineJoints& joints, HostTime now) {
     std::string name = names_of(fault).at(static_cast<std::size_t>(fault));
     if (fault == JointTextFault::too_long) return fmt::format("{}: over {} bytes", name, kJointTextMax);
-    const auto words = read_words(text, joints.count());
+    const auto words = read_words(text, joints);
     if (!words) return fmt::format("{}: \"{}\"", name, words.error());
-    if (fault == JointTextFault::wrong_count && words->are_named())
+    if (fault == JointTextFault::wrong_count && words->are_named)
         return fmt::format("{}: {}", name, describe_missing(*words, joints));
     if (fault == JointTextFault::wrong_count)
         return fmt::format("{}: {} numbers, the rig has {} joints", name, words->numbers.size(),

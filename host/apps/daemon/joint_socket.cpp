@@ -3,6 +3,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <system_error>
@@ -50,8 +51,15 @@ JointSocket::~JointSocket() {
 }
 
 void JointSocket::expect(LineJoints joints) {
+    std::vector<Record> records(joints.sources.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const auto before =
+            std::ranges::find(joints_.sources, joints.sources[i].names, &LineJoints::Source::names);
+        if (before != joints_.sources.end())
+            records[i] = std::move(records_[static_cast<std::size_t>(before - joints_.sources.begin())]);
+    }
     joints_ = std::move(joints);
-    records_.resize(joints_.sources.size());
+    records_ = std::move(records);
     samples_of_line_.clear();
 }
 

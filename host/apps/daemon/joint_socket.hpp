@@ -33,7 +33,7 @@ class JointSocket {
 
     /// Readable when a datagram waits.
     [[nodiscard]] int descriptor() const noexcept { return feed_->descriptor(); }
-    /// From now on a line has these joints.
+    /// From now on a line has these joints. A source of the same joints keeps its senders.
     void expect(LineJoints joints);
     /// Takes the next sample of a datagram, and the next datagram if there is none; false if none has
     /// arrived. A datagram that is no sample is counted, and `sample` is then empty.

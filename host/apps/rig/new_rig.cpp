@@ -195,6 +195,14 @@ Result<std::string, AppError> new_rig_text(const NewRig& request) {
     rig.base_link = robot->shapes.base_link;
     const auto document = rig::UrdfDocument::read(rig.urdf);
     if (!document) return refused(document.error());
+    if (const auto joint = document->joint_moving(rig.base_link)) {
+        return fail(ExitCode::usage,
+                    {.code = ErrorCode::conflict,
+                     .what = "expected a base link that no joint moves",
+                     .value = fmt::format("'{}', which joint '{}' moves", rig.base_link, *joint),
+                     .remedy = "leave --base out for the URDF's root",
+                     .key = "--base"});
+    }
     const auto moving = document->moving_joints_outward(rig.base_link);
     std::vector<std::string> joints;
     for (const rig::JointOfLink& joint : moving) joints.push_back(joint.joint);

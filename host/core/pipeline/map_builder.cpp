@@ -264,9 +264,10 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     if (!depth.updates) {
         return unexpected(depth.updates.error());
     }
-    // A replay of the order that the listener gets needs the pose now.
-    if (depth.robot && robot_.at(depth.frame.captured) == nullptr) {
-        return unexpected(DepthReason::late);
+    // A replay of the order that the listener gets computes the pose now: it must be the one that was used.
+    if (depth.robot) {
+        const RobotPose* const now = robot_.at(depth.frame.captured);
+        if (now == nullptr || now->unknown != depth.robot->unknown) return unexpected(DepthReason::late);
     }
     watched([&] { add_depth(depth); });
     return Done{};

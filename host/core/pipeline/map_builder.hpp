@@ -96,7 +96,7 @@ class MapBuilder {
     [[nodiscard]] Result<DepthWork, DepthReason> begin(DepthFrame frame);
     /// Uses only the builder's depth stage.
     void work(DepthWork& depth);
-    /// `late`: the robot's pose at that time is no longer stored.
+    /// `late`: the robot's pose at that time is no longer stored, or other joints are known by now.
     [[nodiscard]] Status<DepthReason> finish(const DepthWork& depth);
 
     /// Time jump: clears the robot's motion; the maps stay. Later times are ahead of the earlier scale by

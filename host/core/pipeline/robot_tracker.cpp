@@ -49,7 +49,7 @@ bool RobotTracker::is_settled(HostTime instant) const noexcept {
     const auto is_settled = [&](const Source& source) {
         if (source.history.is_settled(instant)) return true;
         const auto own = source.history.newest();
-        // No sample of it can follow that bridges the instant, even if it arrives late.
+        // Its next sample is unlikely to bridge the instant, even if it arrives late.
         return newest && *newest - own.value_or(instant) > 2 * config_.bracket_max;
     };
     return newest && std::ranges::all_of(sources_, is_settled);

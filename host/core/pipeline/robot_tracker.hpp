@@ -34,8 +34,9 @@ class RobotTracker {
     /// The time continues from before the newest sample: clears all samples.
     void forget() noexcept;
 
-    /// True if the samples around `instant` have arrived or will never come: `at` then always gives the same
-    /// result. A source counts as silent once another one is ahead of it by twice of what is bridged.
+    /// True if the samples around `instant` have arrived, or are not worth waiting for: a source counts as
+    /// silent once another one is ahead of it by twice of what is bridged. Only if it sends again just after
+    /// `instant` the result of `at` changes later.
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept;
 
     /// The robot at `instant`, or null if no source has samples that surround it closely enough. Valid until

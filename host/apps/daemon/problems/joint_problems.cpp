@@ -186,6 +186,20 @@ void add_joint_gap(const DaemonView& view, Problems& problems) {
     }
 }
 
+/// What of the counters may be why a source has no samples that are used.
+void add_cause(const DaemonView& view, std::size_t source, Problem& problem) {
+    const JointSocket* const socket = view.inputs->joints();
+    const std::string refused = socket != nullptr ? refused_lines(*socket) : std::string();
+    if (is_local(view, source) && !refused.empty()) {
+        problem.what += fmt::format("; lines through the socket were refused ({}, the newest of {})", refused,
+                                    describe(socket->newest_refused().value()));
+        problem.remedy = fmt::format("expected is {}", kJointTextWanted);
+        return;
+    }
+    const auto& joints = view.pipeline->inputs().joint_samples;
+    if (joints.rejected() > 0) problem.what += "; of all sources " + see_counters("joint samples", joints);
+}
+
 /// Of several sources, one that is silent while others send.
 void add_silent_sources(const DaemonView& view, Problems& problems) {
     const auto& sources = view.rig->joint_sources;
@@ -193,13 +207,16 @@ void add_silent_sources(const DaemonView& view, Problems& problems) {
     for (std::size_t i = 0; i < sources.size() && sources.size() > 1; ++i) {
         const auto newest = robot.newest_sample(i);
         if (newest && !has_stopped(newest, view.bus_reckoned)) continue;
-        problems.push_back(
-            {.code = newest ? ProblemCode::joints_stopped : ProblemCode::joints_missing,
-             .on = on_of(view, i),
-             .what = fmt::format("no joint states of {} {}: sensors that they move are not placed "
-                                 "(joints_missing), and all is left out where bodies that they move can be",
-                                 fmt::join(sources[i].joints, ", "), newest ? "any more" : "yet"),
-             .key = "joints_missing"});
+        Problem problem{
+            .code = newest ? ProblemCode::joints_stopped : ProblemCode::joints_missing,
+            .on = on_of(view, i),
+            .what = fmt::format(
+                "no joint states of {} {}: sensors that they move are not placed (joints_missing), "
+                "and all is left out where bodies that they move can be",
+                fmt::join(sources[i].joints, ", "), newest ? "any more" : "yet"),
+            .key = "joints_missing"};
+        add_cause(view, i, problem);
+        problems.push_back(std::move(problem));
     }
 }
 

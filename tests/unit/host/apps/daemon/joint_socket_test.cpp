@@ -200,6 +200,21 @@ TEST_F(DatagramFeedTest, reads_on_whatever_was_sent_along_and_however_long_that_
     EXPECT_LT(std::chrono::steady_clock::now() - begun, 1s);
 }
 
+TEST_F(JointSocketTest, keeps_the_senders_of_a_source_whose_place_in_the_rig_changes) {
+    const auto source = [](const char* name) {
+        return LineJoints::Source{.index = 0, .names = {name}, .rate_hz = 100.0, .turns = {}};
+    };
+    std::optional<JointSample> sample;
+    socket_.expect({{source("rail"), source("finger")}});
+    send("finger=0.1");
+    EXPECT_TRUE(socket_.receive(sample));
+    EXPECT_EQ(socket_.samples(1), 1U);
+    socket_.expect({{source("finger"), source("lamp"), source("rail")}});
+    EXPECT_EQ(socket_.samples(0), 1U);
+    EXPECT_EQ(socket_.samples(1), 0U);
+    EXPECT_EQ(socket_.samples(2), 0U);
+}
+
 TEST_F(JointSocketTest, takes_as_many_joints_as_the_rig_that_is_loaded_anew) {
     socket_.expect(testing_support::one_source(2));
     send("1 2 3");

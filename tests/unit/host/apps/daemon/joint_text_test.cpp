@@ -109,9 +109,10 @@ TEST(JointText, by_name_is_in_any_order_of_any_sources_and_may_have_other_names)
     EXPECT_EQ(both->samples[1].position, (std::vector<double>{0.3, 0.4}));
     EXPECT_FALSE(both->has_own_time);
 
-    const auto gripper = parse_joints("99.75 wheel=0.4 elbow=1 finger=0.3\n", arm_and_gripper(), kNow, kNow);
+    const auto gripper =
+        parse_joints("99.75 wheel=0.4 lamp=nan finger=0.3 lamp=x\n", arm_and_gripper(), kNow, kNow);
     ASSERT_TRUE(gripper);
-    ASSERT_EQ(gripper->samples.size(), 1U) << "not all joints of the arm";
+    ASSERT_EQ(gripper->samples.size(), 1U) << "no joint of the arm";
     EXPECT_EQ(gripper->samples[0].source, 1U);
     EXPECT_EQ(gripper->samples[0].sampled, HostTime{99'750'000'000});
 }
@@ -129,6 +130,7 @@ TEST(JointText, by_name_has_each_name_once_with_a_number) {
     EXPECT_EQ(fault("shoulder=1 2"), not_a_number);
     EXPECT_EQ(fault("100 100 shoulder=1 elbow=1"), not_a_number);
     EXPECT_EQ(fault("shoulder=1"), wrong_count);
+    EXPECT_EQ(fault("finger=0 wheel=0 shoulder=1"), wrong_count) << "a part of the arm";
     EXPECT_EQ(fault("lamp=1"), wrong_count);
     EXPECT_EQ(fault("shoulder=1 elbow=9"), too_large);
     EXPECT_EQ(fault("50 shoulder=1 elbow=1"), time_off);
