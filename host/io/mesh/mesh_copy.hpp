@@ -20,8 +20,8 @@ struct MeshCopy {
 
 /// Errors name the file: those of FilePlace::open, too_large.
 [[nodiscard]] Result<MeshCopy, Error> copy_mesh(const FilePlace& file);
-/// The digest alone, without a copy. The same errors; too_large also beyond `bytes_left`, which is reduced by the
-/// file's size.
+/// The digest alone, without a copy. The same errors; too_large also beyond `bytes_left`, which is reduced by
+/// the file's size.
 [[nodiscard]] Result<std::string, Error> mesh_sha256(const FilePlace& file, std::uintmax_t& bytes_left);
 
 }  // namespace octoskin

@@ -138,7 +138,8 @@ TEST_F(UrdfEdges, definitions_of_xacro_that_no_element_uses_are_left_out) {
     };
     EXPECT_TRUE(with("<xacro:property name=\"width\" value=\".2\"/>"));
     EXPECT_TRUE(with("<xacro:arg name=\"prefix\" default=\"${a}\"/>"));
-    for (const char* element : {"<xacro:include filename=\"a.xacro\"/>", "<xacro:arm/>", "<xacro:macro name=\"m\"/>"}) {
+    for (const char* element :
+         {"<xacro:include filename=\"a.xacro\"/>", "<xacro:arm/>", "<xacro:macro name=\"m\"/>"}) {
         const auto document = with(element);
         ASSERT_FALSE(document) << element;
         EXPECT_THAT(document.error(), code_is(ErrorCode::unsupported));

@@ -42,12 +42,13 @@ TEST(RobotFit, takes_a_visual_mark_for_a_frame_but_no_collision) {
     const testing_support::ScratchFolder folder;
     folder.write("a.stl", testing_support::wedge_stl());
     const auto urdf_with = [&](const std::string& tag) {
-        return folder.write("arm.urdf", "<robot name=\"r\">" + link("base", "") +
-                                            link("upper", mesh("collision", "a.stl")) +
-                                            link("tip", "<" + tag + "><geometry><box size=\"0.001 0.001 0.001\"/>"
-                                                                    "</geometry></" + tag + ">") +
-                                            joint("base", "upper", "revolute") + joint("upper", "tip", "fixed") +
-                                            "</robot>");
+        return folder.write(
+            "arm.urdf", "<robot name=\"r\">" + link("base", "") + link("upper", mesh("collision", "a.stl")) +
+                            link("tip", "<" + tag +
+                                            "><geometry><box size=\"0.001 0.001 0.001\"/>"
+                                            "</geometry></" +
+                                            tag + ">") +
+                            joint("base", "upper", "revolute") + joint("upper", "tip", "fixed") + "</robot>");
     };
     const auto mark = fitted(urdf_with("visual"));
     ASSERT_TRUE(mark) << mark.error().message();
