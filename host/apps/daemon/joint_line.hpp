@@ -59,7 +59,7 @@ struct JointLine {
 
 enum class JointTextFault : std::uint8_t {
     not_a_number,  ///< a word that is no finite number, or none where a comma divides two
-    wrong_count,   ///< neither as many numbers as joints, nor one more; by name: no source has all its joints
+    wrong_count,   ///< neither as many numbers as joints, nor one more; by name: a part of a source, or none
     time_off,      ///< over 1 s from when it was read, or without a time and read over 1 s after its arrival
     too_large,     ///< a position beyond +-8.38 rad, the range on the wire, of a joint that has limits
     too_long,      ///< over kJointTextMax bytes
@@ -76,8 +76,7 @@ inline constexpr std::size_t kJointTextMax = 4096;
 /// The required form of a line, for the sender of another one.
 inline constexpr std::string_view kJointTextWanted =
     "[TIME] Q1 ... QN or [TIME] NAME=Q ..., radians (metres for a prismatic joint), numbers in the rig's "
-    "order; "
-    "TIME is CLOCK_MONOTONIC in seconds, within 1 s of now";
+    "order; TIME is CLOCK_MONOTONIC in seconds, within 1 s of now";
 
 /// Why `text` was refused at `now`, for a person: "wrong_count: 3 numbers, the rig has 7 joints",
 /// "too_large: joint 2 of 7 is 90, beyond +-8.388607: degrees, or millimetres?".

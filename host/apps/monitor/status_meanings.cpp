@@ -251,8 +251,7 @@ constexpr std::array kStatusMeanings = {
     Meaning{"joint_states.sources.joints", "name", kText, "", "as in the URDF"},
     Meaning{"joint_states.sources.joints", "poses_without", kCount, "",
             "poses of the robot, for a reading or an image, at whose time its position was not known, but "
-            "that of "
-            "other joints was"},
+            "that of other joints was"},
     Meaning{"joint_states", "second_sender", kFlag, "",
             "two senders are active, or were within the last second: neither is used"},
     Meaning{"joint_states", "contradictions", kCount, "",
@@ -292,10 +291,9 @@ constexpr std::array kStatusMeanings = {
         "frames on the bus of joint nodes whose joint states come through the socket, which are not used"},
     Meaning{"joints_socket", "not_a_number", kCount, "",
             "refused: a word that is no finite number, or a comma without a number on each side"},
-    Meaning{
-        "joints_socket", "wrong_count", kCount, "",
-        "refused: neither as many numbers as the rig has joints, nor one more, the time; by name: no source "
-        "has all its joints"},
+    Meaning{"joints_socket", "wrong_count", kCount, "",
+            "refused: neither as many numbers as the rig has joints, nor one more, the time; by name: a part "
+            "of a source, or none"},
     Meaning{"joints_socket", "time_off", kCount, "",
             "refused: its time differs by over 1 s from when it was read, or it has none and waited longer "
             "than that. Send CLOCK_MONOTONIC of this machine in seconds; the usual cause is wall time"},

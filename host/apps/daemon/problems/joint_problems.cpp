@@ -146,9 +146,10 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
     }
     if (!is_recent(view.used.joint_senders, view.now)) return;
     const std::uint64_t withheld = view.pipeline->inputs().joint_samples.rejected(JointReason::second_sender);
+    const std::size_t source = contradicted_source(view);
     problems.push_back(
         {.code = ProblemCode::joint_senders,
-         .what = is_local(view, contradicted_source(view))
+         .what = is_local(view, source)
                      ? fmt::format(
                            "joint states through the socket jump to and fro, as from two arms or as late "
                            "samples without TIME do; none is used until they have not jumped for a second "
@@ -158,7 +159,7 @@ void add_joint_senders(const DaemonView& view, Problems& problems) {
                            "two senders send joint states under node {}, and neither is used until they have "
                            "not contradicted each other for a second (second_sender, {}): the joint node and "
                            "another board of that id, or `octoskin joints --can` beside it",
-                           view.rig->joint_sources.at(contradicted_source(view)).node_id, withheld),
+                           view.rig->joint_sources.at(source).node_id, withheld),
          .key = "second_sender"});
 }
 
