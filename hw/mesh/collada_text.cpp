@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -222,38 +223,32 @@ class ColladaCheck {
         return child->Value();
     }
 
-    std::vector<double> numbers_of(const XMLElement& element) {
+    /// The words of an element's text, converted; a word for which `convert` gives nothing is a fault.
+    template <class Convert>
+    auto words_of(const XMLElement& element, const Convert& convert, const std::string& complaint) {
         std::string_view text = text_of(element);
-        std::vector<double> numbers;
+        std::vector<typename std::invoke_result_t<Convert, std::string_view>::value_type> values;
         while (!fault_) {
             const std::string_view word = take_word(text, kXmlBlanks);
             if (word.empty()) break;
-            if (const auto number = plain_number(word)) {
-                numbers.push_back(*number);
+            if (const auto value = convert(word)) {
+                values.push_back(*value);
             } else {
-                fail(element, quoted(word) +
-                                  " is no plain number of at most 15 digits before the point; export it with "
-                                  "plain numbers, separated by blanks");
+                fail(element, quoted(word) + complaint);
             }
         }
-        return numbers;
+        return values;
+    }
+
+    std::vector<double> numbers_of(const XMLElement& element) {
+        return words_of(element, plain_number,
+                        " is no plain number of at most 15 digits before the point; export it with plain "
+                        "numbers, separated by blanks");
     }
 
     std::vector<std::size_t> indices_of(const XMLElement& element) {
-        std::string_view text = text_of(element);
-        std::vector<std::size_t> indices;
-        while (!fault_) {
-            const std::string_view word = take_word(text, kXmlBlanks);
-            if (word.empty()) break;
-            if (const auto index = index_of(word)) {
-                indices.push_back(*index);
-            } else {
-                fail(element, quoted(word) +
-                                  " is no index: expected whole numbers, separated by blanks; export "
-                                  "it anew");
-            }
-        }
-        return indices;
+        return words_of(element, index_of,
+                        " is no index: expected whole numbers, separated by blanks; export it anew");
     }
 
     // --- Transforms.
