@@ -1,4 +1,4 @@
-// The keys of the camera, of its lens distortion and of the data set with its images.
+// The keys of a camera, of its lens distortion, its noise and the data set with its images.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,20 @@ namespace camera {
 inline constexpr std::int64_t kSideMax_px = 4096;
 inline constexpr Range<double> kFocalLength_px{1.0, 100'000.0};
 inline constexpr Range<double> kDepth_m{0.0, kDepthLargest_m};
+inline constexpr std::size_t kNameMax = 32;
+inline constexpr TextKey kName{.path = "camera.name",
+                               .kind = TextKind::folder_name,
+                               .fallback = {.text = "required in `cameras`"},
+                               .meaning =
+                                   "only in `cameras`: a unique name of up to 32 characters, with which "
+                                   "messages and files of a recording name the camera"};
+inline constexpr TextKey kDevice{
+    .path = "camera.device",
+    .kind = TextKind::path,
+    .fallback = {.text = "the first device"},
+    .meaning =
+        "OpenNI2 URI (`octoskin cameras`) or `.oni` file, for `octoskin run`; `--camera` overrides it. "
+        "With several cameras, each needs one of its own"};
 inline constexpr IntegerKey kWidth{.path = "camera.width_px",
                                    .unit = "px",
                                    .range = {1, kSideMax_px},
@@ -50,6 +64,10 @@ inline constexpr NumberKey kDepthMax{
     .range = kDepth_m,
     .fallback = {kDepthMaxDefault_m},
     .meaning = "larger depths are no value; more than `depth_min_m`. Images have 16 bits, millimetres"};
+inline constexpr TableKey kNoise{
+    .path = "camera.noise",
+    .fallback = {.text = "that of the mapping"},
+    .meaning = "[the noise of its depth](#noise), which its filter follows, too"};
 inline constexpr TableKey kDataSet{
     .path = "camera.data_set",
     .fallback = {.text = "as its layout has it"},
@@ -66,6 +84,32 @@ inline constexpr TableKey kPose{.path = "camera.pose",
                                     "T_link_camera of the optical frame: z forward, x right, y down. "
                                     "Images are never mirrored"};
 }  // namespace camera
+
+/// The same values as `depth_denoiser` of a mapping.
+namespace noise {
+inline constexpr NumberKey kNoise{.path = "camera.noise.noise_m",
+                                  .unit = "m",
+                                  .range = {1e-4, 1.0},
+                                  .fallback = {CameraNoise{}.noise_m},
+                                  .meaning = "one standard deviation of a pixel at `noise_from_m`"};
+inline constexpr NumberKey kNoisePer{.path = "camera.noise.noise_per_m",
+                                     .unit = "1/m",
+                                     .range = {0.0, 1.0},
+                                     .fallback = {CameraNoise{}.noise_per_m},
+                                     .meaning = "times the square of the distance from `noise_from_m`"};
+inline constexpr NumberKey kNoiseFrom{.path = "camera.noise.noise_from_m",
+                                      .unit = "m",
+                                      .range = camera::kDepth_m,
+                                      .fallback = {CameraNoise{}.noise_from_m},
+                                      .meaning = "depth with the least noise"};
+inline constexpr NumberKey kBiasPer{.path = "camera.noise.bias_per_m",
+                                    .unit = "1/m",
+                                    .range = {0.0, 1.0},
+                                    .fallback = {CameraNoise{}.bias_per_m},
+                                    .meaning =
+                                        "error that no mean removes, times the square of the depth; .0015 "
+                                        "for a Kinect"};
+}  // namespace noise
 
 namespace data_set {
 inline constexpr NumberKey kDepthUnits{.path = "camera.data_set.depth_units_per_m",

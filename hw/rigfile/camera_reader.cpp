@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/pose.hpp"
 #include "hw/rigfile/rig_keys.hpp"
@@ -71,10 +75,51 @@ DataSetKeys read_data_set(const Value& value, const std::string& path) {
     return data_set;
 }
 
-}  // namespace
+CameraNoise read_noise(const Value& value, const std::string& path) {
+    const Table table(value, path, keys::kCameraNoise);
+    return {.noise_m = table.number(keys::noise::kNoise),
+            .noise_per_m = table.number(keys::noise::kNoisePer),
+            .noise_from_m = table.number(keys::noise::kNoiseFrom),
+            .bias_per_m = table.number(keys::noise::kBiasPer)};
+}
 
-Camera read_camera(const Value& value, const UrdfDocument& robot, const std::string& base_link) {
-    const Table table(value, std::string(name_of(keys::kCameraTable)), keys::kCamera);
+/// A file is absolute, so that it is the same from any working directory.
+std::string read_device(const Table& table) {
+    const Value& value = table.require(keys::camera::kDevice);
+    std::string device = table.text(keys::camera::kDevice);
+    if (!device.ends_with(".oni")) return device;
+    return std::filesystem::absolute(existing_file(value, table.path_of(keys::camera::kDevice)).shown())
+        .lexically_normal()
+        .string();
+}
+
+struct Body {
+    const UrdfDocument& robot;
+    const std::string& base_link;
+};
+
+std::string read_link(const Table& table, const Body& body) {
+    const Value* const value = table.find(keys::camera::kLink);
+    if (value == nullptr) return {};
+    std::string link = table.text(keys::camera::kLink);
+    if (!body.robot.is_below(body.base_link, link))
+        fail(*value, table.path_of(keys::camera::kLink),
+             {ErrorCode::unknown_name,
+              fmt::format("expected a link of {} at or below {}", body.robot.file().filename().string(),
+                          body.base_link),
+              fmt::format("'{}'", link), "it has " + joined(body.robot.link_names())});
+    return link;
+}
+
+void read_depths(const Table& table, Camera& camera) {
+    camera.depth_min_m = table.number(keys::camera::kDepthMin);
+    camera.depth_max_m = table.number(keys::camera::kDepthMax);
+    if (!(camera.depth_min_m < camera.depth_max_m))
+        table.fail(keys::camera::kDepthMax, {ErrorCode::out_of_range, "expected more than depth_min_m",
+                                             fmt::format("{}", camera.depth_max_m)});
+}
+
+Camera read_camera(const Table& table, const Body& body) {
     Camera camera;
     camera.width = table.integer<std::uint32_t>(keys::camera::kWidth);
     camera.height = table.integer<std::uint32_t>(keys::camera::kHeight);
@@ -86,25 +131,80 @@ Camera read_camera(const Value& value, const UrdfDocument& robot, const std::str
         table.number(keys::camera::kCy, {keys::camera::kCy.range.min, static_cast<double>(camera.height)});
     read_lens(table, camera);
     camera.rate_hz = table.number(keys::camera::kRate);
-    camera.depth_min_m = table.number(keys::camera::kDepthMin);
-    camera.depth_max_m = table.number(keys::camera::kDepthMax);
-    if (!(camera.depth_min_m < camera.depth_max_m))
-        table.fail(keys::camera::kDepthMax, {ErrorCode::out_of_range, "expected more than depth_min_m",
-                                             fmt::format("{}", camera.depth_max_m)});
+    read_depths(table, camera);
+    if (const Value* noise = table.find(keys::camera::kNoise))
+        camera.noise = read_noise(*noise, table.path_of(keys::camera::kNoise));
     if (const Value* data_set = table.find(keys::camera::kDataSet))
         camera.data_set = read_data_set(*data_set, table.path_of(keys::camera::kDataSet));
-    if (const Value* link = table.find(keys::camera::kLink)) {
-        camera.link = table.text(keys::camera::kLink);
-        if (!robot.is_below(base_link, camera.link))
-            fail(*link, table.path_of(keys::camera::kLink),
-                 {ErrorCode::unknown_name,
-                  fmt::format("expected a link of {} at or below {}", robot.file().filename().string(),
-                              base_link),
-                  fmt::format("'{}'", camera.link), "it has " + joined(robot.link_names())});
-    }
+    if (table.find(keys::camera::kDevice) != nullptr) camera.device = read_device(table);
+    camera.link = read_link(table, body);
     camera.T_link_camera = read_pose(table.require(keys::camera::kPose), table.path_of(keys::camera::kPose),
                                      {.reach_m = keys::kRoomReach_m, .may_look_at_point = true});
     return camera;
+}
+
+/// It is part of the name of a file, and of `--camera NAME=DEVICE`.
+std::string read_camera_name(const Table& table, const std::vector<Camera>& cameras) {
+    std::string name = table.text(keys::camera::kName);
+    if (name.size() > keys::camera::kNameMax || name.front() == '.' || name.front() == '-')
+        table.fail(keys::camera::kName,
+                   {ErrorCode::bad_name,
+                    fmt::format("expected at most {} characters, the first a letter, a digit or _",
+                                keys::camera::kNameMax),
+                    fmt::format("'{}'", name)});
+    if (std::ranges::find(cameras, name, &Camera::name) != cameras.end())
+        table.fail(keys::camera::kName,
+                   {ErrorCode::duplicate, "expected each name once", fmt::format("'{}' again", name)});
+    return name;
+}
+
+void refuse_shared_device(const Table& table, const Camera& camera, const std::vector<Camera>& cameras) {
+    if (camera.device.empty()) return;
+    const auto other = std::ranges::find(cameras, camera.device, &Camera::device);
+    if (other == cameras.end()) return;
+    table.fail(keys::camera::kDevice,
+               {ErrorCode::duplicate, "expected a device of its own", fmt::format("'{}'", camera.device),
+                fmt::format("camera '{}' has it", other->name)});
+}
+
+std::vector<Camera> read_list_of_cameras(const Value& value, const Body& body) {
+    const std::string path(name_of(keys::kCameras));
+    const std::vector<Value>& items = read_list(value, path);
+    if (items.empty() || items.size() > kCamerasMax)
+        fail(value, path,
+             {ErrorCode::limit_exceeded, fmt::format("expected 1 to {} cameras", kCamerasMax),
+              std::to_string(items.size())});
+    std::vector<Camera> cameras;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const Table table(items[i], fmt::format("{}[{}]", path, i), keys::kCamera);
+        std::string name = read_camera_name(table, cameras);
+        Camera camera = read_camera(table, body);
+        camera.name = std::move(name);
+        refuse_shared_device(table, camera, cameras);
+        cameras.push_back(std::move(camera));
+    }
+    return cameras;
+}
+
+}  // namespace
+
+std::vector<Camera> read_cameras(const Table& top, const UrdfDocument& robot, const std::string& base_link) {
+    const Value* const one = top.find(keys::kCameraTable);
+    const Value* const several = top.find(keys::kCameras);
+    if (one != nullptr && several != nullptr)
+        top.fail(keys::kCameras,
+                 {.code = ErrorCode::conflict,
+                  .what = "expected `camera` or `cameras`, found both",
+                  .remedy = "put all cameras into `cameras` (`camera: ~` removes an inherited one)"});
+    const Body body{robot, base_link};
+    if (several != nullptr) return read_list_of_cameras(*several, body);
+    if (one == nullptr) return {};
+    const Table table(*one, std::string(name_of(keys::kCameraTable)), keys::kCamera);
+    if (table.find(keys::camera::kName) != nullptr)
+        table.fail(keys::camera::kName, {.code = ErrorCode::conflict,
+                                         .what = "expected none in `camera`, the only camera",
+                                         .remedy = "remove it, or write `cameras` with this item"});
+    return {read_camera(table, body)};
 }
 
 }  // namespace octoskin::rig

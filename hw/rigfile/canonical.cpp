@@ -134,16 +134,18 @@ void write_joints(Writer& out, const std::vector<JointSource>& sources) {
     }
 }
 
-void write_camera(Writer& out, const Camera& camera) {
-    out.open("", keys::kCameraTable);
-    out.entry("  ", keys::camera::kWidth, camera.width);
-    out.entry("  ", keys::camera::kHeight, camera.height);
-    out.entry("  ", keys::camera::kFx, number(camera.fx));
-    out.entry("  ", keys::camera::kFy, number(camera.fy));
-    out.entry("  ", keys::camera::kCx, number(camera.cx));
-    out.entry("  ", keys::camera::kCy, number(camera.cy));
+/// Optional keys are left out if they have their default: rigs without them keep the hash from before the
+/// keys existed. `first`, `indent`: before the first and the other keys.
+void write_camera(Writer& out, const Camera& camera, const std::string& first, const std::string& indent) {
+    if (!camera.name.empty()) out.entry(first, keys::camera::kName, quoted(camera.name));
+    out.entry(camera.name.empty() ? first : indent, keys::camera::kWidth, camera.width);
+    out.entry(indent, keys::camera::kHeight, camera.height);
+    out.entry(indent, keys::camera::kFx, number(camera.fx));
+    out.entry(indent, keys::camera::kFy, number(camera.fy));
+    out.entry(indent, keys::camera::kCx, number(camera.cx));
+    out.entry(indent, keys::camera::kCy, number(camera.cy));
     if (const LensDistortion& lens = camera.lens; !lens.is_none()) {
-        out.entry("  ", keys::camera::kDistortion,
+        out.entry(indent, keys::camera::kDistortion,
                   FlowTable()
                       .entry(keys::distortion::kK1, number(lens.k1))
                       .entry(keys::distortion::kK2, number(lens.k2))
@@ -152,11 +154,17 @@ void write_camera(Writer& out, const Camera& camera) {
                       .entry(keys::distortion::kK3, number(lens.k3))
                       .take());
     }
-    out.entry("  ", keys::camera::kRate, number(camera.rate_hz));
-    out.entry("  ", keys::camera::kDepthMin, number(camera.depth_min_m));
-    out.entry("  ", keys::camera::kDepthMax, number(camera.depth_max_m));
-    // Left out if they have their default, as is a lens without distortion: rigs without these keys keep the
-    // hash from before the keys existed.
+    out.entry(indent, keys::camera::kRate, number(camera.rate_hz));
+    out.entry(indent, keys::camera::kDepthMin, number(camera.depth_min_m));
+    out.entry(indent, keys::camera::kDepthMax, number(camera.depth_max_m));
+    if (camera.noise)
+        out.entry(indent, keys::camera::kNoise,
+                  FlowTable()
+                      .entry(keys::noise::kNoise, number(camera.noise->noise_m))
+                      .entry(keys::noise::kNoisePer, number(camera.noise->noise_per_m))
+                      .entry(keys::noise::kNoiseFrom, number(camera.noise->noise_from_m))
+                      .entry(keys::noise::kBiasPer, number(camera.noise->bias_per_m))
+                      .take());
     const DataSetDepth depth = camera.data_set.depth();
     const double gap_ms = camera.data_set.pose_gap_max_ms;
     const bool has_gap = gap_ms != keys::data_set::kPoseGapMax.fallback.value;
@@ -165,10 +173,23 @@ void write_camera(Writer& out, const Camera& camera) {
         data_set.entry(keys::data_set::kDepthUnits, number(depth.units_per_m))
             .entry(keys::data_set::kDepthNoValue, depth.no_value);
         if (has_gap) data_set.entry(keys::data_set::kPoseGapMax, number(gap_ms));
-        out.entry("  ", keys::camera::kDataSet, data_set.take());
+        out.entry(indent, keys::camera::kDataSet, data_set.take());
     }
-    if (!camera.link.empty()) out.entry("  ", keys::camera::kLink, quoted(camera.link));
-    out.entry("  ", keys::camera::kPose, pose(camera.T_link_camera));
+    if (!camera.device.empty()) out.entry(indent, keys::camera::kDevice, quoted(camera.device));
+    if (!camera.link.empty()) out.entry(indent, keys::camera::kLink, quoted(camera.link));
+    out.entry(indent, keys::camera::kPose, pose(camera.T_link_camera));
+}
+
+void write_cameras(Writer& out, const std::vector<Camera>& cameras) {
+    if (cameras.empty()) return;
+    const bool is_list = !cameras.front().name.empty();
+    if (is_list) {
+        out.open("", keys::kCameras);
+    } else {
+        out.open("", keys::kCameraTable);
+    }
+    for (const Camera& camera : cameras)
+        write_camera(out, camera, is_list ? "  - " : "  ", is_list ? "    " : "  ");
 }
 
 void write_board(Writer& out, const Board& board) {
@@ -282,7 +303,7 @@ std::string canonical_text(const Rig& rig, const std::string& urdf) {
     out.entry("  ", keys::range_limits::kTimeUncertaintyMax,
               number(rig.range_limits.time_uncertainty_max_ms));
     write_joints(out, rig.joint_sources);
-    if (rig.camera) write_camera(out, *rig.camera);
+    write_cameras(out, rig.cameras);
     out.open("", keys::kNodes);
     for (const Node& node : rig.nodes) write_node(out, node);
     return out.take();

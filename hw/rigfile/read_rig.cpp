@@ -245,8 +245,7 @@ Rig read_checked(const FilePlace& file, const std::filesystem::path& urdf_instea
     rig.bus = read_bus(top.require(keys::kBusTable));
     if (const Value* limits = top.find(keys::kRangeLimitsTable))
         rig.range_limits = read_range_limits(*limits);
-    if (const Value* camera = top.find(keys::kCameraTable))
-        rig.camera = read_camera(*camera, urdf, rig.base_link);
+    rig.cameras = read_cameras(top, urdf, rig.base_link);
     rig.nodes = read_nodes(top.require(keys::kNodes), top.path_of(keys::kNodes),
                            {urdf, rig.base_link, rig.bus, top.find(keys::kSensorDefaults)});
     refuse_moved_base(robot, rig.base_link, urdf);

@@ -1,4 +1,4 @@
-// The rig as a value: boards, sensors, robot and camera. Only read_rig() reads it from a file.
+// The rig as a value: boards, sensors, robot and cameras. Only read_rig() reads it from a file.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -69,12 +69,23 @@ struct JointSource {
     JointWay way = JointWay::can;  ///< `socket`: they do not load the bus
 };
 
+inline constexpr std::size_t kCamerasMax = 8;
 /// Depth images are in millimetres of 16 bits.
 inline constexpr double kDepthLargest_m = 65.5;
 inline constexpr double kDepthMinDefault_m = 0.5;
 inline constexpr double kDepthMaxDefault_m = 4.5;
 
+/// The noise of a camera's depth, as in a mapping file (`depth_denoiser`): one standard deviation is
+/// `noise_m` + `noise_per_m` * (depth - `noise_from_m`)^2; what no mean removes is `bias_per_m` * depth^2.
+struct CameraNoise {
+    double noise_m = 0.03;
+    double noise_per_m = 0.0;
+    double noise_from_m = 0.4;
+    double bias_per_m = 0.0;
+};
+
 struct Camera {
+    std::string name = {};  ///< unique; empty: the only camera, given as `camera`
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
@@ -84,7 +95,9 @@ struct Camera {
     double depth_max_m = kDepthMaxDefault_m;
     std::string link = {};  ///< that carries it; empty: the base link
     Eigen::Isometry3d T_link_camera =
-        Eigen::Isometry3d::Identity();  ///< optical frame: z forward, x right, y down
+        Eigen::Isometry3d::Identity();      ///< optical frame: z forward, x right, y down
+    std::string device = {};                ///< OpenNI2 URI or .oni file to read it from; empty: not given
+    std::optional<CameraNoise> noise = {};  ///< empty: that of the mapping
     DataSetKeys data_set = {};
 };
 
@@ -138,7 +151,7 @@ struct Rig {
     Bus bus;
     std::vector<Node> nodes;
     std::vector<JointSource> joint_sources;  ///< 1..32; each moving joint is in one of them
-    std::optional<Camera> camera;
+    std::vector<Camera> cameras;             ///< at most kCamerasMax
     RangeLimits range_limits;
 
     /// The joints of all sources, in their order: the order of all joint vectors.
@@ -148,9 +161,12 @@ struct Rig {
             names.insert(names.end(), source.joints.begin(), source.joints.end());
         return names;
     }
-    /// The camera beside the robot; empty if there is none, or if it is on a link.
-    [[nodiscard]] std::optional<Camera> external_camera() const {
-        return camera && camera->link.empty() ? camera : std::nullopt;
+    /// The cameras beside the robot: those that are not on a link.
+    [[nodiscard]] std::vector<Camera> external_cameras() const {
+        std::vector<Camera> external;
+        for (const Camera& camera : cameras)
+            if (camera.link.empty()) external.push_back(camera);
+        return external;
     }
     /// The number of joints of each source.
     [[nodiscard]] std::vector<std::size_t> joint_counts() const {
@@ -172,10 +188,12 @@ struct Rig {
 /// The canonical YAML text of a rig: reading it gives an equal rig, and equal rigs give equal text. `urdf` is
 /// written as given.
 [[nodiscard]] std::string canonical_text(const Rig& rig, const std::string& urdf);
-/// CRC-32 of the canonical text without the path of the URDF.
+/// The rig without the devices of its cameras, which are of one machine.
+[[nodiscard]] Rig without_devices(Rig rig);
+/// CRC-32 of the canonical text without the path of the URDF and the devices of cameras.
 [[nodiscard]] std::uint32_t rig_hash(const Rig& rig);
 /// CRC-32 of everything that determines where a measurement lies in the map: the robot's base, its joints,
-/// poses and optics of sensors and camera, and `robot`, the text of its URDF.
+/// poses and optics of sensors and cameras, and `robot`, the text of its URDF.
 [[nodiscard]] std::uint32_t placement_crc32(const Rig& rig, std::string_view robot);
 
 }  // namespace octoskin::rig

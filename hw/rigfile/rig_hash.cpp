@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -16,8 +17,8 @@ Rig placing_part(const Rig& rig) {
     Rig placing;
     placing.base_link = rig.base_link;
     placing.T_map_base = rig.T_map_base;
-    for (const JointSource& source : rig.joint_sources)
-        placing.joint_sources.push_back({.joints = source.joints});
+    placing.joint_sources = {{.joints = rig.joint_names()}};  // not their order: each is known by its name
+    std::ranges::sort(placing.joint_sources.front().joints);
     for (const Node& node : rig.nodes) {
         Node& only_sensors = placing.nodes.emplace_back();
         only_sensors.config.node_id = node.config.node_id;
@@ -32,15 +33,25 @@ Rig placing_part(const Rig& rig) {
                                                  .zones = config.zones};
         }
     }
-    placing.camera = rig.camera;
-    if (placing.camera) placing.camera->rate_hz = 0.0;
+    for (const Camera& camera : rig.cameras) {
+        Camera& placed = placing.cameras.emplace_back(camera);
+        placed.rate_hz = 0.0;
+        placed.device.clear();
+        placed.noise.reset();
+    }
+    std::ranges::sort(placing.cameras, {}, &Camera::name);
     return placing;
 }
 
 }  // namespace
 
+Rig without_devices(Rig rig) {
+    for (Camera& camera : rig.cameras) camera.device.clear();
+    return rig;
+}
+
 std::uint32_t rig_hash(const Rig& rig) {
-    return crc32_of(canonical_text(rig, "robot.urdf"));
+    return crc32_of(canonical_text(without_devices(rig), "robot.urdf"));
 }
 
 std::uint32_t placement_crc32(const Rig& rig, std::string_view robot) {

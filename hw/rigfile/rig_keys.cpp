@@ -5,7 +5,7 @@ namespace keys {
 namespace {
 
 constexpr auto kTopKeys = std::to_array<AnyKey>(
-    {&kName, &kRobotTable, &kMapBase, &kBusTable, &kRangeLimitsTable, &kJointsTable, &kCameraTable,
+    {&kName, &kRobotTable, &kMapBase, &kBusTable, &kRangeLimitsTable, &kJointsTable, &kCameraTable, &kCameras,
      &kSensorDefaults, &kNodes,
      &kExtends});  // already removed when the keys are checked; for the hint about an unknown key
 constexpr auto kRobotKeys = std::to_array<AnyKey>({&robot::kUrdf, &robot::kBaseLink, &robot::kLinkPadding,
@@ -21,10 +21,12 @@ constexpr auto kRangeLimitsKeys = std::to_array<AnyKey>(
     {&range_limits::kMin, &range_limits::kMax, &range_limits::kSigmaMax, &range_limits::kTimeUncertaintyMax});
 constexpr auto kJointsKeys =
     std::to_array<AnyKey>({&joints::kNodeId, &joints::kNames, &joints::kRate, &joints::kWay});
-constexpr auto kCameraKeys =
-    std::to_array<AnyKey>({&camera::kWidth, &camera::kHeight, &camera::kFx, &camera::kFy, &camera::kCx,
-                           &camera::kCy, &camera::kDistortion, &camera::kRate, &camera::kDepthMin,
-                           &camera::kDepthMax, &camera::kDataSet, &camera::kLink, &camera::kPose});
+constexpr auto kCameraKeys = std::to_array<AnyKey>(
+    {&camera::kName, &camera::kDevice, &camera::kWidth, &camera::kHeight, &camera::kFx, &camera::kFy,
+     &camera::kCx, &camera::kCy, &camera::kDistortion, &camera::kRate, &camera::kDepthMin, &camera::kDepthMax,
+     &camera::kNoise, &camera::kDataSet, &camera::kLink, &camera::kPose});
+constexpr auto kCameraNoiseKeys =
+    std::to_array<AnyKey>({&noise::kNoise, &noise::kNoisePer, &noise::kNoiseFrom, &noise::kBiasPer});
 constexpr auto kDataSetKeys =
     std::to_array<AnyKey>({&data_set::kDepthUnits, &data_set::kDepthNoValue, &data_set::kPoseGapMax});
 constexpr auto kDistortionKeys = std::to_array<AnyKey>(
@@ -60,6 +62,7 @@ constinit const KeyTable kBus{"rig keys of bus", kBusKeys};
 constinit const KeyTable kRangeLimits{"rig keys of range_limits", kRangeLimitsKeys};
 constinit const KeyTable kJoints{"rig keys of joints", kJointsKeys};
 constinit const KeyTable kCamera{"rig keys of camera", kCameraKeys};
+constinit const KeyTable kCameraNoise{"rig keys of camera.noise", kCameraNoiseKeys};
 constinit const KeyTable kDataSet{"rig keys of camera.data_set", kDataSetKeys};
 constinit const KeyTable kDistortion{"rig keys of camera.distortion", kDistortionKeys};
 constinit const KeyTable kNode{"rig keys of a node", kNodeKeys};
@@ -73,10 +76,10 @@ constinit const KeyTable kBoard{"rig keys of a board", kBoardKeys};
 
 std::span<const KeyTable> rig_key_tables() noexcept {
     static const std::array kTables{
-        keys::kTop,         keys::kRobot,        keys::kAttachedCapsule, keys::kCameraPose, keys::kBus,
-        keys::kRangeLimits, keys::kJoints,       keys::kCamera,          keys::kDataSet,    keys::kDistortion,
-        keys::kNode,        keys::kVerification, keys::kSensor,          keys::kZone,       keys::kCone,
-        keys::kBoard};
+        keys::kTop,         keys::kRobot,  keys::kAttachedCapsule, keys::kCameraPose,  keys::kBus,
+        keys::kRangeLimits, keys::kJoints, keys::kCamera,          keys::kCameraNoise, keys::kDataSet,
+        keys::kDistortion,  keys::kNode,   keys::kVerification,    keys::kSensor,      keys::kZone,
+        keys::kCone,        keys::kBoard};
     return kTables;
 }
 

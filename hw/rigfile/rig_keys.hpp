@@ -34,6 +34,7 @@ extern const KeyTable kBus;
 extern const KeyTable kRangeLimits;
 extern const KeyTable kJoints;
 extern const KeyTable kCamera;
+extern const KeyTable kCameraNoise;
 extern const KeyTable kDataSet;
 extern const KeyTable kDistortion;
 extern const KeyTable kNode;
@@ -65,8 +66,15 @@ inline constexpr TableKey kJointsTable{.path = "joints",
 inline constexpr TableKey kCameraTable{.path = "camera",
                                        .fallback = {.text = "none"},
                                        .meaning =
-                                           "[the external depth camera](#camera); without it the map "
-                                           "is made from ranges alone"};
+                                           "[the depth camera](#camera); without one the map is made "
+                                           "from ranges alone"};
+inline constexpr ListKey kCameras{.path = "cameras",
+                                  .items = "cameras",
+                                  .count = {1, kCamerasMax},
+                                  .fallback = {.text = "none"},
+                                  .meaning =
+                                      "in place of `camera`: several [depth cameras](#camera), each with a "
+                                      "`name`"};
 inline constexpr TableKey kSensorDefaults{
     .path = "sensor_defaults",
     .fallback = {.text = "none"},

@@ -9,7 +9,7 @@
 namespace octoskin::bench {
 
 DepthSteps::DepthSteps(const HostRig& rig, const MappingConfig& config)
-    : camera_(rig.camera.value()),
+    : camera_(rig.cameras.at(0)),
       config_(config),
       self_margin_m_(rig.depth_self_margin_m),
       filter_(config.depth_filter),

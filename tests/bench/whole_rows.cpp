@@ -32,10 +32,10 @@ constexpr std::int64_t kPeriod_ns = 100'000'000;
 /// The camera measures all that a frame can hold, as OctoMap's cloud has it all.
 HostRig rig_of(const RoomFrames& room) {
     HostRig rig;
-    rig.camera = HostCamera{.intrinsics = room.camera,
-                            .depth_min_m = 0.001,
-                            .depth_max_m = 65.535,
-                            .T_link_camera = room.frames.front().T_map_camera};
+    rig.cameras = {HostCamera{.intrinsics = room.camera,
+                              .depth_min_m = 0.001,
+                              .depth_max_m = 65.535,
+                              .T_link_camera = room.frames.front().T_map_camera}};
     return rig;
 }
 

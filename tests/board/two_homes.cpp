@@ -74,7 +74,7 @@ TwoHomes::TwoHomes(SlowClockSpread slow_clocks)
       world_(World::read(scenario_.world).value()),
       arm_(Arm::read(rig_.urdf, rig_.base_link, rig_.joint_names()).value()),
       body_(rig::read_capsules(rig_.urdf, {}).value()) {
-    rig_.camera.reset();
+    rig_.cameras.clear();
     scenario_.rest_s = 2.0;
     scenario_.motion.ticks_per_revolution = 60;
     scenario_.slow_clocks = slow_clocks;

@@ -15,17 +15,19 @@ std::string_view without_feed(const std::string& line) {
 }
 
 void check(std::string_view line) {
-    static constexpr std::array<std::size_t, 2> kJoints{2, 1};
+    static const std::array kForms{CommitForm{.joints = {2, 1}}, CommitForm{.joints = {2}, .cameras = 3}};
     if (const auto header = parse_header(line)) {
         assert(parse_header(without_feed(format_header(*header))) == header);
     }
     if (const auto trailer = parse_trailer(line)) {
         assert(parse_trailer(without_feed(format_trailer(*trailer))) == trailer);
     }
-    if (const auto commit = parse_commit(line, kJoints)) {
-        const std::string written = format_commit(*commit, kJoints);
-        const auto again = parse_commit(without_feed(written), kJoints);
-        assert(again && format_commit(*again, kJoints) == written);
+    for (const CommitForm& form : kForms) {
+        const auto commit = parse_commit(line, form);
+        if (!commit) continue;
+        const std::string written = format_commit(*commit, form);
+        const auto again = parse_commit(without_feed(written), form);
+        assert(again && format_commit(*again, form) == written);
     }
 }
 

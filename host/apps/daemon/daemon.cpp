@@ -104,11 +104,8 @@ void Daemon::Parts::watch() {
     sources.push_back(loop.on_readable(faults.descriptor(), [this] { faults.rethrow(); }));
     sources.push_back(loop.on_signal(SIGHUP, [this] { ask_reload(); }));
     sources.push_back(loop.on_readable(reading.descriptor(), [this] { end_reload(); }));
-    pipeline.work_beside(&depth_thread);
-    sources.push_back(loop.on_readable(depth_thread.descriptor(), [this] {
-        depth_thread.acknowledge();
-        pipeline.on_worker_done();
-    }));
+    depth_threads.grow_to(settings.host.rig.cameras.size());
+    pipeline.work_beside(depth_threads.workers());
     sources.push_back(loop.on_readable(queries.descriptor(), [this] {
         const HostTime now = monotonic_now();
         const QueryServer::Now of_map{inputs.bus_now(now), inputs.reckoned_bus_now(now), wall_now()};
@@ -151,7 +148,7 @@ DaemonView Daemon::Parts::view() const {
             .is_wall_clock_right = tells_time(wall_now()),
             .interface = &request.interface,
             .is_listen_only = request.is_listen_only,
-            .camera = inputs.camera(),
+            .cameras = inputs.cameras(),
             .used = last_used,
             .log = log->record(),
             .saves = saver->record(),

@@ -15,7 +15,7 @@
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/control_socket.hpp"
 #include "host/apps/daemon/daemon.hpp"
-#include "host/apps/daemon/depth_thread.hpp"
+#include "host/apps/daemon/depth_threads.hpp"
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/home_watch.hpp"
 #include "host/apps/daemon/inputs.hpp"
@@ -65,6 +65,7 @@ struct Daemon::Parts {
     /// The address space that a save of such a map takes in addition, for its list of bricks.
     [[nodiscard]] static std::size_t bytes_to_save(const MapConfig& map) noexcept;
     [[nodiscard]] bool take_limits(const MapConfig& next);
+    [[nodiscard]] bool take_threads(const HostRig& next);
     [[nodiscard]] bool resume_with(Next& next);
     void ask_reload();
     void begin_reload();
@@ -81,8 +82,9 @@ struct Daemon::Parts {
     EventLoop loop;
     ThreadFaults faults;  ///< destroyed after all that have a thread
     Pipeline pipeline;
-    AddressReserve reserve;     ///< for the last save
-    DepthThread depth_thread;   ///< destroyed before the pipeline that it works for
+    AddressReserve reserve;  ///< for the last save
+    DepthThreads depth_threads{loop,
+                               [this] { pipeline.on_worker_done(); }};  ///< destroyed before the pipeline
     RecordRequests recordings;  ///< releases the pipeline before it is destroyed
     Inputs inputs;
     std::optional<HomeWatch> home;

@@ -4,6 +4,7 @@
 
 #include <new>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/daemon_parts.hpp"
@@ -64,6 +65,7 @@ bool Daemon::Parts::take_next(NextResult next) {
 bool Daemon::Parts::resume_with(Next& next) {
     std::optional<FusedMap> recorded =
         recordings.last_map();  // changes by the new limits are not part of the recording
+    if (!take_threads(next.settings.host.rig)) return false;
     if (!take_limits(next.settings.mapping.map)) return false;
     recordings.stop(monotonic_now(), "the daemon re-read its files (SIGHUP)", std::move(recorded));
     inputs.prepare_for(next.settings.host.rig);
@@ -72,7 +74,7 @@ bool Daemon::Parts::resume_with(Next& next) {
     next.pipeline.resume_from(pipeline);
     settings = std::move(next.settings);
     pipeline = std::move(next.pipeline);
-    pipeline.work_beside(&depth_thread);
+    pipeline.work_beside(depth_threads.workers());
     inputs.change_rig(settings.host.rig);
     queries.change_robot(settings.host, miss_units(settings.mapping));
     reload_error.clear();
@@ -95,6 +97,16 @@ std::optional<Error> Daemon::Parts::why_map_ends(const Settings& next) const {
     return other;
 }
 
+bool Daemon::Parts::take_threads(const HostRig& next) {
+    try {
+        depth_threads.grow_to(next.cameras.size());
+        return true;
+    } catch (const std::system_error& error) {
+        reload_error = std::string("no thread left for another camera: ") + error.what();
+        return false;
+    }
+}
+
 /// While the pipeline still runs: waiting inputs must not make the map larger than the next start may load.
 bool Daemon::Parts::take_limits(const MapConfig& next) {
     try {
@@ -112,8 +124,9 @@ bool Daemon::Parts::take_limits(const MapConfig& next) {
 std::uint64_t Daemon::Parts::settle_pipeline() {
     const auto rejected = [this] {
         const PipelineInputs& counted = pipeline.inputs();
-        return counted.readings.rejected() + counted.joint_samples.rejected() +
-               counted.depth_frames.rejected();
+        std::uint64_t frames = 0;
+        for (const auto& camera : counted.depth_frames) frames += camera.rejected();
+        return counted.readings.rejected() + counted.joint_samples.rejected() + frames;
     };
     const std::uint64_t before = rejected();
     pipeline.finish();

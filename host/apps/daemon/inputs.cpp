@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <system_error>
 #include <utility>
 
 #include "common/wire/codec.hpp"
@@ -13,7 +12,6 @@
 namespace octoskin {
 namespace {
 
-constexpr std::chrono::milliseconds kCameraSilenceMax{2'000};
 /// Datagrams of the CAN interface taken in one go before other inputs have their turn.
 constexpr int kFramesPerTurn = 256;
 // As many as wait for a loop that was held up. A flood must not delay the bus for longer.
@@ -53,6 +51,7 @@ Inputs::Inputs(const DaemonRequest& request, const HostRig& rig, EventLoop& loop
       can_(
           opener(request, rig), [this] { can_ready_ = EventSource(); }, state_reader(request)),
       local_sources_(local_sources_of(rig)),
+      cameras_(loop, [this](DepthFrame frame) { return take_depth(std::move(frame)); }),
       bit_rates_(rig.bit_rates) {}
 
 Status<AppError> Inputs::take_sockets(const HostRig& rig) {
@@ -65,46 +64,18 @@ Status<AppError> Inputs::take_sockets(const HostRig& rig) {
 
 void Inputs::watch(const HostRig& rig) {
     if (joints_) joints_ready_ = loop_.on_readable(joints_->descriptor(), [this] { catch_up(); });
-    camera_mode_ = mode_for(rig);
+    cameras_.want(cameras_of(rig));
     attend();
 }
 
-std::optional<openni2::CameraMode> Inputs::mode_for(const HostRig& rig) const {
-    if (!rig.camera || !request_.has_camera) return std::nullopt;
-    const CameraIntrinsics& wanted = rig.camera->intrinsics;
-    return openni2::CameraMode{wanted.width, wanted.height, rig.camera->rate_hz};
+std::vector<HostCamera> Inputs::cameras_of(const HostRig& rig) const {
+    return request_.has_camera ? rig.cameras : std::vector<HostCamera>{};
 }
 
 void Inputs::prepare_for(const HostRig& rig) {
     catch_up();  // waiting joint states are in the order of the former rig
     feed_joints(WallTime{std::numeric_limits<std::int64_t>::max()});
-    if (!camera_ || mode_for(rig) == camera_mode_) return;
-    camera_ready_ = EventSource();
-    camera_->end();
-    while (auto frame = camera_->take()) take_depth(std::move(*frame));  // at most those that wait
-    camera_leaving_ = std::move(camera_);
-    depth_untimed_ = 0;
-    camera_missing_ = {};
-    camera_missing_.begun = monotonic_now();
-    camera_missing_.why = "it is being released, to be opened in another mode";
-    camera_tried_.reset();
-}
-
-void Inputs::attend_camera() {
-    if (camera_leaving_ && !camera_leaving_->has_ended()) return;
-    camera_leaving_.reset();
-    const HostTime now = monotonic_now();
-    if (camera_ || !camera_mode_ || (camera_tried_ && now - *camera_tried_ < CameraFeed::kRetry)) return;
-    if (!camera_tried_) camera_missing_.begun = now;
-    camera_tried_ = now;
-    try {
-        camera_ =
-            std::make_unique<CameraFeed>(request_.camera_uri, kCameraSilenceMax, std::nullopt, camera_mode_);
-        camera_ready_ = loop_.on_readable(camera_->descriptor(), [this] { drain_camera(); });
-    } catch (const std::system_error& error) {
-        camera_.reset();
-        camera_missing_.why = std::string("no thread left for it: ") + error.what();
-    }
+    cameras_.release_others(cameras_of(rig));
 }
 
 void Inputs::change_rig(const HostRig& rig) {
@@ -113,8 +84,7 @@ void Inputs::change_rig(const HostRig& rig) {
     change_local_sources(local_sources_of(rig));
     rig_changed_ = wall_now();
     if (joints_) joints_->expect(local_joints_of(rig));
-    camera_mode_ = mode_for(rig);
-    attend_camera();
+    cameras_.want(cameras_of(rig));
 }
 
 void Inputs::attend() {
@@ -131,7 +101,7 @@ void Inputs::attend() {
         if (is_time_unknown || pipeline_.intake().wants_exchange()) sync_.hasten();
         if (const auto due = sync_.poll(now)) (void)can_.send(wire::encode(*due, wire::kHostId));
     }
-    attend_camera();
+    cameras_.attend();
     catch_up();  // without a kernel, the echoes of this host's frames wake no one
     exchange_alone();
     const auto bus_now = bus_time_.at(now);
@@ -401,27 +371,16 @@ void Inputs::feed_oldest(LocalSource& source, JointBurst::Turn turn) {
     for (const wire::CanFrame& frame : *frames) feed(frame, place);
 }
 
-void Inputs::drain_camera() {
-    if (auto frame = camera_->take()) take_depth(std::move(*frame));
-}
-
-void Inputs::take_depth(DepthFrame frame) {
+bool Inputs::take_depth(DepthFrame frame) {
     // Not earlier: relative to the input read so far it would be a frame of the future.
     catch_up();
     if (request_.is_listen_only) {
         const auto ahead = foreign_clock_.ahead(monotonic_now());
-        depth_untimed_ += ahead ? 0U : 1U;
-        if (!ahead) return;
+        if (!ahead) return false;
         frame.captured = frame.captured + *ahead;
     }
     pipeline_.on_depth(std::move(frame));
-}
-
-std::optional<CameraRecord> Inputs::camera() const {
-    if (!camera_mode_) return std::nullopt;
-    CameraRecord record = camera_ ? camera_->record() : camera_missing_;
-    record.untimed += depth_untimed_;
-    return record;
+    return true;
 }
 
 }  // namespace octoskin

@@ -12,7 +12,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "common/wire/bus_load.hpp"
-#include "host/apps/daemon/camera_feed.hpp"
+#include "host/apps/daemon/camera_inputs.hpp"
 #include "host/apps/daemon/can_link.hpp"
 #include "host/apps/daemon/event_loop.hpp"
 #include "host/apps/daemon/joint_socket.hpp"
@@ -39,11 +39,11 @@ class Inputs {
     [[nodiscard]] Status<AppError> take_sockets(const HostRig& rig);
     /// From now on the loop delivers the inputs.
     void watch(const HostRig& rig);
-    /// Switches to another rig: its filters, joints and camera. First call `prepare_for`, with the pipeline
+    /// Switches to another rig: its filters, joints and cameras. First call `prepare_for`, with the pipeline
     /// of the former rig. Call this with the pipeline of the new rig.
     void change_rig(const HostRig& rig);
-    /// Prepares for the next rig: waiting inputs go into the pipeline, joint states first. A camera that the
-    /// rig uses in another mode, or not at all, is released, and its waiting frames go into the pipeline,
+    /// Prepares for the next rig: waiting inputs go into the pipeline, joint states first. Cameras that the
+    /// rig uses in another mode, or not at all, are released, and their waiting frames go into the pipeline,
     /// too.
     void prepare_for(const HostRig& rig);
 
@@ -68,9 +68,9 @@ class Inputs {
     [[nodiscard]] bool is_flooded(HostTime now) const;
     /// Frames on the bus of joint nodes whose joint states come through the socket.
     [[nodiscard]] std::uint64_t joint_node_ignored() const noexcept { return joint_node_ignored_; }
-    /// Empty without a camera. Its `untimed` includes the frames that came while another host's clock was not
-    /// known.
-    [[nodiscard]] std::optional<CameraRecord> camera() const;
+    /// Of each camera in the rig's order; empty without one. `untimed` includes the frames that came while
+    /// another host's clock was not known.
+    [[nodiscard]] std::vector<CameraRecord> cameras() const { return cameras_.records(); }
     /// For readings that reached the map with a frame: the time since the arrival of that frame.
     [[nodiscard]] const LatencyHistogram& latency() const noexcept { return latency_; }
     /// For the same readings: the time since their capture.
@@ -89,10 +89,9 @@ class Inputs {
     [[nodiscard]] const ForeignClock& foreign_clock() const noexcept { return foreign_clock_; }
 
   private:
-    [[nodiscard]] std::optional<openni2::CameraMode> mode_for(const HostRig& rig) const;
-    /// Opens the camera once the one before is released. If no thread is left, tries again in a second.
-    void attend_camera();
-    void take_depth(DepthFrame frame);
+    [[nodiscard]] std::vector<HostCamera> cameras_of(const HostRig& rig) const;
+    /// False: its time on the bus clock is not known.
+    bool take_depth(DepthFrame frame);
     /// False if there may be more frames.
     bool drain_can(int& datagrams_left);
     [[nodiscard]] bool is_of_node(const wire::CanFrame& frame) const;
@@ -108,7 +107,6 @@ class Inputs {
     void note_displaced(HostTime now);
     [[nodiscard]] WallTime place_of(const JointSample& sample) const;
     void feed_joints(std::optional<WallTime> until);
-    void drain_camera();
 
     /// A source of joint states whose samples come through the socket.
     struct LocalSource {
@@ -143,12 +141,7 @@ class Inputs {
     std::uint64_t displaced_noted_ = 0;
     std::optional<HostTime> displaced_at_;  ///< when displaced samples were noted last
     std::optional<WallTime> newest_stamp_;  ///< of the frames in the pipeline that are no joint samples
-    std::unique_ptr<CameraFeed> camera_;
-    std::optional<openni2::CameraMode> camera_mode_;  ///< wanted; empty: no camera is wanted
-    std::unique_ptr<CameraFeed> camera_leaving_;      ///< of another mode; keeps the device a little longer
-    CameraRecord camera_missing_;           ///< the record while a camera is wanted and none is open
-    std::optional<HostTime> camera_tried_;  ///< last attempt in the wanted mode
-    EventSource camera_ready_;
+    CameraInputs cameras_;
     LatencyHistogram latency_;
     LatencyHistogram age_;
     wire::BitRates bit_rates_;
@@ -161,7 +154,6 @@ class Inputs {
     std::optional<HostTime> foreign_sync_;
     ForeignClock foreign_clock_;
     BusTime bus_time_;
-    std::uint64_t depth_untimed_ = 0;  ///< frames that came while the other host's clock was not known
 };
 
 }  // namespace octoskin

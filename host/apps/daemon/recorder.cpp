@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -21,7 +22,7 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
     // Not within the braces below: if the copy throws, GCC 12 destroys a nested aggregate twice.
     orderlog::Header order{.rig_hash = settings.rig_hash,
                            .mapping_crc32 = settings.mapping_crc32(),
-                           .joints = settings.joints,
+                           .form = settings.form,
                            .first_map = std::nullopt};
     return {.paths = RecordingPaths(folder),
             .rig = settings.rig,
@@ -30,7 +31,15 @@ RecordingBegin begin_of(const std::filesystem::path& folder, const RecordedSetti
             .order = std::move(order),
             .placement_crc32 = settings.placement_crc32,
             .first = {copier(pipeline.map()), pipeline.builder().histories(),
-                      pipeline.builder().camera_memory()}};
+                      pipeline.builder().camera_memories()},
+            .cameras = settings.cameras};
+}
+
+std::vector<double> depths_max_m(const MapBuilder& builder) {
+    std::vector<double> depths_m;
+    for (std::size_t i = 0; i < builder.cameras(); ++i)
+        depths_m.push_back(builder.depth_stage(i).camera().depth_max_m);
+    return depths_m;
 }
 
 /// Result of `add`; false if there was no memory for it. Its input is already on the map: only the recording
@@ -64,12 +73,13 @@ Recorder::Recorder(const std::filesystem::path& folder, std::optional<Nanosecond
     : copier_(std::move(copier)),
       folder_(folder),
       limit_(limit),
-      joints_(settings.joints),
-      depth_max_m_(pipeline.depth_stage() != nullptr ? pipeline.depth_stage()->camera().depth_max_m : 0.0),
+      form_(settings.form),
+      depths_max_m_(depths_max_m(pipeline.builder())),
       begun_(now),
       pipeline_(&pipeline),
       inputs_at_begin_(pipeline.counter_tables()),
       lacks_(lacks_of(pipeline.map())),
+      depth_frames_(pipeline.builder().cameras()),
       writer_(begin_of(folder, settings, pipeline, copier_)) {
     entry_.interface = settings.interface;
     // Poses are still interpolated from earlier samples.
@@ -93,8 +103,12 @@ void Recorder::on_can(const wire::CanFrame& frame, WallTime stamp) {
 void Recorder::put(const Commit& commit) {
     ++counts_.commits;
     const bool is_taken =
-        has_memory_for([&] { return writer_.add_order(orderlog::format_commit(commit, joints_)); });
+        has_memory_for([&] { return writer_.add_order(orderlog::format_commit(commit, form_)); });
     counts_.lost_commits += is_taken ? 0U : 1U;
+}
+
+std::uint64_t Recorder::depth_frames() const noexcept {
+    return std::accumulate(depth_frames_.begin(), depth_frames_.end(), std::uint64_t{0});
 }
 
 void Recorder::lose() noexcept {
@@ -116,10 +130,10 @@ void Recorder::on_wait(const WaitCommit& passed) {
 }
 
 void Recorder::on_depth(const DepthFrame& frame, const Evidence&) {
-    DepthCommit commit{std::nullopt, frame.captured};
-    if (!has_map_lacked_memory() && is_storable(frame, depth_max_m_) &&
+    DepthCommit commit{std::nullopt, frame.captured, frame.camera};
+    if (!has_map_lacked_memory() && is_storable(frame, depths_max_m_.at(frame.camera)) &&
         has_memory_for([&] { return writer_.add_depth(frame); })) {
-        commit.index = depth_frames_++;
+        commit.index = depth_frames_[frame.camera]++;
     } else {
         ++counts_.lost_depth;
     }
@@ -156,7 +170,7 @@ void Recorder::stop(HostTime now, std::string early, std::optional<FusedMap> las
                               .seed = std::nullopt,
                               .is_depth_noise_free = false,
                               .can_frames = can_frames_,
-                              .depth_frames = depth_frames_,
+                              .depth_frames = depth_frames(),
                               .duration_s = seconds_of(now - begun_)},
                      .last_map = std::move(last_map)};
     pipeline_->set_listener(nullptr);
@@ -200,7 +214,7 @@ std::string Recorder::remarks() const try {
         for (std::size_t row = 0; row < now[unit].rejected.size(); ++row) {
             const auto& rejected = now[unit].rejected[row];
             const std::uint64_t count = rejected.count - inputs_at_begin_[unit].rejected[row].count;
-            if (count > 0) text += fmt::format("# {} {} {}\n", now[unit].unit, rejected.name, count);
+            if (count > 0) text += fmt::format("# {} {} {}\n", now[unit].title(), rejected.name, count);
         }
     }
     return text;
@@ -216,7 +230,7 @@ nlohmann::ordered_json Recorder::to_json(HostTime now) const {
             {"error", why},
             {"seconds", seconds_of(stopped_.value_or(now) - begun_)},
             {"can_frames", can_frames_},
-            {"depth_frames", depth_frames_},
+            {"depth_frames", depth_frames()},
             {"commits", counts_.commits - commits_before_},
             {"lost_can", counts_.lost_can},
             {"lost_commits", counts_.lost_commits},

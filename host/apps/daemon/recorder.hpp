@@ -25,7 +25,9 @@ struct RecordedSettings {
     std::string mapping;
     std::uint32_t rig_hash = 0;
     std::uint32_t placement_crc32 = 0;  ///< rig::placement_crc32
-    std::vector<std::size_t> joints = {};
+    orderlog::CommitForm form = {};
+    std::vector<std::string> cameras = {};  ///< their names
+    std::vector<std::string> devices = {};  ///< of the cameras; not part of a recording
     std::string interface;
     /// Of the mapping's text.
     [[nodiscard]] std::uint32_t mapping_crc32() const noexcept {
@@ -94,6 +96,7 @@ class Recorder final : public CommitListener {
 
   private:
     void put(const Commit& commit);
+    [[nodiscard]] std::uint64_t depth_frames() const noexcept;
     /// Counts a commit that is not in the recording.
     void lose() noexcept;
     /// True if the system has lacked memory for the map since the last call: a replay, which has it, gives
@@ -107,8 +110,8 @@ class Recorder final : public CommitListener {
     Copier copier_;
     std::filesystem::path folder_;
     std::optional<Nanoseconds> limit_;
-    std::vector<std::size_t> joints_;
-    double depth_max_m_;
+    orderlog::CommitForm form_;
+    std::vector<double> depths_max_m_;  ///< of each camera
     HostTime begun_;
     std::optional<HostTime> stopped_;
     std::string early_;  ///< why it ended before its time; empty: it did not
@@ -120,7 +123,7 @@ class Recorder final : public CommitListener {
     std::uint64_t lacks_ = 0;           ///< times that the system had no memory for the map, ever
     std::uint64_t commits_before_ = 0;  ///< joint samples in the daemon at the start
     std::uint64_t can_frames_ = 0;
-    std::uint64_t depth_frames_ = 0;
+    std::vector<std::uint64_t> depth_frames_;  ///< of each camera
     RecordingWriter writer_;
 };
 

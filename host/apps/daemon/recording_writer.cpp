@@ -3,9 +3,11 @@
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <system_error>
@@ -67,16 +69,18 @@ Result<OpenFolder, Error> make_folder(const RecordingPaths& paths) {
 class RecordingWriter::Work {
   public:
     Work(RecordingBegin begin, MapWriter map_writer)
-        : begin_(std::move(begin)),
-          map_writer_(std::move(map_writer)),
-          depth_(begin_.paths.depth(), begin_.paths.depth_epoch()) {}
+        : begin_(std::move(begin)), map_writer_(std::move(map_writer)) {
+        for (const std::string& camera : begin_.cameras)
+            depth_.push_back(std::make_unique<DepthRecorder>(begin_.paths.depth(camera),
+                                                             begin_.paths.depth_epoch(camera)));
+    }
 
     void run();
     void drop();
     void finish(RecordingEnd end);
     [[nodiscard]] bool add_can(const std::string& line) { return can_.add(line); }
     [[nodiscard]] bool add_order(const std::string& line) { return order_.add(line); }
-    [[nodiscard]] bool add_depth(const DepthFrame& frame) { return depth_.add(frame); }
+    [[nodiscard]] bool add_depth(const DepthFrame& frame) { return depth_.at(frame.camera)->add(frame); }
     [[nodiscard]] bool has_ended() const;
     [[nodiscard]] std::optional<Error> error() const;
     [[nodiscard]] std::optional<HostTime> writing_since() const;
@@ -97,6 +101,9 @@ class RecordingWriter::Work {
     [[nodiscard]] bool rest();
     [[nodiscard]] Step end(RecordingEnd end, const OpenFolder& held);
     [[nodiscard]] Step keep_first();
+    [[nodiscard]] Step begin_depth();
+    [[nodiscard]] Step finish_depth();
+    [[nodiscard]] std::optional<Error> depth_error() const;
     /// Saves the map and returns its checksum; an empty one has neither file nor checksum.
     [[nodiscard]] Result<std::optional<std::uint32_t>, Error> keep_map(const FusedMap& map,
                                                                        const FilePlace& file) const;
@@ -108,7 +115,7 @@ class RecordingWriter::Work {
     MapWriter map_writer_;
     TextQueue can_{kTextMax};
     TextQueue order_{kTextMax};
-    DepthRecorder depth_;
+    std::vector<std::unique_ptr<DepthRecorder>> depth_;  ///< by camera
     GrowingFile can_file_;
     GrowingFile order_file_;
     mutable std::mutex mutex_;
@@ -184,7 +191,7 @@ bool RecordingWriter::Work::has_ended() const {
 
 std::optional<Error> RecordingWriter::Work::error() const {
     const std::lock_guard lock(mutex_);
-    return error_ ? error_ : depth_.error();
+    return error_ ? error_ : depth_error();
 }
 
 std::optional<HostTime> RecordingWriter::Work::writing_since() const {
@@ -231,11 +238,11 @@ Status<Error> RecordingWriter::Work::record() {
     }
     changed_.notify_all();
     if (const Step begun = begin(); !begun) return begun;
-    depth_.begin();
+    if (const Step begun = begin_depth(); !begun) return begun;
     while (!rest()) {
         if (const Step written = write_waiting(); !written) return written;
         if (const Step checked = check_sometimes(*made); !checked) return checked;
-        if (auto error = depth_.error()) return unexpected(std::move(*error));
+        if (auto error = depth_error()) return unexpected(std::move(*error));
     }
     std::unique_lock guard(mutex_);
     if (!end_) return failure(ErrorCode::cancelled, "the daemon ended before the recording was complete");
@@ -279,6 +286,28 @@ Status<Error> RecordingWriter::Work::begin() {
     return order_file_.append(orderlog::format_header(begin_.order));
 }
 
+/// Named cameras have a folder of their own.
+Status<Error> RecordingWriter::Work::begin_depth() {
+    if (std::ranges::any_of(begin_.cameras, [](const std::string& name) { return !name.empty(); })) {
+        const auto made = begin_.paths.file(RecordingPaths::kDepthFolder).make_folder();
+        if (!made) return unexpected(to_error(made.error()));
+    }
+    for (const auto& camera : depth_) camera->begin();
+    return Done{};
+}
+
+Status<Error> RecordingWriter::Work::finish_depth() {
+    for (const auto& camera : depth_)
+        if (auto error = camera->finish()) return unexpected(std::move(*error));
+    return Done{};
+}
+
+std::optional<Error> RecordingWriter::Work::depth_error() const {
+    for (const auto& camera : depth_)
+        if (auto error = camera->error()) return error;
+    return std::nullopt;
+}
+
 bool RecordingWriter::Work::rest() {
     std::unique_lock lock(mutex_);
     writing_since_.reset();
@@ -313,7 +342,7 @@ Status<Error> RecordingWriter::Work::end(RecordingEnd last, const OpenFolder& he
     if (const Step written = write_waiting(); !written) return written;
     if (const Step checked = check(held); !checked) return checked;
     if (const Step finished = can_file_.finish(); !finished) return finished;
-    if (auto error = depth_.finish()) return unexpected(std::move(*error));
+    if (const Step finished = finish_depth(); !finished) return finished;
     if (!last.last_map)
         return failure(ErrorCode::no_resources, "there was no memory for a copy of the map at the end");
     const auto map = keep_map(*last.last_map, begin_.paths.last_map());

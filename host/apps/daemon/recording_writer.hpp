@@ -30,6 +30,7 @@ struct RecordingBegin {
     orderlog::Header order;             ///< without the checksums of the first map and state
     std::uint32_t placement_crc32 = 0;  ///< as in a SnapshotOrigin
     MapState first;
+    std::vector<std::string> cameras = {};  ///< the names of the rig's, in its order
 };
 
 /// The data at its end.

@@ -25,14 +25,16 @@ struct DaemonRequest {
     std::string interface = "can0";
     /// Used instead of the interface: a descriptor that carries frames as a raw CAN socket does.
     std::optional<int> can_descriptor;
-    bool is_listen_only = false;         ///< transmits nothing, SYNC included
-    bool has_camera = true;              ///< if the rig has one
-    std::string camera_uri;              ///< of OpenNI2, or an .oni file; empty: the first device
+    bool is_listen_only = false;  ///< transmits nothing, SYNC included
+    bool has_camera = true;       ///< if the rig has one
+    /// Devices of OpenNI2, or .oni files, in place of the rig's: "NAME=DEVICE", or without NAME for a rig
+    /// with one camera.
+    std::vector<std::string> cameras;
     std::filesystem::path joint_socket;  ///< empty: joint states come over CAN only
     std::filesystem::path control_socket;
     std::filesystem::path map_folder;
     std::chrono::seconds save_period{20};
-    unsigned depth_threads = 1;  ///< threads that work on an image
+    unsigned depth_threads = 1;  ///< of each camera: threads that work on an image
 };
 
 /// Read at the start, and again at each SIGHUP.

@@ -72,6 +72,25 @@ Json not_excluded_json(const SensorEvidence& evidence) {
     return faults;
 }
 
+/// Null if ranges are not compared with a camera.
+Json cross_check_json(const DaemonView& view, std::uint8_t node_id, std::uint8_t sensor) {
+    const MapBuilder& builder = view.pipeline->builder();
+    if (builder.cross_checks() == nullptr) return nullptr;
+    const auto [evidence, camera] = builder.cross_checks()->finding(node_id, sensor);
+    return {{"of", view.rig->cameras.at(camera).name},
+            {"verdict", name(evidence.verdict())},
+            {"contradicts", evidence.contradicts()},
+            {"fault", evidence.fault ? Json(name(*evidence.fault)) : Json(nullptr)},
+            {"doubt", evidence.doubt ? Json(name(*evidence.doubt)) : Json(nullptr)},
+            {"not_excluded", not_excluded_json(evidence)},
+            {"refused", builder.is_refused(node_id, sensor)},
+            {"compared", evidence.compared},
+            {"fitted", evidence.fitted},
+            {"agreed", evidence.agreed},
+            {"in_free_space", evidence.in_free_space},
+            {"behind_surface", evidence.behind_surface}};
+}
+
 Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index) {
     const SensorRecord& record =
         view.pipeline->intake().ranges().record(node.node_id, static_cast<std::uint8_t>(index));
@@ -102,24 +121,7 @@ Json sensor_json(const DaemonView& view, const HostNode& node, std::size_t index
     json["reflexes"] = record.reflexes;
     json["reflex_below_m"] = node.sensors[index].reflex_below_m;
     json["reflex_m"] = record.reflex ? Json(record.reflex->range_mm * 1e-3) : Json(nullptr);
-    json["camera"] = nullptr;
-    if (const CrossCheck* const cross_check = view.pipeline->builder().cross_check()) {
-        const SensorEvidence& evidence =
-            cross_check->evidence(node.node_id, static_cast<std::uint8_t>(index));
-        const bool is_refused =
-            view.pipeline->builder().is_refused(node.node_id, static_cast<std::uint8_t>(index));
-        json["camera"] = {{"verdict", name(evidence.verdict())},
-                          {"contradicts", evidence.contradicts()},
-                          {"fault", evidence.fault ? Json(name(*evidence.fault)) : Json(nullptr)},
-                          {"doubt", evidence.doubt ? Json(name(*evidence.doubt)) : Json(nullptr)},
-                          {"not_excluded", not_excluded_json(evidence)},
-                          {"refused", is_refused},
-                          {"compared", evidence.compared},
-                          {"fitted", evidence.fitted},
-                          {"agreed", evidence.agreed},
-                          {"in_free_space", evidence.in_free_space},
-                          {"behind_surface", evidence.behind_surface}};
-    }
+    json["camera"] = cross_check_json(view, node.node_id, static_cast<std::uint8_t>(index));
     return json;
 }
 
@@ -180,31 +182,49 @@ Json node_json(const DaemonView& view, const HostNode& node) {
     return json;
 }
 
-/// The fault that the comparison of images with ranges finds, if any.
-PoseFault pose_fault(const DaemonView& view) {
-    const CrossCheck* const cross_check = view.pipeline->builder().cross_check();
-    return cross_check != nullptr ? cross_check->pose().fault().value_or(PoseFault{}) : PoseFault{};
+/// The fault that the comparison of a camera's images with ranges finds, if any.
+PoseFault pose_fault(const DaemonView& view, std::size_t camera) {
+    const CrossChecks* const checks = view.pipeline->builder().cross_checks();
+    return checks != nullptr ? checks->of(camera).pose().fault().value_or(PoseFault{}) : PoseFault{};
 }
 
-Json camera_json(const DaemonView& view) {
-    if (!view.camera) return nullptr;
-    const CrossCheck* const cross_check = view.pipeline->builder().cross_check();
-    const PoseFault fault = pose_fault(view);
+/// The first fault of a joint that the comparison with a camera finds, if any.
+PoseFault joint_fault(const DaemonView& view) {
+    for (std::size_t camera = 0; camera < view.rig->cameras.size(); ++camera)
+        if (const PoseFault fault = pose_fault(view, camera); fault.joint) return fault;
+    return {};
+}
+
+Json camera_json(const DaemonView& view, std::size_t index) {
+    const HostCamera& of_rig = view.rig->cameras.at(index);
+    const CameraRecord& camera = view.cameras[index];
+    const bool is_compared = view.pipeline->builder().cross_checks() != nullptr;
+    const PoseFault fault = pose_fault(view, index);
     const auto& error = fault.camera;
     const auto axes = [](const Eigen::Vector3d& of) { return Json{of.x(), of.y(), of.z()}; };
-    return {{"open", view.camera->is_open},
-            {"why", view.camera->why},
-            {"frames", view.camera->frames},
-            {"displaced", view.camera->displaced},
-            {"untimed", view.camera->untimed},
-            {"repeated", view.camera->repeated},
-            {"opened", view.camera->opened},
-            {"is_off", cross_check != nullptr ? Json(error && !fault.joint) : Json(nullptr)},
+    return {{"name", of_rig.name},
+            {"link", of_rig.link},
+            {"device", of_rig.device},
+            {"open", camera.is_open},
+            {"why", camera.why},
+            {"frames", camera.frames},
+            {"displaced", camera.displaced},
+            {"untimed", camera.untimed},
+            {"repeated", camera.repeated},
+            {"opened", camera.opened},
+            {"is_off", is_compared ? Json(error && !fault.joint) : Json(nullptr)},
             {"turned_deg", error ? axes(error->turn_deg) : Json(nullptr)},
             {"shifted_m", error ? axes(error->shift_m) : Json(nullptr)},
             {"depth_scale", error ? Json(error->depth_scale) : Json(nullptr)},
             {"explains_sensors", error ? fault.explained : 0},
-            {"age_s", age_s(view.camera->newest, view.now)}};
+            {"age_s", age_s(camera.newest, view.now)}};
+}
+
+Json cameras_json(const DaemonView& view) {
+    Json cameras = Json::array();
+    for (std::size_t i = 0; i < std::min(view.cameras.size(), view.rig->cameras.size()); ++i)
+        cameras.push_back(camera_json(view, i));
+    return cameras;
 }
 
 std::uint64_t joint_contradictions(const Pipeline& pipeline, const HostRig& rig) {
@@ -235,7 +255,7 @@ Json joint_sources_json(const DaemonView& view) {
 
 Json joint_states_json(const DaemonView& view) {
     const auto jump = newest_jump(view);
-    const PoseFault fault = pose_fault(view);
+    const PoseFault fault = joint_fault(view);
     const std::vector<std::string> joints = view.rig->joint_names();
     return {{"sources", joint_sources_json(view)},
             {"second_sender", are_joints_withheld(view)},
@@ -315,35 +335,45 @@ Json inputs_json(const Pipeline& pipeline) {
         Json rejected = Json::object();
         for (const CounterTable::Row& row : table.rejected)
             if (row.count > 0) rejected[row.name] = row.count;
-        units[table.unit] = {{"in", table.in},
-                             {"used", table.used},
-                             {"pending", table.pending},
-                             {"rejected", std::move(rejected)},
-                             {"balanced", table.is_balanced}};
+        units[table.title()] = {{"in", table.in},
+                                {"used", table.used},
+                                {"pending", table.pending},
+                                {"rejected", std::move(rejected)},
+                                {"balanced", table.is_balanced}};
     }
     return units;
 }
 
 }  // namespace
 
+namespace {
+
+void note_one(std::uint64_t count, std::uint64_t& before, std::optional<HostTime>& last, HostTime now) {
+    if (count > before) last = now;
+    before = count;
+}
+
+void note_camera(const InputCounters<DepthReason>& frames, CameraUse& use, HostTime now) {
+    constexpr Nanoseconds kAgain{1'000'000'000};
+    note_one(frames.used(), use.used_before, use.frame, now);
+    const auto before = use.left_out;
+    note_one(frames.rejected(DepthReason::queue_overflow), use.left_out_before, use.left_out, now);
+    if (use.left_out == now && (!before || now - *before > kAgain)) use.left_out_since = now;
+}
+
+}  // namespace
+
 void LastUsed::note(const Pipeline& pipeline, const HostRig& rig, HostTime now) {
     const PipelineInputs& inputs = pipeline.inputs();
-    const auto note_one = [now](std::uint64_t count, std::uint64_t& before, std::optional<HostTime>& last) {
-        if (count > before) last = now;
-        before = count;
-    };
-    note_one(inputs.joint_samples.used(), counts_[0], joint_sample);
-    note_one(inputs.readings.used(), counts_[1], reading);
-    note_one(inputs.depth_frames.used(), counts_[2], depth_frame);
-    note_one(inputs.joint_samples.rejected(JointReason::joint_jump), counts_[6], joint_jump);
+    note_one(inputs.joint_samples.used(), counts_[0], joint_sample, now);
+    note_one(inputs.readings.used(), counts_[1], reading, now);
+    note_one(pipeline.times_back(), counts_[2], time_back, now);
+    note_one(pipeline.times_ahead(), counts_[3], time_ahead, now);
+    note_one(inputs.joint_samples.rejected(JointReason::joint_jump), counts_[4], joint_jump, now);
     note_one(inputs.joint_samples.rejected(JointReason::second_sender) + joint_contradictions(pipeline, rig),
-             counts_[7], joint_senders);
-    note_one(pipeline.times_back(), counts_[3], time_back);
-    note_one(pipeline.times_ahead(), counts_[5], time_ahead);
-    constexpr Nanoseconds kAgain{1'000'000'000};
-    const auto before = depth_left_out;
-    note_one(inputs.depth_frames.rejected(DepthReason::queue_overflow), counts_[4], depth_left_out);
-    if (depth_left_out == now && (!before || now - *before > kAgain)) depth_left_out_since = now;
+             counts_[5], joint_senders, now);
+    cameras.resize(inputs.depth_frames.size());
+    for (std::size_t i = 0; i < cameras.size(); ++i) note_camera(inputs.depth_frames[i], cameras[i], now);
 }
 
 /// Fields that are empty are left out.
@@ -376,7 +406,7 @@ Json status_json(const DaemonView& view) {
             {"joint_states", joint_states_json(view)},
             {"joints_socket", joints_json(view)},
             {"recording", view.recorder != nullptr ? view.recorder->to_json(view.now) : Json(nullptr)},
-            {"camera", camera_json(view)},
+            {"cameras", cameras_json(view)},
             {"latency", latency_json(view.inputs->latency(), view.inputs->age())},
             {"map", map_json(view)},
             {"reloads",

@@ -20,6 +20,16 @@
 
 namespace octoskin {
 
+/// When frames of a camera were last used or left out; empty: never.
+struct CameraUse {
+    std::optional<HostTime> frame;
+    std::optional<HostTime> left_out;        ///< for lack of time (queue_overflow)...
+    std::optional<HostTime> left_out_since;  ///< ... again and again, at least once a second
+
+    std::uint64_t used_before = 0;
+    std::uint64_t left_out_before = 0;
+};
+
 /// When inputs of each kind were last used, and when some problems last occurred; empty: never.
 class LastUsed {
   public:
@@ -30,14 +40,12 @@ class LastUsed {
     std::optional<HostTime> joint_jump;     ///< a sample was rejected because of a jump
     std::optional<HostTime> joint_senders;  ///< two contradicted each other, or a sample was withheld for it
     std::optional<HostTime> reading;
-    std::optional<HostTime> depth_frame;
-    std::optional<HostTime> time_back;             ///< the bus time went back
-    std::optional<HostTime> time_ahead;            ///< the bus time jumped ahead
-    std::optional<HostTime> depth_left_out;        ///< for lack of time (queue_overflow)...
-    std::optional<HostTime> depth_left_out_since;  ///< ... again and again, at least once a second
+    std::vector<CameraUse> cameras{1};   ///< in the rig's order, at least one
+    std::optional<HostTime> time_back;   ///< the bus time went back
+    std::optional<HostTime> time_ahead;  ///< the bus time jumped ahead
 
   private:
-    std::array<std::uint64_t, 8> counts_{};
+    std::array<std::uint64_t, 6> counts_{};
 };
 
 struct ReloadCounts {
@@ -62,7 +70,7 @@ struct DaemonView {
     bool is_wall_clock_right = true;  ///< this machine's clock is in the range of time stamps (tells_time)
     const std::string* interface = nullptr;
     bool is_listen_only = false;
-    std::optional<CameraRecord> camera;  ///< empty without a camera
+    std::vector<CameraRecord> cameras;  ///< in the rig's order; empty without one, or if none is read
     LastUsed used;
     LogRecord log;
     SaveRecord saves;

@@ -5,13 +5,23 @@
 #include <cmath>
 #include <utility>
 
+#include "host/core/rig/camera_text.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin {
 namespace {
 
+std::vector<std::string> camera_names(const rig::Rig& rig) {
+    std::vector<std::string> names;
+    for (const rig::Camera& camera : rig.cameras)
+        if (!camera.name.empty()) names.push_back(camera.name);
+    return names;
+}
+
 std::map<BeamSource, std::string> names_of_sources(const rig::Rig& rig) {
-    std::map<BeamSource, std::string> names{{BeamSource{}, "camera"}};
+    std::map<BeamSource, std::string> names{{source_of_camera(0), camera_text("")}};
+    for (std::size_t i = 0; i < rig.cameras.size(); ++i)
+        names[source_of_camera(i)] = camera_text(rig.cameras[i].name);
     for (const rig::Node& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
             const std::size_t zones = node.sensors[i].zone_offset_m.size();
@@ -73,6 +83,7 @@ Result<Explanation, AppError> explain(PlaybackRequest request, const Eigen::Vect
                        .trace = std::move(trace),
                        .begin = played->outcome.progress.begin,
                        .names = names_of_sources(played->rig),
+                       .cameras = camera_names(played->rig),
                        .warnings = played->warnings,
                        .lost = loss_of(*played)};
 }

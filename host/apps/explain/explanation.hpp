@@ -26,9 +26,10 @@ struct Explanation {
     std::uint64_t no_room = 0;
     VoxelTrace trace;
     std::optional<HostTime> begin;  ///< of the recording: the zero of all times in the text
-    std::map<BeamSource, std::string>
-        names;                          ///< "camera", "forearm_3"; with the zone if the sensor has several
-    std::vector<std::string> warnings;  ///< of the replay
+    /// "camera", "camera 'left'", "forearm_3"; with the zone if the sensor has several.
+    std::map<BeamSource, std::string> names;
+    std::vector<std::string> cameras = {};  ///< names of the rig's cameras; empty: it has one without a name
+    std::vector<std::string> warnings;      ///< of the replay
     std::optional<AppError> lost =
         std::nullopt;  ///< set if most of the recording was lost although there is an explanation
 };

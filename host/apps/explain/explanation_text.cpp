@@ -13,8 +13,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Share = std::pair<BeamSource, SourceShare>;
 
-constexpr BeamSource kCamera{};
-
 const char* name(Occupancy occupancy) {
     if (occupancy == Occupancy::occupied) return "occupied";
     return occupancy == Occupancy::free ? "free" : "unknown";
@@ -44,16 +42,33 @@ std::string plural(std::uint64_t count, const char* one, const char* many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-std::string about_camera(const Explanation& explanation) {
-    const auto found = explanation.trace.shares().find(kCamera);
-    if (found == explanation.trace.shares().end()) return "the camera never saw it";
+std::string about_camera(const Explanation& explanation, const std::string& camera,
+                         const BeamSource& source) {
+    const auto found = explanation.trace.shares().find(source);
+    if (found == explanation.trace.shares().end()) return camera + " never saw it";
     const SourceShare& share = found->second;
     const std::string occupied = plural(share.hits, "frame", "frames");
     const std::string free = plural(share.misses, "frame", "frames");
     // Frames are counted even if the voxel is at a clamp, where a frame changes nothing.
-    if (share.misses == 0) return fmt::format("the camera saw it occupied in {}, and never free", occupied);
-    if (share.hits == 0) return fmt::format("the camera saw it free in {}, and never occupied", free);
-    return fmt::format("the camera saw it occupied in {} and free in {}", occupied, free);
+    if (share.misses == 0) return fmt::format("{} saw it occupied in {}, and never free", camera, occupied);
+    if (share.hits == 0) return fmt::format("{} saw it free in {}, and never occupied", camera, free);
+    return fmt::format("{} saw it occupied in {} and free in {}", camera, occupied, free);
+}
+
+/// After another part of a sentence, what the cameras saw, apart from the one `besides`.
+std::string about_cameras(const Explanation& explanation, const BeamSource* besides = nullptr) {
+    if (explanation.cameras.empty()) {
+        const BeamSource only = source_of_camera(0);
+        if (besides != nullptr && *besides == only) return {};
+        return "; " + about_camera(explanation, "the camera", only);
+    }
+    std::string text;
+    for (std::size_t i = 0; i < explanation.cameras.size(); ++i) {
+        const BeamSource source = source_of_camera(i);
+        if (besides != nullptr && *besides == source) continue;
+        text += "; " + about_camera(explanation, name_of(explanation, source), source);
+    }
+    return text;
 }
 
 /// The source with the largest change towards the final state.
@@ -110,11 +125,11 @@ std::string table_of_shares(const Explanation& explanation) {
 }
 
 std::string line_of(const Explanation& explanation, const Contribution& contribution) {
-    const bool is_camera = contribution.source == kCamera;
     const std::string range = contribution.range_m ? fmt::format("{:.3f}", *contribution.range_m) : "-";
     const Eigen::Vector3d& p = contribution.p_map_sensor;
-    const std::string from = is_camera ? fmt::format("frame {}", contribution.frame)
-                                       : fmt::format("{:.3f} {:.3f} {:.3f}", p.x(), p.y(), p.z());
+    const std::string from = is_camera(contribution.source)
+                                 ? fmt::format("frame {}", contribution.frame)
+                                 : fmt::format("{:.3f} {:.3f} {:.3f}", p.x(), p.y(), p.z());
     return fmt::format("  {:>9.3f}  {:<24} {:>8} {:<24} {:>+9.4f} {:>+9.4f} {:>9.4f}\n",
                        seconds_of(explanation, contribution.captured),
                        name_of(explanation, contribution.source), range, from,
@@ -137,7 +152,11 @@ Json json_of(const Explanation& explanation, const Forgotten& forgotten) {
 }
 
 Json json_of(const Explanation& explanation, const BeamSource& source) {
-    if (source == kCamera) return {{"name", "camera"}};
+    if (is_camera(source)) {
+        Json json{{"name", "camera"}};
+        if (source.sensor < explanation.cameras.size()) json["camera"] = explanation.cameras[source.sensor];
+        return json;
+    }
     return {{"name", name_of(explanation, source)},
             {"node", source.node_id},
             {"sensor", source.sensor},
@@ -151,7 +170,7 @@ Json json_of(const Explanation& explanation, const Contribution& contribution) {
               {"term", static_cast<double>(contribution.term)},
               {"change", contribution.change()},
               {"log_odds", static_cast<double>(contribution.after)}};
-    if (contribution.source == kCamera) {
+    if (is_camera(contribution.source)) {
         json["frame"] = contribution.frame;
     } else {
         json["range_m"] = contribution.range_m ? Json(*contribution.range_m) : Json(nullptr);
@@ -173,30 +192,29 @@ std::string conclusion_of(const Explanation& explanation) {
     if (explanation.trace.count() == 0 && !explanation.trace.begin())
         return "unknown: no reading and no depth frame ever reached it";
     if (const Forgotten& forgotten = explanation.trace.forgotten(); forgotten.is_last) {
-        return fmt::format("{}, expired {}: no sensor had confirmed it for age.unknown_after_s; {}",
+        return fmt::format("{}, expired {}: no sensor had confirmed it for age.unknown_after_s{}",
                            name(explanation.occupancy), when(explanation, forgotten),
-                           about_camera(explanation));
+                           about_cameras(explanation));
     }
     const auto cause = main_cause(explanation);
     if (is_mainly_of_before(explanation, cause) && explanation.trace.count() > 0) {
-        return fmt::format("{}, mainly from the map before the recording; {}", name(explanation.occupancy),
-                           about_camera(explanation));
+        return fmt::format("{}, mainly from the map before the recording{}", name(explanation.occupancy),
+                           about_cameras(explanation));
     }
     if (!cause) {
         const bool is_of_begin = explanation.trace.begin() && explanation.trace.forgotten().times == 0;
         const char* why = is_of_begin ? "unchanged since the beginning of the recording"
                                       : "by contributions that cancel each other";
-        return fmt::format("{}, {}; {}", name(explanation.occupancy), why, about_camera(explanation));
+        return fmt::format("{}, {}{}", name(explanation.occupancy), why, about_cameras(explanation));
     }
     const auto& [source, share] = *cause;
-    const bool is_camera = source == kCamera;
+    const bool is_only_camera = is_camera(source) && explanation.cameras.empty();
+    const std::string kind = is_only_camera ? "the " : is_camera(source) ? "" : "sensor ";
     const bool is_up = explanation.occupancy == Occupancy::occupied;
-    std::string text =
-        fmt::format("{}, mainly by {}{} {}, {}", name(explanation.occupancy), is_camera ? "the " : "sensor ",
-                    name_of(explanation, source), when(explanation, share),
-                    is_up ? plural(share.hits, "hit", "hits") : plural(share.misses, "miss", "misses"));
-    if (!is_camera) text += "; " + about_camera(explanation);
-    return text;
+    return fmt::format("{}, mainly by {}{} {}, {}{}", name(explanation.occupancy), kind,
+                       name_of(explanation, source), when(explanation, share),
+                       is_up ? plural(share.hits, "hit", "hits") : plural(share.misses, "miss", "misses"),
+                       about_cameras(explanation, &source));
 }
 
 std::string to_text(const Explanation& explanation) {

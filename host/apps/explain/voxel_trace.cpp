@@ -20,7 +20,8 @@ void VoxelTrace::on_reading(const RangeMeasurement& measurement, const Beam& bea
 
 void VoxelTrace::on_depth(const DepthFrame& frame, const Evidence& terms) {
     Contribution contribution;
-    contribution.frame = depth_frames_++;
+    contribution.source = source_of_camera(frame.camera);
+    contribution.frame = depth_frames_[frame.camera]++;
     contribution.captured = frame.captured;
     captured_ = frame.captured;
     const VoxelUpdate update{key_, term_of(terms, key_)};

@@ -15,10 +15,18 @@
 
 namespace octoskin {
 
+/// The source of the frames of the rig's camera with this index: node 0, and the index as the sensor.
+[[nodiscard]] constexpr BeamSource source_of_camera(std::size_t camera) {
+    return {0, static_cast<std::uint8_t>(camera), 0};
+}
+[[nodiscard]] constexpr bool is_camera(const BeamSource& source) {
+    return source.node_id == 0;
+}
+
 /// A reading or depth frame with a term for the voxel.
 struct Contribution {
-    BeamSource source;        ///< node 0: the camera
-    std::uint64_t frame = 0;  ///< for the camera: how many frames were integrated before this one
+    BeamSource source;        ///< of a camera: see source_of_camera
+    std::uint64_t frame = 0;  ///< for a camera: how many of its frames were integrated before this one
     HostTime captured;
     std::optional<double> range_m;  ///< for a reading with a target
     Eigen::Vector3d p_map_sensor =
@@ -95,8 +103,8 @@ class VoxelTrace final : public CommitListener {
     std::optional<float> begin_;
     std::optional<float> now_;
     std::size_t kept_max_;
-    std::uint64_t depth_frames_ = 0;
-    std::optional<HostTime> captured_;  ///< of the newest reading or frame
+    std::map<std::uint8_t, std::uint64_t> depth_frames_;  ///< by camera
+    std::optional<HostTime> captured_;                    ///< of the newest reading or frame
     std::uint64_t count_ = 0;
     bool is_newest_of_commit_ = false;  ///< newest_.back() belongs to the latest reading or frame
     std::deque<Contribution> newest_;

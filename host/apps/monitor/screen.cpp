@@ -10,6 +10,7 @@
 #include "host/apps/command_line/json_at.hpp"
 #include "host/apps/monitor/status_meanings.hpp"
 #include "host/core/counters/counter_meanings.hpp"
+#include "host/core/rig/camera_text.hpp"
 #include "host/core/text/printable.hpp"
 
 namespace octoskin {
@@ -53,7 +54,7 @@ class Screen {
         add_problems();
         add_bus();
         add_joints();
-        add_camera();
+        add_cameras();
         add_recording();
         add_map();
         for (std::size_t i = 0; i < length(at(now_, "nodes")); ++i) add_node(i);
@@ -139,7 +140,7 @@ class Screen {
         const bool contradicts = at(camera, "contradicts") == true;
         const std::string contradiction =
             !contradicts ? ""
-                         : std::string(", CONTRADICTS the camera") +
+                         : ", CONTRADICTS the " + camera_text(text(at(camera, "of"))) +
                                (at(camera, "fault").is_string() ? ": " + text(at(camera, "fault")) : "") +
                                (at(camera, "refused") == true ? ", refused" : "");
         const bool has_fault = !at(sensor, "fault").is_null() && text(at(sensor, "fault")) != "none";
@@ -188,16 +189,22 @@ class Screen {
                         age(newest)),
             is_silent ? Emphasis::bad : Emphasis::none);
     }
-    void add_camera() {
-        const Json& camera = at(now_, "camera");
-        if (camera.is_null()) return add("no camera");
+    void add_cameras() {
+        const Json& cameras = at(now_, "cameras");
+        if (cameras.empty()) return add("no camera");
+        for (std::size_t i = 0; i < cameras.size(); ++i) add_camera(i);
+    }
+    void add_camera(std::size_t index) {
+        const Json& camera = item(at(now_, "cameras"), index);
+        const Json& before = item(at(before_, "cameras"), index);
+        const std::string name = camera_text(text(at(camera, "name")));
         const bool is_open = at(camera, "open") == true;
-        add(is_open ? fmt::format("camera {}, newest {}",
-                                  rate(at(at(before_, "camera"), "frames"), at(camera, "frames"), passed_),
+        add(is_open ? fmt::format("{} {}, newest {}", name,
+                                  rate(at(before, "frames"), at(camera, "frames"), passed_),
                                   age(at(camera, "age_s")))
-                    : "camera closed: " + text(at(camera, "why")),
+                    : name + " closed: " + text(at(camera, "why")),
             is_open ? Emphasis::title : Emphasis::bad);
-        add_nonzero("camera", {"displaced", "untimed", "repeated", "opened"});
+        add_nonzero("cameras", before, camera, {"displaced", "untimed", "repeated", "opened"});
     }
     void add_recording() {
         const Json& recording = at(now_, "recording");
@@ -235,12 +242,14 @@ class Screen {
     }
     /// Those counters of the object under `group` that are not 0.
     void add_nonzero(const char* group, std::initializer_list<const char*> names) {
-        const Json& object = at(now_, group);
+        add_nonzero(group, at(before_, group), at(now_, group), names);
+    }
+    void add_nonzero(const char* group, const Json& before, const Json& now,
+                     std::initializer_list<const char*> names) {
         for (const char* name : names) {
-            const Json& value = at(object, name);
+            const Json& value = at(now, name);
             if (number(value) != 0.0)
-                add_counter(name, at(at(before_, group), name), value,
-                            find_meaning(status_meanings(), group, name));
+                add_counter(name, at(before, name), value, find_meaning(status_meanings(), group, name));
         }
     }
     void add_counter(std::string_view name, const Json& before, const Json& now, std::string_view meaning) {

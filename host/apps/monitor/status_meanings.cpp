@@ -50,7 +50,7 @@ constexpr std::array kStatusMeanings = {
             "joint states from this machine, below; null without --joints"},
     Meaning{"", "recording", kTableOrNull, "",
             "the current or the last recording, below; null: there was none"},
-    Meaning{"", "camera", kTableOrNull, "", "the depth camera, below; null without one"},
+    Meaning{"", "cameras", kList, "", "the depth cameras in the rig's order, below; empty without one"},
     Meaning{"", "latency", kTable, "",
             "how late readings reach the map: after the frame that completed them, and after their capture, "
             "below"},
@@ -207,8 +207,11 @@ constexpr std::array kStatusMeanings = {
     Meaning{"nodes.sensors", "reflex_below_m", kNumber, "m", "its limit in the rig; 0: none"},
     Meaning{"nodes.sensors", "reflex_m", kNumberOrNull, "m",
             "the distance at the newest REFLEX; null: none yet"},
-    Meaning{"nodes.sensors", "camera", kTableOrNull, "",
-            "the cross-check of its ranges against the camera, below; null without a camera"},
+    Meaning{
+        "nodes.sensors", "camera", kTableOrNull, "",
+        "the cross-check of its ranges against the cameras, below: that with the strongest evidence; null "
+        "without a camera"},
+    Meaning{"nodes.sensors.camera", "of", kText, "", "name of the camera; empty for a rig's only one"},
     Meaning{"nodes.sensors.camera", "verdict", kWord, "",
             "agrees: each fault that would have changed its ranges has enough evidence against it; "
             "contradicts; or cannot_tell: doubt has why"},
@@ -222,7 +225,8 @@ constexpr std::array kStatusMeanings = {
             "little evidence for a fault and too little against it. camera_not_known: the other sensors do "
             "not show well enough where the camera is. camera_is_off: the camera is off, or likely so. "
             "joint_is_off: a joint is, with or without the camera, or likely so. several_contradict: more "
-            "than two sensors contradict the camera. null: another verdict"},
+            "than two sensors contradict the camera. cameras_disagree: it contradicts one camera and agrees "
+            "with another. null: another verdict"},
     Meaning{"nodes.sensors.camera", "not_excluded", kList, "",
             "the faults that the comparisons do not exclude; turned and exchanged are in it until each turn "
             "and each exchange is excluded, also those that would not have changed a range"},
@@ -332,34 +336,37 @@ constexpr std::array kStatusMeanings = {
     Meaning{"recording", "ended_early", kText, "",
             "why it ended before its time and without a request: the bus time jumped, the daemon re-read its "
             "files or ended; else empty"},
-    Meaning{"camera", "open", kFlag, "", "it is open"},
-    Meaning{"camera", "why", kText, "", "why it is not; empty if it is"},
-    Meaning{"camera", "frames", kCount, "", "frames received"},
-    Meaning{"camera", "displaced", kCount, "",
+    Meaning{"cameras", "name", kText, "", "in the rig; empty for its only camera"},
+    Meaning{"cameras", "link", kText, "", "the link that carries it; empty: it is beside the robot"},
+    Meaning{"cameras", "device", kText, "", "OpenNI2 URI or .oni file; empty: the first device"},
+    Meaning{"cameras", "open", kFlag, "", "it is open"},
+    Meaning{"cameras", "why", kText, "", "why it is not; empty if it is"},
+    Meaning{"cameras", "frames", kCount, "", "frames received"},
+    Meaning{"cameras", "displaced", kCount, "",
             "frames displaced by newer ones, because the daemon was held up"},
-    Meaning{"camera", "untimed", kCount, "",
+    Meaning{"cameras", "untimed", kCount, "",
             "frames without a known capture time: over 0.5 s late, or the first ones, until five agree on "
             "the camera's clock, for 5 s at most"},
-    Meaning{"camera", "repeated", kCount, "",
+    Meaning{"cameras", "repeated", kCount, "",
             "frames not used because all of the image, or at least half of it, equals bit by bit one from "
             "over 0.5 s before, and more than five have equalled earlier ones since: the camera hangs, or "
             "its lens is covered"},
-    Meaning{"camera", "opened", kCount, "",
+    Meaning{"cameras", "opened", kCount, "",
             "how often it was opened; more than once: it was gone, fell silent, showed one image again and "
             "again, or all its frames came late"},
-    Meaning{"camera", "is_off", kFlagOrNull, "",
+    Meaning{"cameras", "is_off", kFlagOrNull, "",
             "one error of its pose or depth explains the contradictions of several sensors, clearly more "
             "than an offset of a joint does; meanwhile no sensor is named; null: its images are not compared "
             "with ranges"},
-    Meaning{"camera", "turned_deg", kListOrNull, "deg",
+    Meaning{"cameras", "turned_deg", kListOrNull, "deg",
             "if it is off, or with joint_states.or_camera: its estimated rotation against the rig, about its "
             "axes x right, y down, z ahead; null: it is not off"},
-    Meaning{"camera", "shifted_m", kListOrNull, "m",
+    Meaning{"cameras", "shifted_m", kListOrNull, "m",
             "or its estimated shift along them; null: it is not off"},
-    Meaning{"camera", "depth_scale", kNumberOrNull, "",
+    Meaning{"cameras", "depth_scale", kNumberOrNull, "",
             "or the true depth divided by the depth of its image; null: it is not off"},
-    Meaning{"camera", "explains_sensors", kCount, "", "sensors whose contradictions this explains"},
-    Meaning{"camera", "age_s", kNumberOrNull, "s", "since its newest frame arrived; null: none yet"},
+    Meaning{"cameras", "explains_sensors", kCount, "", "sensors whose contradictions this explains"},
+    Meaning{"cameras", "age_s", kNumberOrNull, "s", "since its newest frame arrived; null: none yet"},
     Meaning{"latency", "readings", kCount, "", "readings that the figures cover"},
     Meaning{"latency", "median_ms", kNumber, "ms",
             "from the kernel's time stamp of the frame that completed a reading (its own, the joint state "

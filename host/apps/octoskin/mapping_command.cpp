@@ -16,8 +16,11 @@
 #include "host/apps/profile/named_mapping.hpp"
 #include "host/apps/recording/given_rig.hpp"
 #include "host/core/mapping/thin_objects.hpp"
+#include "host/core/pipeline/depth_stage.hpp"
+#include "host/core/rig/camera_text.hpp"
 #include "host/io/mapping/mapping_file.hpp"
 #include "host/io/mapping/mapping_keys.hpp"
+#include "host/io/rig/host_rig_reader.hpp"
 
 namespace octoskin::app {
 
@@ -75,14 +78,21 @@ std::string thin_table(const ThinView& view, const rig::Camera& camera) {
     return text;
 }
 
+std::string thin_text(const MappingConfig& mapping, const rig::Camera& camera) {
+    const std::string title = camera.name.empty() ? "" : fmt::format("# {}\n", camera_text(camera.name));
+    return title + thin_table({.focal_px = std::min(camera.fx, camera.fy),
+                               .denoiser = mapping_of(host_camera(camera), mapping).depth_denoiser,
+                               .voxel_m = mapping.map.resolution_m},
+                              camera);
+}
+
 std::string thin_text(const MappingConfig& mapping, const rig::Rig& rig) {
-    if (!rig.camera) return fmt::format("# rig {}: no camera, so no thinnest object\n", rig.name);
+    if (rig.cameras.empty()) return fmt::format("# rig {}: no camera, so no thinnest object\n", rig.name);
     if (mapping.depth_update != DepthUpdate::denoised)
         return "# thinnest objects: known for depth_update denoised only\n";
-    return thin_table({.focal_px = std::min(rig.camera->fx, rig.camera->fy),
-                       .denoiser = mapping.depth_denoiser,
-                       .voxel_m = mapping.map.resolution_m},
-                      *rig.camera);
+    std::string text;
+    for (const rig::Camera& camera : rig.cameras) text += thin_text(mapping, camera);
+    return text;
 }
 
 }  // namespace
@@ -97,7 +107,7 @@ void add_mapping_command(CLI::App& app) {
         command->add_flag("--keys", *lists_keys, "List each key with its unit, range, default and meaning");
     command
         ->add_option("--rig", *rig_file,
-                     "Print also the thinnest object that this rig's camera keeps in the map, by depth")
+                     "Print also the thinnest object that each camera of this rig keeps in the map, by depth")
         ->type_name("FILE")
         ->check(existing_file())
         ->excludes(keys);

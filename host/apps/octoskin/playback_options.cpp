@@ -103,8 +103,9 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
     add_robot_options(command, options.robot, "Robot (URDF) in place of the recording's");
     command.add_option(
         "--camera", options.camera,
-        "Of a data set or a lone .oni file without --rig: " + rig::joined(tum::kDataSetCameras) +
-            " (default: by the data set's layout, " + std::string(tum::kDataSetCameras.front()) + ")");
+        "Of a data set or a lone .oni file: with a --rig of several cameras the name of one, else " +
+            rig::joined(tum::kDataSetCameras) + " (default: by the data set's layout, " +
+            std::string(tum::kDataSetCameras.front()) + ")");
     command.add_option("--pose", options.pose,
                        "Where the camera of an .oni file without a can.log was, in the map's frame: "
                        "X,Y,Z,ROLL,PITCH,YAW of its optical frame, metres and degrees (default: the rig's)");
@@ -114,19 +115,15 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
 
 PlaybackRequest playback_request(const PlaybackOptions& options) {
     const RecordingPaths recording(options.recording);
-    const bool has_own_camera = !is_data_set(recording) && !lone_film(recording);
-    if (!options.camera.empty() && (!options.rig.empty() || has_own_camera)) {
-        Error error{.code = ErrorCode::conflict, .value = "'" + options.camera + "'", .key = "--camera"};
-        if (options.rig.empty()) {
-            error.what = "expected a data set or an .oni file: the camera of a recording is in its rig";
-            error.remedy = "leave --camera out";
-            error.file = options.recording;
-        } else {
-            error.what = "expected only one of --camera and --rig: a rig has a camera";
-            error.remedy = "leave one of them out";
-        }
-        throw CommandFailure(ExitCode::usage, std::move(error));
-    }
+    if (!options.camera.empty() && !is_data_set(recording) && !lone_film(recording))
+        throw CommandFailure(
+            ExitCode::usage,
+            {.code = ErrorCode::conflict,
+             .what = "expected a data set or an .oni file: the cameras of a recording are in its rig",
+             .value = "'" + options.camera + "'",
+             .remedy = "leave --camera out",
+             .file = options.recording,
+             .key = "--camera"});
     auto configuration = configuration_of(options.configuration, recording);
     if (!configuration) throw CommandFailure(configuration.error());
     return {.recording = recording,

@@ -14,7 +14,7 @@ struct PlaybackOptions {
     std::filesystem::path recording;
     std::filesystem::path rig;  ///< empty: the recording's
     GivenRobot robot;
-    std::string camera;         ///< of a data set without rig; empty: by its layout
+    std::string camera;         ///< of a data set; empty: the rig's only one, or by its layout
     std::string pose;           ///< of the camera of a lone .oni; empty: the rig's
     std::string configuration;  ///< empty: the recording's own, or the default
     bool is_by_capture_time = false;

@@ -20,6 +20,7 @@
 #include "host/apps/rig/new_rig.hpp"
 #include "host/apps/rig/rig_picture.hpp"
 #include "host/apps/robot/fitted_robot.hpp"
+#include "host/core/rig/camera_text.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
 #include "hw/rigfile/can_load.hpp"
 #include "hw/rigfile/i2c_load.hpp"
@@ -85,10 +86,9 @@ void describe(const rig::Rig& rig, const HostSetup& host) {
     for (const rig::JointSource& source : rig.joint_sources)
         print("  node {} sends {} joints at {:g} Hz{}\n", source.node_id, source.joints.size(),
               source.rate_hz, source.way == rig::JointWay::socket ? " through the joint socket" : "");
-    if (rig.camera) {
-        print("  camera {} x {} at {:g} Hz{}\n", rig.camera->width, rig.camera->height, rig.camera->rate_hz,
-              rig.camera->link.empty() ? "" : " on " + rig.camera->link);
-    }
+    for (const rig::Camera& camera : rig.cameras)
+        print("  {} {} x {} at {:g} Hz{}\n", camera_text(camera.name), camera.width, camera.height,
+              camera.rate_hz, camera.link.empty() ? "" : " on " + camera.link);
     print("  CAN{} {} bit/s{}: load {:.1f} % in the worst case, at most {:.0f} %\n",
           rig.bus.uses_can_fd ? " FD" : "", rig.bus.nominal_bitrate,
           rig.bus.uses_can_fd ? fmt::format(" / {} bit/s", rig.bus.data_bitrate) : "",
@@ -123,7 +123,7 @@ void write_picture(const HostSetup& host, const RigOptions& options) {
     const std::string picture = rig_picture(host, posture_of(options, host.robot));
     if (const auto written = write_text(options.picture, picture); !written)
         throw CommandFailure(written.error());
-    print("{}: look whether sensors and camera are where they are on the robot\n", options.picture.string());
+    print("{}: look whether sensors and cameras are where they are on the robot\n", options.picture.string());
 }
 
 /// As a rig in `file` has to name it: relative, if it is given so.
@@ -197,7 +197,7 @@ void add_rig_command(CLI::App& app) {
                             "Write a node's configuration block to this file, for octoskin-node --config");
     auto* const picture =
         command->add_option("--picture", options->picture,
-                            "Draw arm, sensors, cones and camera to this file (SVG), to be looked at");
+                            "Draw arm, sensors, cones and cameras to this file (SVG), to be looked at");
     command
         ->add_option("--joints", options->joints,
                      "For --picture: the posture, as 0.1,-0.5,...; default: 0 of each")

@@ -79,12 +79,17 @@ void add_run_command(CLI::App& app) {
         ->add_option("--configuration", request->configuration,
                      configuration_help("How measurements become voxels"))
         ->capture_default_str();
-    auto* const camera = command->add_option("--camera", request->camera_uri,
-                                             "OpenNI2 device, or an .oni file to play in a loop, not in step "
-                                             "with a bus (default: the first camera)");
+    auto* const camera =
+        command
+            ->add_option("--camera", request->cameras,
+                         "[NAME=]DEVICE: OpenNI2 device, or an .oni file to play in a loop, not in step "
+                         "with a bus, of the rig's camera with that name; once for each (default: the "
+                         "rig's `device`, or the first camera)")
+            ->allow_extra_args(false)
+            ->type_name("[NAME=]DEVICE");
     command
         ->add_flag_callback(
-            "--no-camera", [request] { request->has_camera = false; }, "Do not use the rig's camera")
+            "--no-camera", [request] { request->has_camera = false; }, "Do not use the rig's cameras")
         ->excludes(camera);
     command
         ->add_option("--depth-threads", request->depth_threads,

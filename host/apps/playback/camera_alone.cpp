@@ -1,5 +1,6 @@
 #include "host/apps/playback/camera_alone.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <utility>
@@ -38,13 +39,52 @@ Result<rig::Camera, AppError> named_camera(std::string_view name) {
                  .key = "--camera"});
 }
 
+namespace {
+
+/// A rig that names its camera takes this name; another one decides by itself.
+AppError unnamed_camera(const PlaybackRequest& request) {
+    return {ExitCode::usage,
+            {.code = ErrorCode::conflict,
+             .what = "expected only one of --camera and --rig: the rig has one camera, "
+                     "without a name",
+             .value = "'" + request.camera + "'",
+             .remedy = "omit --rig or --camera",
+             .file = request.rig,
+             .key = "--camera"}};
+}
+
+AppError unknown_camera(const PlaybackRequest& request, const std::vector<rig::Camera>& cameras) {
+    std::vector<std::string> names;
+    for (const rig::Camera& camera : cameras) names.push_back(camera.name);
+    const bool is_given = !request.camera.empty();
+    return {ExitCode::usage,
+            {.code = is_given ? ErrorCode::unknown_word : ErrorCode::bad_argument,
+             .what = "expected the name of one of the rig's cameras: " + rig::joined(names),
+             .value = is_given ? "'" + request.camera + "'" : "none",
+             .remedy = "give --camera " + names.front(),
+             .file = request.rig,
+             .key = "--camera"}};
+}
+
+/// Leaves the rig one camera. It must have one.
+Status<AppError> choose_camera(const PlaybackRequest& request, std::vector<rig::Camera>& cameras) {
+    if (cameras.size() == 1 && request.camera.empty()) return Done{};
+    if (cameras.front().name.empty()) return unexpected(unnamed_camera(request));
+    const auto named = std::ranges::find(cameras, request.camera, &rig::Camera::name);
+    if (named == cameras.end()) return unexpected(unknown_camera(request, cameras));
+    cameras = {rig::Camera(*named)};
+    return Done{};
+}
+
+}  // namespace
+
 Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest& request,
                                                           const std::string& seen) {
     if (request.rig.empty()) return std::optional<rig::Rig>{};
     const auto lock = lock_reading();
     auto rig = read_given_rig(request.rig);
     if (!rig) return unexpected(rig.error());
-    if (!rig->camera) {
+    if (rig->cameras.empty()) {
         return fail(ExitCode::bad_config, {.code = ErrorCode::missing_key,
                                            .what = "expected the camera of " + seen,
                                            .value = "none",
@@ -52,6 +92,7 @@ Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest&
                                            .file = request.rig,
                                            .key = "camera"});
     }
+    if (const auto chosen = choose_camera(request, rig->cameras); !chosen) return unexpected(chosen.error());
     return std::optional(std::move(*rig));
 }
 
@@ -64,13 +105,6 @@ Status<AppError> check_options_of_camera(const PlaybackRequest& request, const s
                                       .file = file,
                                       .key = "--robot"});
     }
-    if (!request.rig.empty() && !request.camera.empty()) {
-        return fail(ExitCode::usage, {.code = ErrorCode::conflict,
-                                      .what = kind + " takes a rig or a camera, not both",
-                                      .remedy = "omit --rig or --camera",
-                                      .file = file,
-                                      .key = "--camera"});
-    }
     return Done{};
 }
 
@@ -78,8 +112,10 @@ rig::Rig rig_of_camera(const rig::Camera& camera, const std::string& name) {
     rig::Rig rig;
     rig.name = name;
     rig.base_link = "map";
-    rig.camera = camera;
-    rig.camera->link.clear();  // there is no robot: each image has its own pose
+    rig::Camera& only = rig.cameras.emplace_back(camera);
+    only.name.clear();
+    only.device.clear();
+    only.link.clear();  // there is no robot: each image has its own pose
     return rig;
 }
 
@@ -111,7 +147,7 @@ MapOrigin origin_of(const PlaybackRequest& request, const rig::Rig& rig, std::ui
 Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, const rig::Rig& rig) {
     HostRig host;
     host.name = rig.name;
-    host.camera = host_camera(*rig.camera);
+    host.cameras = {host_camera(rig.cameras.front())};
     // A pipeline requires a robot with at least one joint. This joint never moves and is never used.
     const JointDescription joint{.name = "no_joint",
                                  .parent_link = rig.base_link,
@@ -145,7 +181,7 @@ Result<Playback, AppError> play_camera(PlaybackRequest request, rig::Rig rig, st
     MapOrigin origin = origin_of(request, rig, crc32);
     NoBus bus;
     PacedDepth paced(images, request.pace);
-    ReplayOutcome outcome = replay(*pipeline, bus, &paced, report);
+    ReplayOutcome outcome = replay(*pipeline, bus, {&paced}, report);
     std::vector<CounterTable> inputs = pipeline->counter_tables();
     std::erase_if(inputs, [](const CounterTable& table) { return table.in == 0; });
     return Playback{.rig = std::move(rig),

@@ -20,13 +20,13 @@ namespace octoskin {
 /// One of tum::kDataSetCameras. Error: `usage` if there is no camera with this name.
 [[nodiscard]] Result<rig::Camera, AppError> named_camera(std::string_view name);
 
-/// The rig of the request; empty if the request has none. Error: bad_config if the rig has no camera that
-/// fits `seen`.
+/// The rig of the request with one camera: its only one, or the one that the request names. Empty if the
+/// request has no rig. Errors: bad_config if the rig has no camera, for the images of `seen`; usage if it has
+/// several and none is named, or none of that name.
 [[nodiscard]] Result<std::optional<rig::Rig>, AppError> rig_with_camera(const PlaybackRequest& request,
                                                                         const std::string& seen);
 
-/// Error (usage): the request has a robot, or both a rig and a camera. `file` is played, and `kind` is what
-/// it is.
+/// Error (usage): the request has a robot. `file` is played, and `kind` is what it is.
 [[nodiscard]] Status<AppError> check_options_of_camera(const PlaybackRequest& request,
                                                        const std::filesystem::path& file,
                                                        const std::string& kind);

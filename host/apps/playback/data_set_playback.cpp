@@ -16,11 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In this order: the rig's camera, the requested one, the one described by a file of the data set, the one
-/// of the data set's layout.
+/// In this order: the rig's camera (the requested one of several), the requested one, the one described by a
+/// file of the data set, the one of the data set's layout.
 Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request, const std::optional<rig::Rig>& given,
                                         const tum::DataSetReader& reader) {
-    if (given) return *given->camera;
+    if (given) return given->cameras.front();
     if (!request.camera.empty()) return named_camera(request.camera);
     const auto calibration = reader.calibration();
     if (!calibration) return named_camera(reader.layout().camera);
@@ -49,7 +49,7 @@ std::string first_of(const tum::ImageCounts& images) {
 }
 
 CounterTable image_table(const tum::DataSetReader& reader, const ReplayOutcome& outcome) {
-    const std::uint64_t failed = outcome.depth_error ? 1 : 0;
+    const std::uint64_t failed = outcome.depth_errors.size();
     const std::uint64_t left = reader.images_left() - failed;
     const tum::ImageCounts& images = reader.images();
     return {.unit = "depth images",
@@ -134,7 +134,7 @@ namespace {
 Result<tum::DataSetReader, AppError> open_reader(const PlaybackRequest& request,
                                                  const std::optional<rig::Rig>& given) {
     auto reader = tum::DataSetReader::open(request.recording.directory,
-                                           given ? given->camera->data_set : rig::DataSetKeys{});
+                                           given ? given->cameras.front().data_set : rig::DataSetKeys{});
     if (reader) return std::move(*reader);
     AppError error{ExitCode::bad_data, reader.error()};
     const auto files = tum::find_data_set(request.recording.folder);
@@ -152,7 +152,7 @@ Result<tum::DataSetReader, AppError> open_reader(const PlaybackRequest& request,
 }  // namespace
 
 Result<Playback, AppError> play_data_set(const PlaybackRequest& request, const ReplayReport& report) {
-    if (!request.camera.empty()) {
+    if (!request.camera.empty() && request.rig.empty()) {
         if (const auto known = named_camera(request.camera); !known) return unexpected(known.error());
     }
     const auto given = rig_with_camera(request, "a data set");

@@ -10,7 +10,7 @@ namespace octoskin {
 /// Whether the directory has a depth.txt and no can.log.
 [[nodiscard]] bool is_data_set(const RecordingPaths& recording);
 
-/// Checks that the request has no options that a data set cannot meet: a robot, or both a rig and a camera.
+/// Checks that the request has no options that a data set cannot meet: a robot.
 [[nodiscard]] Status<AppError> check_data_set(const PlaybackRequest& request);
 
 /// Plays the images in the order of their times, at the requested pace, each from its camera pose, into the

@@ -18,7 +18,7 @@ constexpr const char* kSuffix = ".oni";
 Result<rig::Camera, AppError> camera_of(const PlaybackRequest& request) {
     const auto given = rig_with_camera(request, "an .oni file");
     if (!given) return unexpected(given.error());
-    auto camera = *given ? Result<rig::Camera, AppError>(*(*given)->camera)
+    auto camera = *given ? Result<rig::Camera, AppError>((*given)->cameras.front())
                          : named_camera(request.camera.empty() ? tum::kDataSetCameras.front()
                                                                : std::string_view(request.camera));
     if (!camera) return camera;

@@ -59,10 +59,15 @@ std::vector<std::string> map_file_names() {
 
 std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording, const BytesReport& report) {
     std::vector<FilePlace> files = {recording.can_log()};
-    for (const FilePlace& file : {recording.depth(), recording.depth_epoch(), recording.order(),
-                                  recording.first_map(), recording.first_state()}) {
+    const auto add = [&files](const FilePlace& file) {
         if (file.is_there()) files.push_back(file);
+    };
+    for (const std::string& camera : recording.cameras()) {
+        add(recording.depth(camera));
+        add(recording.depth_epoch(camera));
     }
+    for (const FilePlace& file : {recording.order(), recording.first_map(), recording.first_state()})
+        add(file);
     return crc32_of(files, report);
 }
 

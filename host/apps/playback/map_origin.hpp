@@ -31,8 +31,9 @@ struct MapOrigin {
 /// All map file names of a folder: depth, proximity and fused, each as .ot, .bt and .ply.
 [[nodiscard]] std::vector<std::string> map_file_names();
 
-/// CRC-32 of a recording's measurements: can.log, and if they exist depth.oni with its sidecar, order.log,
-/// first.ot and first.snapshot. Rig and robot have checksums of their own. Empty if a file cannot be read.
+/// CRC-32 of a recording's measurements: can.log, and if they exist the depth frames of each camera, in the
+/// order of the cameras' names, with their sidecar, order.log, first.ot and first.snapshot. Rig and robot
+/// have checksums of their own. Empty if a file cannot be read.
 [[nodiscard]] std::optional<std::uint32_t> crc32_of_recording(const RecordingPaths& recording,
                                                               const BytesReport& report = {});
 

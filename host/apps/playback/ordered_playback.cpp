@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "host/apps/playback/pace.hpp"
 #include "host/apps/recording/given_rig.hpp"
+#include "host/core/rig/camera_text.hpp"
 #include "host/io/mapfile/file_checksum.hpp"
 #include "host/io/mapfile/map_file.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
@@ -97,9 +100,9 @@ Result<std::vector<std::string>, AppError> begin_with_first(const PlaybackReques
             warnings.push_back(
                 fmt::format("{}: range readings of {} zones are left out: the rig has no such zones", file,
                             left_out.zones));
-        if (left_out.is_camera)
-            warnings.push_back(
-                fmt::format("{}: earlier images are left out: the rig has no such camera", file));
+        for (const std::string& camera : left_out.cameras)
+            warnings.push_back(fmt::format("{}: earlier images{} are left out: the rig has no such camera",
+                                           file, camera.empty() ? "" : " of " + camera_text(camera)));
         return warnings;
     }
     if (!header.first_map) return std::vector<std::string>{};
@@ -113,7 +116,7 @@ Result<std::vector<std::string>, AppError> begin_with_first(const PlaybackReques
 std::string why_another(const PlaybackRequest& request, const rig::Rig& rig,
                         const orderlog::OrderReader& order, const OrderedPlayback& played) {
     const OrderedOutcome& outcome = played.outcome;
-    if (outcome.order_error || outcome.depth_error) return "the replay did not reach its end";
+    if (outcome.order_error || !outcome.depth_errors.empty()) return "the replay did not reach its end";
     if (!order.trailer())
         return "order.log is cut off because the daemon was killed; this is its last complete line";
     if (!order.trailer()->is_complete())
@@ -161,6 +164,63 @@ void judge(const PlaybackRequest& request, const rig::Rig& rig, const orderlog::
     }
 }
 
+Unexpected<AppError> of_another_rig(const PlaybackRequest& request, std::string expected, std::string found) {
+    return fail(ExitCode::bad_config, {.code = ErrorCode::mismatch,
+                                       .what = "expected " + std::move(expected) + ", as in the rig",
+                                       .value = std::move(found),
+                                       .remedy = "replay with the recording's own rig",
+                                       .file = request.recording.order().shown()});
+}
+
+Status<AppError> check_form(const PlaybackRequest& request, const rig::Rig& rig,
+                            const orderlog::CommitForm& form) {
+    const auto joints = rig.joint_counts();
+    if (form.joints != joints)
+        return of_another_rig(request, orderlog::joints_text(joints) + " joints",
+                              orderlog::joints_text(form.joints));
+    const std::size_t cameras = std::max(rig.cameras.size(), std::size_t{1});
+    if (form.cameras != cameras)
+        return of_another_rig(request,
+                              fmt::format("the images of {} camera{}", cameras, cameras > 1 ? "s" : ""),
+                              fmt::format("{}", form.cameras));
+    return Done{};
+}
+
+/// The index in the given rig of each camera of the recording's own; empty: the same ones.
+using CameraIndices = std::vector<std::uint8_t>;
+
+/// In order.log a camera is its index in the recording's own rig.
+Result<CameraIndices, AppError> cameras_by_name(const PlaybackRequest& request, const rig::Rig& rig) {
+    if (request.rig.empty() || rig.cameras.size() < 2) return CameraIndices{};
+    const auto own = read_given_rig(request.recording.rig());
+    if (!own) return CameraIndices{};
+    CameraIndices indices;
+    for (const rig::Camera& camera : own->cameras) {
+        const auto found = std::ranges::find(rig.cameras, camera.name, &rig::Camera::name);
+        if (found == rig.cameras.end())
+            return of_another_rig(request, "images of the same cameras", camera_text(camera.name));
+        indices.push_back(static_cast<std::uint8_t>(found - rig.cameras.begin()));
+    }
+    return indices;
+}
+
+/// The commits with the indices of cameras in the given rig.
+class CommitsOfRig final : public CommitSource {
+  public:
+    CommitsOfRig(CommitSource& source, const CameraIndices& cameras) : source_(source), cameras_(cameras) {}
+    [[nodiscard]] Result<std::optional<Commit>, Error> next() override {
+        auto commit = source_.next();
+        if (!commit || !commit->has_value()) return commit;
+        auto* const frame = std::get_if<DepthCommit>(&**commit);
+        if (frame != nullptr && frame->camera < cameras_.size()) frame->camera = cameras_[frame->camera];
+        return commit;
+    }
+
+  private:
+    CommitSource& source_;
+    const CameraIndices& cameras_;
+};
+
 }  // namespace
 
 bool is_played_in_order(const PlaybackRequest& request) {
@@ -168,25 +228,22 @@ bool is_played_in_order(const PlaybackRequest& request) {
 }
 
 Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, const rig::Rig& rig,
-                                                Pipeline& pipeline, DepthSource* depth,
+                                                Pipeline& pipeline, const DepthSources& depth,
                                                 std::optional<HostTime> begin, const ReplayReport& report) {
     auto order = orderlog::OrderReader::open(request.recording.order());
     if (!order) return fail(ExitCode::bad_data, order.error());
-    if (order->header().joints != rig.joint_counts()) {
-        return fail(ExitCode::bad_config, {.code = ErrorCode::mismatch,
-                                           .what = fmt::format("expected {} joints, as in the rig",
-                                                               orderlog::joints_text(rig.joint_counts())),
-                                           .value = orderlog::joints_text(order->header().joints),
-                                           .remedy = "replay with the recording's own rig",
-                                           .file = request.recording.order().shown()});
-    }
+    if (const auto checked = check_form(request, rig, order->header().form); !checked)
+        return unexpected(checked.error());
+    const auto cameras = cameras_by_name(request, rig);
+    if (!cameras) return unexpected(cameras.error());
     const bool has_daemons_mapping =
         order->header().mapping_crc32 == file_checksum(mapping_text(request.mapping));
     auto warnings = begin_with_first(request, rig, order->header(), has_daemons_mapping, pipeline);
     if (!warnings) return unexpected(warnings.error());
     if (request.listener != nullptr && pipeline.map().known_voxels() > 0)
         request.listener->on_begin(pipeline.map());
-    PacedCommits paced(*order, request.pace, begin);
+    CommitsOfRig commits(*order, *cameras);
+    PacedCommits paced(commits, request.pace, begin);
     OrderedPlayback played{.outcome = replay_in_order(pipeline.builder(), paced, depth, report, begin)};
     played.warnings = std::move(*warnings);
     played.has_daemons_mapping = has_daemons_mapping;

@@ -25,12 +25,12 @@ struct OrderedPlayback {
 
 /// Plays order.log into the maps of `pipeline`, which must be unused. It begins with first.snapshot, or with
 /// first.ot if there is no snapshot or the given mapping is not the daemon's.
-/// `depth`: null if there is none. `begin`: of the recording, if it is known.
-/// Errors: an order.log of another version or with another number of joints; an initial file that is not the
-/// recording's, is damaged, has another resolution than the mapping, or needs more memory.
+/// `depth`: of each camera of `rig`; null if there is none. `begin`: of the recording, if it is known.
+/// Errors: an order.log of another version, with another number of joints or other cameras; an initial file
+/// that is not the recording's, is damaged, has another resolution than the mapping, or needs more memory.
 [[nodiscard]] Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request,
                                                               const rig::Rig& rig, Pipeline& pipeline,
-                                                              DepthSource* depth,
+                                                              const DepthSources& depth,
                                                               std::optional<HostTime> begin,
                                                               const ReplayReport& report);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "host/apps/playback/data_set_playback.hpp"
@@ -17,6 +18,7 @@
 #include "host/apps/robot/fitted_robot.hpp"
 #include "host/apps/version/version.hpp"
 #include "host/core/ingest/can_intake.hpp"
+#include "host/core/rig/camera_text.hpp"
 #include "host/core/rig/sensor_text.hpp"
 #include "host/io/candump/log_source.hpp"
 #include "host/io/mapping/mapping_file.hpp"
@@ -72,18 +74,33 @@ Result<candump::LogSource, AppError> open_log(const RecordingPaths& recording, c
     return candump::LogSource(std::move(*reader), interface);
 }
 
-/// The recording's depth frames. If they cannot be read, that is a camera fault: the ranges are mapped
-/// nevertheless.
+/// A camera's depth frames in the recording. If they cannot be read, that is a camera fault: the rest is
+/// mapped nevertheless.
 struct DepthInput {
-    std::optional<openni2::OniReader> reader;
+    std::string camera;                        ///< its name
+    std::optional<openni2::OniReader> reader;  ///< empty: there are none
     std::optional<Error> error;
 };
 
-DepthInput open_depth(const RecordingPaths& recording) {
-    if (!recording.depth().is_there()) return {};
-    auto reader = openni2::OniReader::open(recording.depth(), recording.depth_epoch());
-    if (!reader) return {std::nullopt, reader.error()};
-    return {std::move(*reader), std::nullopt};
+DepthInput open_depth(const RecordingPaths& recording, const std::string& camera) {
+    if (!recording.depth(camera).is_there()) return {camera, std::nullopt, std::nullopt};
+    auto reader = openni2::OniReader::open(recording.depth(camera), recording.depth_epoch(camera));
+    if (!reader) return {camera, std::nullopt, reader.error()};
+    return {camera, std::move(*reader), std::nullopt};
+}
+
+/// Of each camera of the rig. Without one, a depth.oni is read nevertheless, and its frames are refused.
+std::vector<DepthInput> open_depths(const RecordingPaths& recording, const HostRig& rig) {
+    std::vector<DepthInput> inputs;
+    for (const HostCamera& camera : rig.cameras) inputs.push_back(open_depth(recording, camera.name));
+    if (rig.cameras.empty()) inputs.push_back(open_depth(recording, ""));
+    return inputs;
+}
+
+DepthSources sources_of(std::vector<DepthInput>& inputs) {
+    DepthSources sources;
+    for (DepthInput& input : inputs) sources.push_back(input.reader ? &*input.reader : nullptr);
+    return sources;
 }
 
 CounterTable line_table(const candump::LogSource& log) {
@@ -99,6 +116,7 @@ CounterTable pixel_table(const DepthStage& depth) {
     const DepthPixelCounts& pixels = depth.pixels();
     const std::uint64_t robot = depth.robot_pixels();
     CounterTable table{.unit = "depth pixels",
+                       .of = depth.camera().name,
                        .in = pixels.used + pixels.no_value + pixels.bad_value + pixels.outside_map,
                        .used = pixels.used,
                        .pending = 0,
@@ -116,7 +134,10 @@ Result<MapOrigin, AppError> origin_of(const PlaybackRequest& request, const rig:
     };
     const auto crc32 = crc32_of_recording(request.recording, request.on_checksum);
     if (!crc32) {
-        for (const FilePlace& file : {request.recording.can_log(), request.recording.depth()}) {
+        std::vector<FilePlace> files{request.recording.can_log()};
+        for (const std::string& camera : request.recording.cameras())
+            files.push_back(request.recording.depth(camera));
+        for (const FilePlace& file : files) {
             const auto opened = file.open();
             if (!opened && opened.error().fault != FolderFault::absent)
                 return fail(ExitCode::bad_data, to_error(opened.error()));
@@ -147,50 +168,85 @@ std::vector<std::string> take_notes(const Pipeline& pipeline) {
     return notes;
 }
 
-void find_warnings(const RecordingMeta& meta, const HostRig& rig, const DepthInput& depth,
-                   Playback& playback) {
+std::string without_depth(const std::string& camera) {
+    const std::string file = RecordingPaths::depth_name(camera, ".oni");
+    if (camera.empty())
+        return "the rig has a camera, but the recording has no " + file + ": only the ranges are mapped";
+    return "the rig has a " + camera_text(camera) + ", but the recording has no " + file +
+           ": the map is made without its images";
+}
+
+std::string without_camera(const HostRig& rig, const std::string& camera) {
+    const bool is_in_list = camera.empty() && !rig.cameras.empty();
+    const std::string missing = is_in_list ? "camera without a name" : camera_text(camera);
+    return "the recording has a " + RecordingPaths::depth_name(camera, ".oni") + ", but the rig has no " +
+           missing + ": its frames are not used";
+}
+
+/// Cameras of the rig without depth frames, and depth frames without a camera in the rig.
+void find_missing_depth(const RecordingPaths& recording, const HostRig& rig,
+                        const std::vector<DepthInput>& depths, std::vector<std::string>& warnings) {
+    for (const DepthInput& depth : depths) {
+        if (!rig.cameras.empty() && !depth.reader && !depth.error)
+            warnings.push_back(without_depth(depth.camera));
+    }
+    for (const std::string& camera : recording.cameras()) {
+        if (std::ranges::find(rig.cameras, camera, &HostCamera::name) == rig.cameras.end())
+            warnings.push_back(without_camera(rig, camera));
+    }
+}
+
+void find_missing_frames(const RecordingMeta& meta, Playback& playback) {
     const auto frames = playback.outcome.progress.can_frames;
     if (!playback.nodes.empty() && frames < meta.can_frames) {
         playback.warnings.push_back("can.log: " + std::to_string(frames) + " frames, but meta.yaml states " +
                                     std::to_string(meta.can_frames) + ": part of the log is missing");
     }
-    if (rig.camera && !depth.reader && !depth.error) {
-        playback.warnings.emplace_back(
-            "the rig has a camera, but the recording has no depth.oni: only the ranges are mapped");
-    }
-    if (!rig.camera && depth.reader) {
-        playback.warnings.emplace_back(
-            "the recording has a depth.oni, but the rig has no camera: its frames are not used");
-    }
 }
 
-/// Sensors that contradict the camera: exchanged cables, a stuck value, or a wrong pose in the rig.
+/// "camera 'left': ", or nothing for a rig's only camera.
+std::string before_text_of(const std::string& camera) {
+    return camera.empty() ? "" : camera_text(camera) + ": ";
+}
+
+/// Sensors that contradict a camera: exchanged cables, a stuck value, or a wrong pose in the rig.
 void find_contradictions(const HostRig& rig, Playback& playback) {
-    const CrossCheck* const cross_check = playback.pipeline.builder().cross_check();
-    if (cross_check == nullptr) return;
-    if (const auto& fault = cross_check->pose().fault())
-        playback.warnings.push_back(describe(*fault, rig.joint_names()));
+    const CrossChecks* const checks = playback.pipeline.builder().cross_checks();
+    if (checks == nullptr) return;
+    for (std::size_t camera = 0; camera < checks->cameras(); ++camera) {
+        if (const auto& fault = checks->of(camera).pose().fault())
+            playback.warnings.push_back(describe(*fault, rig.joint_names(), rig.cameras[camera].name));
+    }
     for (const HostNode& node : rig.nodes) {
         for (std::size_t i = 0; i < node.sensors.size(); ++i) {
-            const SensorEvidence& evidence =
-                cross_check->evidence(node.node_id, static_cast<std::uint8_t>(i));
-            if (!evidence.contradicts()) continue;
-            playback.warnings.push_back(sensor_text(node, i) + ": " + describe(evidence));
+            const auto found = checks->finding(node.node_id, static_cast<std::uint8_t>(i));
+            if (!found.evidence.contradicts()) continue;
+            playback.warnings.push_back(before_text_of(rig.cameras[found.camera].name) +
+                                        sensor_text(node, i) + ": " + describe(found.evidence));
         }
     }
 }
 
 /// Images that do not have the size of the given camera.
-void find_wrong_sizes(Playback& playback) {
-    const DepthStage* const stage = playback.pipeline.depth_stage();
-    if (stage == nullptr || stage->wrong_size().frames == 0) return;
-    const auto& [frames, width, height] = stage->wrong_size();
-    const CameraIntrinsics& camera = stage->camera().intrinsics;
-    playback.warnings.push_back(std::to_string(frames) + " depth images are " + std::to_string(width) +
-                                " x " + std::to_string(height) + ", the camera's are " +
+void find_wrong_sizes(const DepthStage& stage, Playback& playback) {
+    if (stage.wrong_size().frames == 0) return;
+    const auto& [frames, width, height] = stage.wrong_size();
+    const CameraIntrinsics& camera = stage.camera().intrinsics;
+    playback.warnings.push_back(before_text_of(stage.camera().name) + std::to_string(frames) +
+                                " depth images are " + std::to_string(width) + " x " +
+                                std::to_string(height) + ", the camera's are " +
                                 std::to_string(camera.width) + " x " + std::to_string(camera.height) +
                                 " (wrong_size): give a --rig whose camera has their width_px and height_px, "
                                 "and intrinsics for that size");
+}
+
+/// The pixels of each camera, and images of a wrong size.
+void take_images(Playback& playback) {
+    const MapBuilder& builder = playback.pipeline.builder();
+    for (std::size_t camera = 0; camera < builder.cameras(); ++camera) {
+        playback.inputs.push_back(pixel_table(builder.depth_stage(camera)));
+        find_wrong_sizes(builder.depth_stage(camera), playback);
+    }
 }
 
 void find_full_maps(Playback& playback) {
@@ -221,7 +277,7 @@ Result<Pipeline, AppError> make_pipeline(const PlaybackRequest& request, Setup& 
 }
 
 /// Plays the log of the bus through the whole pipeline.
-Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup, DepthInput& depth,
+Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup, const DepthSources& depth,
                                     MapOrigin origin, const ReplayReport& report) {
     LogSurvey first(setup.host.rig);
     if (const auto read = survey_log(request.recording, first); !read) return unexpected(read.error());
@@ -239,7 +295,7 @@ Result<Playback, AppError> play_log(const PlaybackRequest& request, Setup& setup
     auto pipeline = make_pipeline(request, setup, survey.begin(), intake);
     if (!pipeline) return unexpected(pipeline.error());
     PacedCan paced(*log, request.pace);
-    ReplayOutcome outcome = replay(*pipeline, paced, depth.reader ? &*depth.reader : nullptr, report);
+    ReplayOutcome outcome = replay(*pipeline, paced, depth, report);
     Playback playback{.rig = std::move(setup.rig),
                       .pipeline = std::move(*pipeline),
                       .outcome = std::move(outcome),
@@ -271,17 +327,17 @@ std::optional<HostTime> begin_of_log(const RecordingPaths& recording, const Host
 }
 
 /// Plays in the daemon's own order, without the steps that determined that order.
-Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& setup, DepthInput& depth,
+Result<Playback, AppError> play_order(const PlaybackRequest& request, Setup& setup, const DepthSources& depth,
                                       MapOrigin origin, const ReplayReport& report) {
     auto pipeline = make_pipeline(request, setup, MapBegin::first_usable);
     if (!pipeline) return unexpected(pipeline.error());
-    auto played = play_in_order(request, setup.rig, *pipeline, depth.reader ? &*depth.reader : nullptr,
+    auto played = play_in_order(request, setup.rig, *pipeline, depth,
                                 begin_of_log(request.recording, setup.host.rig), report);
     if (!played) return unexpected(played.error());
     const OrderedOutcome& order = played->outcome;
     ReplayOutcome outcome{.progress = {order.commits, order.depth_frames.in(), order.begin, order.now},
                           .can_error = order.order_error,
-                          .depth_error = order.depth_error};
+                          .depth_errors = order.depth_errors};
     return Playback{.rig = std::move(setup.rig),
                     .pipeline = std::move(*pipeline),
                     .outcome = std::move(outcome),
@@ -305,17 +361,27 @@ Error nothing_mapped(const Playback& playback, std::string_view where_the_counte
     } else {
         const Loss& first = playback.losses.front();
         error.what += ": " + std::to_string(first.rejected) + " of " + std::to_string(first.of) + " " +
-                      first.unit + " are not used, most as " + first.reason;
+                      first.title + " are not used, most as " + first.reason;
         error.remedy = "see the warnings above";
     }
     return error;
+}
+
+/// There is at least one.
+AppError unread_depths(const std::vector<Error>& errors) {
+    AppError first = unread_depth(errors.front());
+    for (const Error& other : std::span(errors).subspan(1)) {
+        std::string& others = first.error.others;
+        others.append(others.empty() ? "" : ". ").append(other.message());
+    }
+    return first;
 }
 
 }  // namespace
 
 std::optional<AppError> failure_of(const Playback& playback, std::string_view where_the_counters_are) {
     if (const auto& failed = playback.outcome.can_error) return AppError{ExitCode::bad_data, *failed};
-    if (const auto& failed = playback.outcome.depth_error) return unread_depth(*failed);
+    if (const auto& failed = playback.outcome.depth_errors; !failed.empty()) return unread_depths(failed);
     const bool is_balanced =
         playback.pipeline.is_balanced() && std::all_of(playback.inputs.begin(), playback.inputs.end(),
                                                        [](const auto& table) { return table.is_balanced; });
@@ -337,7 +403,7 @@ std::optional<AppError> loss_of(const Playback& playback) {
     if (lost == playback.losses.end()) return std::nullopt;
     return AppError{ExitCode::failed,
                     {.code = ErrorCode::no_data,
-                     .what = "most of the " + lost->unit + " is lost (" + lost->reason + ")",
+                     .what = "most of the " + lost->title + " is lost (" + lost->reason + ")",
                      .remedy = "see the warning above for the remedy"}};
 }
 
@@ -356,14 +422,32 @@ Status<AppError> check_playable(const PlaybackRequest& request) {
     if (const auto checked = check_recording(request.recording, !request.rig.empty()); !checked)
         return unexpected(reading_error(ExitCode::no_input, checked.error()));
     const RecordingPaths& recording = request.recording;
-    for (const auto& file : {recording.can_log(), recording.meta(), recording.order(), recording.first_map(),
-                             recording.first_state(), recording.depth(), recording.depth_epoch()}) {
+    std::vector<FilePlace> files{recording.can_log(), recording.meta(), recording.order(),
+                                 recording.first_map(), recording.first_state()};
+    for (const std::string& camera : recording.cameras()) {
+        files.push_back(recording.depth(camera));
+        files.push_back(recording.depth_epoch(camera));
+    }
+    for (const FilePlace& file : files) {
         if (auto refused = refused_to_read(file)) return unexpected(std::move(*refused));
     }
     return Done{};
 }
 
 namespace {
+
+/// The errors of files that could not be opened, and of those that failed while they were read.
+void take_depth_errors(const HostRig& rig, const std::vector<DepthInput>& depths, ReplayOutcome& outcome) {
+    std::vector<Error> errors;
+    for (const DepthInput& depth : depths)
+        if (depth.error) errors.push_back(*depth.error);
+    errors.insert(errors.end(), outcome.depth_errors.begin(), outcome.depth_errors.end());
+    const bool is_named = !rig.cameras.empty() && !rig.cameras.front().name.empty();
+    const std::string remedy = is_named ? "to map without this camera, move its .oni and .epoch.yaml away"
+                                        : "to map the ranges alone, move depth.oni and depth.epoch.yaml away";
+    outcome.depth_errors.clear();
+    for (const Error& error : errors) outcome.depth_errors.push_back(with_remedy(error, remedy));
+}
 
 Result<Playback, AppError> play_robot(const PlaybackRequest& request, const ReplayReport& report) {
     const auto meta = read_meta(request.recording);
@@ -377,19 +461,19 @@ Result<Playback, AppError> play_robot(const PlaybackRequest& request, const Repl
     if (request.warn_first) {
         for (const std::string& warning : std::exchange(rig_warnings, {})) request.warn_first(warning);
     }
-    DepthInput depth = open_depth(request.recording);
+    std::vector<DepthInput> depths = open_depths(request.recording, rig);
     const auto play = is_played_in_order(request) ? play_order : play_log;
-    auto playback = play(request, *setup, depth, std::move(*origin), report);
+    auto playback = play(request, *setup, sources_of(depths), std::move(*origin), report);
     if (!playback) return playback;
-    if (depth.error) playback->outcome.depth_error = depth.error;
-    if (auto& failed = playback->outcome.depth_error)
-        failed = with_remedy(*failed, "to map the ranges alone, move depth.oni and depth.epoch.yaml away");
-    if (depth.reader) {
-        if (auto loss = depth.reader->loss()) playback->warnings.push_back(std::move(*loss));
+    take_depth_errors(rig, depths, playback->outcome);
+    for (const DepthInput& depth : depths) {
+        if (auto loss = depth.reader ? depth.reader->loss() : std::nullopt)
+            playback->warnings.push_back(std::move(*loss));
     }
     playback->warnings.insert(playback->warnings.begin(), rig_warnings.begin(), rig_warnings.end());
     playback->notes.insert(playback->notes.begin(), setup->host.notes.begin(), setup->host.notes.end());
-    find_warnings(*meta, rig, depth, *playback);
+    find_missing_frames(*meta, *playback);
+    find_missing_depth(request.recording, rig, depths, playback->warnings);
     find_contradictions(rig, *playback);
     return playback;
 }
@@ -409,9 +493,7 @@ Result<Playback, AppError> play_recording(const PlaybackRequest& request, const 
     }
     auto playback = play(request, report);
     if (!playback) return playback;
-    if (const DepthStage* stage = playback->pipeline.depth_stage())
-        playback->inputs.push_back(pixel_table(*stage));
-    find_wrong_sizes(*playback);
+    take_images(*playback);
     find_full_maps(*playback);
     find_losses(*playback);
     return playback;

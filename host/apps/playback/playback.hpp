@@ -38,8 +38,8 @@ struct PlaybackRequest {
     std::vector<MapFeed> maps = every_feed();
     std::filesystem::path rig;  ///< used in place of the recording's; empty: the recording's
     GivenRobot robot;           ///< used in place of the recording's
-    /// For a data set or an .oni file without a rig: one of tum::kDataSetCameras. Empty: the camera of the
-    /// data set's layout, or the first one.
+    /// For a data set or an .oni file: without a rig one of tum::kDataSetCameras (empty: the camera of the
+    /// data set's layout, or the first one), with a rig the name of one of its cameras (empty: its only one).
     std::string camera = {};
     /// For an .oni file on its own: the camera's pose. Empty: the rig's.
     std::optional<Eigen::Isometry3d> T_map_camera = {};

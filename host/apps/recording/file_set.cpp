@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "host/apps/recording/recording.hpp"
 #include "host/apps/recording/text_file.hpp"
 
 namespace octoskin {
@@ -18,13 +19,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kDepthFolder = RecordingPaths::kDepthFolder;
 constexpr const char* kReady = FileSet::kReadyFolder;
 constexpr const char* kBeforeFolder =
     ".before";                                ///< in the ready folder: the files that the new ones replace
 constexpr const char* kJournal = ".journal";  ///< in the ready folder: the list of steps
 constexpr const char* kJournalHead = "octoskin-file-set/1";
 constexpr const char* kNotFlushed = "cannot be flushed to the disk: ";
-constexpr std::size_t kJournalBytesMax = 16'384;  ///< a journal with each name once is shorter
+constexpr std::size_t kJournalBytesMax = 16'384;  ///< more than the files of two recordings take
+constexpr std::size_t kCameraNameMax = 32;
 
 constexpr std::array<std::string_view, 9> kRecordingFiles{"can.log",   "depth.oni",   "depth.epoch.yaml",
                                                           "rig.yaml",  "robot.urdf",  "scenario.yaml",
@@ -99,13 +102,26 @@ struct Journal {
     std::vector<fs::path> put;
 };
 
-Status<AppError> write_journal(const OpenFolder& draft, const Journal& journal) {
+std::string text_of(const Journal& journal) {
+    std::string text = std::string(kJournalHead) + '\n';
+    for (const fs::path& name : journal.drop) text += "drop " + name.string() + '\n';
+    for (const fs::path& name : journal.put) text += "put " + name.string() + '\n';
+    return text;
+}
+
+/// A longer journal than this could not be read again.
+Status<AppError> write_journal(const OpenFolder& draft, const fs::path& shown, const Journal& journal) {
+    const std::string text = text_of(journal);
+    if (text.size() > kJournalBytesMax) {
+        return cannot_create(shown, {.code = ErrorCode::limit_exceeded,
+                                     .what = "has too many files that are to be replaced or removed",
+                                     .value = std::to_string(journal.drop.size() + journal.put.size()),
+                                     .remedy = "give another directory"});
+    }
     const auto created = draft.create_new(kJournal);
     if (!created) return failed(created.error());
     std::ofstream out(created->path_for_libraries(), std::ios::binary);
-    out << kJournalHead << '\n';
-    for (const fs::path& name : journal.drop) out << "drop " << name.string() << '\n';
-    for (const fs::path& name : journal.put) out << "put " << name.string() << '\n';
+    out << text;
     out.close();
     if (!out) {
         return cannot_create(
@@ -155,18 +171,51 @@ Status<AppError> move(const OpenFolder& folder, const fs::path& from, const fs::
     return Done{};
 }
 
-/// Checks that a place is empty, or holds a file that can be replaced.
-Status<AppError> check_place(const OpenFolder& folder, const fs::path& name) {
+/// Checks that a place is empty, or holds what is `expected`.
+Status<AppError> check_kind(const OpenFolder& folder, const fs::path& name, EntryKind expected) {
     const EntryKind kind = folder.kind_of(name);
-    if (kind == EntryKind::absent || kind == EntryKind::file) return Done{};
+    if (kind == EntryKind::absent || kind == expected) return Done{};
     if (kind == EntryKind::link) {
         const auto opened = folder.open_file(name);
         if (!opened) return failed(opened.error());
     }
-    return cannot_create(folder.shown(name),
-                         {.code = ErrorCode::wrong_kind_of_file,
-                          .what = "is not a file, and a file of this name is to be written or removed",
-                          .remedy = "move it away"});
+    const std::string wanted = expected == EntryKind::folder ? "folder" : "file";
+    return cannot_create(folder.shown(name), {.code = ErrorCode::wrong_kind_of_file,
+                                              .what = "is not a " + wanted + ", and a " + wanted +
+                                                      " of this name is to be written or removed",
+                                              .remedy = "move it away"});
+}
+
+bool is_in_depth_folder(const fs::path& name) {
+    return name.parent_path() == kDepthFolder;
+}
+
+/// Checks that a place is empty, or holds a file that can be replaced, or the folder of depth frames.
+Status<AppError> check_place(const OpenFolder& folder, const fs::path& name) {
+    if (name == kDepthFolder) return check_kind(folder, name, EntryKind::folder);
+    if (is_in_depth_folder(name)) {
+        if (const auto checked = check_kind(folder, kDepthFolder, EntryKind::folder); !checked)
+            return checked;
+    }
+    return check_kind(folder, name, EntryKind::file);
+}
+
+bool is_any_in_depth_folder(const std::vector<fs::path>& names) {
+    return std::any_of(names.begin(), names.end(), is_in_depth_folder);
+}
+
+/// No error if it exists.
+Status<AppError> make_folder(const OpenFolder& folder, const fs::path& name) {
+    const auto made = folder.make_folder(name);
+    if (!made && made.error().fault != FolderFault::is_there) return failed(made.error());
+    return Done{};
+}
+
+/// Flushes the list of the files in a folder below `folder`.
+Status<AppError> flush_folder(const OpenFolder& folder, const fs::path& name) {
+    const auto opened = folder.open_folder(name);
+    if (!opened) return failed(opened.error());
+    return flush(*opened);
 }
 
 /// The steps from the ready folder to the final places. Each step checks the present state, so that the whole
@@ -196,8 +245,12 @@ class Move {
         for (const fs::path& name : journal_.put) {
             if (!is_there(folder_, ready(name))) continue;
             if (const auto kept = keep(name, Keep::linked); !kept) return kept;
+            if (is_in_depth_folder(name)) {
+                if (const auto made = make_folder(folder_, kDepthFolder); !made) return made;
+            }
             if (const auto moved = move(folder_, ready(name), name); !moved) return moved;
         }
+        if (const auto settled = settle_depth_folder(); !settled) return settled;
         return flush(folder_);
     }
 
@@ -214,6 +267,7 @@ class Move {
             if (!is_there(folder_, former(name))) continue;
             if (const auto moved = move(folder_, former(name), name); !moved) return moved;
         }
+        remove_depth_folder_if_empty();
         return Done{};
     }
 
@@ -259,11 +313,23 @@ class Move {
         return move(folder_, name, former(name));
     }
 
+    [[nodiscard]] bool concerns_depth_folder() const {
+        return is_any_in_depth_folder(journal_.drop) || is_any_in_depth_folder(journal_.put);
+    }
+    void remove_depth_folder_if_empty() const {
+        if (concerns_depth_folder()) static_cast<void>(folder_.remove_empty(kDepthFolder));
+    }
+    /// Removed if it is empty, else flushed.
+    [[nodiscard]] Status<AppError> settle_depth_folder() const {
+        remove_depth_folder_if_empty();
+        if (!concerns_depth_folder() || !is_there(folder_, kDepthFolder)) return Done{};
+        return flush_folder(folder_, kDepthFolder);
+    }
+
     Status<AppError> make_former_folders(const fs::path& name) const {
         fs::path folder = fs::path(kReady) / kBeforeFolder;
         for (const fs::path& part : name) {
-            const auto made = folder_.make_folder(folder);
-            if (!made && made.error().fault != FolderFault::is_there) return failed(made.error());
+            if (const auto made = make_folder(folder_, folder); !made) return made;
             folder /= part;
         }
         return Done{};
@@ -382,9 +448,12 @@ Status<AppError> FileSet::commit(const std::vector<fs::path>& files, const std::
         if (const auto checked = check_places(folder_, names); !checked) return checked;
     }
     const Journal journal{retired, files};
-    if (const auto written = write_journal(draft_, journal); !written) return written;
+    if (const auto written = write_journal(draft_, folder_.shown(), journal); !written) return written;
     for (const fs::path& file : files) {
         if (const auto flushed = flush(draft_, file); !flushed) return flushed;
+    }
+    if (is_any_in_depth_folder(files)) {
+        if (const auto flushed = flush_folder(draft_, kDepthFolder); !flushed) return flushed;
     }
     if (const auto flushed = flush(draft_, kJournal); !flushed) return flushed;
     if (const auto flushed = flush(draft_); !flushed) return flushed;
@@ -422,14 +491,35 @@ bool is_scene_mesh(std::string_view name) {
            std::all_of(name.begin() + kDot + 1, name.end(), is_small);
 }
 
+bool is_camera_name(std::string_view name) {
+    constexpr std::string_view kMarks = "_.-";
+    const auto is_letter = [&](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               kMarks.find(c) != std::string_view::npos;
+    };
+    return !name.empty() && name.size() <= kCameraNameMax && name.front() != '.' && name.front() != '-' &&
+           name.find("..") == std::string_view::npos && std::all_of(name.begin(), name.end(), is_letter);
+}
+
+std::string camera_of_file(std::string_view name) {
+    for (const std::string_view ending : {".oni", ".epoch.yaml"}) {
+        if (!name.ends_with(ending)) continue;
+        const std::string_view camera = name.substr(0, name.size() - ending.size());
+        if (is_camera_name(camera)) return std::string(camera);
+    }
+    return {};
+}
+
 bool is_file_of_set(const fs::path& name) {
     const std::string text = name.string();
     const auto is_in = [](const auto& list, std::string_view one) {
         return std::find(list.begin(), list.end(), one) != list.end();
     };
     constexpr std::string_view kMaps = "maps/";
+    constexpr std::string_view kDepth = "depth/";
     return is_in(kRecordingFiles, text) || is_scene_mesh(text) || is_in(kMapFiles, text) ||
-           (text.starts_with(kMaps) && is_in(kMapFiles, std::string_view(text).substr(kMaps.size())));
+           (text.starts_with(kMaps) && is_in(kMapFiles, std::string_view(text).substr(kMaps.size()))) ||
+           (text.starts_with(kDepth) && !camera_of_file(text.substr(kDepth.size())).empty());
 }
 
 Result<bool, AppError> settle_file_set(const OpenFolder& folder) {

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/result.hpp"
@@ -21,7 +23,8 @@ inline constexpr const char* kDaemonsSnapshot = "fused.snapshot";
 /// and renames that folder, which is the decisive step; then it moves file after file. An error undoes the
 /// moves. If the process dies, the next writer of the folder, or the next daemon, completes the moves;
 /// readers refuse the folder meanwhile. No daemon starts there while files are moved. Everything happens
-/// below one descriptor, without following links, and only with names of a fixed list.
+/// below one descriptor, without following links, and only with names that is_file_of_set() accepts. The
+/// folder of the depth frames of named cameras is created and removed with its files.
 class FileSet {
   public:
     /// Creates `folder` if it does not exist, locks it against other octoskin processes, completes or removes
@@ -48,8 +51,8 @@ class FileSet {
     [[nodiscard]] Status<AppError> commit(const std::vector<std::filesystem::path>& files,
                                           const std::vector<std::filesystem::path>& retired);
 
-    /// Checks that each of `names` is free, or a file that commit() can replace. Error (cannot_create): the
-    /// obstacle.
+    /// Checks that each of `names` is free, or a file that commit() can replace; for the folder of depth
+    /// frames and its files, that this is a folder if it exists. Error (cannot_create): the obstacle.
     [[nodiscard]] static Status<AppError> check_places(const OpenFolder& folder,
                                                        const std::vector<std::filesystem::path>& names);
 
@@ -74,8 +77,13 @@ class FileSet {
 /// Whether a recording uses this name for a mesh of its world: mesh_01.stl.
 [[nodiscard]] bool is_scene_mesh(std::string_view name);
 
-/// Whether octoskin may write this name into a folder or remove it: a recording's files, and maps, also in
-/// "maps/".
+/// Whether a rig's camera can have this name, and files can be named after it.
+[[nodiscard]] bool is_camera_name(std::string_view name);
+/// "left" for "left.oni" and "left.epoch.yaml", names in the folder of depth frames. Empty: not such a name.
+[[nodiscard]] std::string camera_of_file(std::string_view name);
+
+/// Whether octoskin may write this name into a folder or remove it: a recording's files, also those in
+/// "depth/", and maps, also in "maps/".
 [[nodiscard]] bool is_file_of_set(const std::filesystem::path& name);
 
 /// Completes the remains of a process that was killed while it moved files into place; true if there were

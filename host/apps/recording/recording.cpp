@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <fstream>
+#include <set>
 #include <utility>
 
 #include "host/apps/recording/file_set.hpp"
@@ -60,18 +61,42 @@ Status<Error> check_folder(const RecordingPaths& recording) {
     return failure(recording.directory, to_error(folder.error()));
 }
 
-/// Checks that only regular files are at the names of files.
+Status<Error> check_kind(const FilePlace& place, EntryKind expected) {
+    const EntryKind kind = place.kind();
+    if (kind == EntryKind::absent || kind == expected) return Done{};
+    const auto opened = place.open();
+    if (!opened && opened.error().fault == FolderFault::link) return failure(opened.error());
+    const bool is_file = expected == EntryKind::file;
+    return failure(place.shown(),
+                   {.code = ErrorCode::wrong_kind_of_file,
+                    .what = is_file ? "is not a regular file" : "is not a folder",
+                    .remedy = is_file ? "move it away, or put the recorded file there"
+                                      : "move it away, or put the folder of the cameras' files there"});
+}
+
+/// Checks that only regular files are at the names of files, and a folder at that of the cameras' files.
 Status<Error> check_kinds(const RecordingPaths& recording) {
+    const FilePlace depth = recording.file(RecordingPaths::kDepthFolder);
+    if (const auto checked = check_kind(depth, EntryKind::folder); !checked) return checked;
     for (const FilePlace& file : recording.files()) {
-        const EntryKind kind = file.kind();
-        if (kind == EntryKind::absent || kind == EntryKind::file) continue;
-        const auto opened = file.open();
-        if (!opened && opened.error().fault == FolderFault::link) return failure(opened.error());
-        return failure(file.shown(), {.code = ErrorCode::wrong_kind_of_file,
-                                      .what = "is not a regular file",
-                                      .remedy = "move it away, or put the recorded file there"});
+        if (const auto checked = check_kind(file, EntryKind::file); !checked) return checked;
     }
     return Done{};
+}
+
+/// Checks that the camera has both of its files, or none.
+Status<Error> check_depth(const RecordingPaths& recording, const std::string& camera) {
+    const FilePlace oni = recording.depth(camera);
+    const FilePlace epoch = recording.depth_epoch(camera);
+    const bool has_depth = oni.is_there();
+    if (has_depth == epoch.is_there()) return Done{};
+    const FilePlace& missing = has_depth ? epoch : oni;
+    const FilePlace& lonely = has_depth ? oni : epoch;
+    const std::string rest = camera.empty() ? "the ranges alone" : "without this camera";
+    return failure(missing.shown(),
+                   {.code = ErrorCode::not_found,
+                    .what = "no such file, but " + lonely.name().string() + " exists",
+                    .remedy = "put it there, too, or move the other file away to map " + rest});
 }
 
 void write_source(YAML::Emitter& out, const std::string& key, const SourceFile& source) {
@@ -119,8 +144,31 @@ std::vector<FilePlace> RecordingPaths::files() const {
     std::vector<FilePlace> files{can_log(),  depth(),   depth_epoch(), rig(),         robot(),
                                  order(),    mapping(), first_map(),   first_state(), last_map(),
                                  scenario(), world(),   motion(),      meta()};
+    for (const std::string& camera : cameras()) {
+        if (camera.empty()) continue;
+        files.push_back(depth(camera));
+        files.push_back(depth_epoch(camera));
+    }
     for (FilePlace& mesh : meshes()) files.push_back(std::move(mesh));
     return files;
+}
+
+std::string RecordingPaths::depth_name(std::string_view camera, std::string_view ending) {
+    std::string name = kDepthFolder;
+    if (!camera.empty()) name.append("/").append(camera);
+    return name.append(ending);
+}
+
+std::vector<std::string> RecordingPaths::cameras() const {
+    std::set<std::string> cameras;
+    if (depth().is_there() || depth_epoch().is_there()) cameras.emplace();
+    const auto opened = file(kDepthFolder).open_folder();
+    const auto names = opened ? opened->names() : unexpected(opened.error());
+    if (names) {
+        for (const std::string& name : *names)
+            if (std::string camera = camera_of_file(name); !camera.empty()) cameras.insert(std::move(camera));
+    }
+    return {cameras.begin(), cameras.end()};
 }
 
 std::vector<FilePlace> RecordingPaths::meshes() const {
@@ -188,14 +236,8 @@ Status<Error> check_recording(const RecordingPaths& recording, bool is_rig_given
         if (is_rig_given && file == recording.rig()) continue;
         if (!file.is_there()) return failure(file.shown(), missing_file(remedy));
     }
-    const bool has_depth = recording.depth().is_there();
-    if (has_depth != recording.depth_epoch().is_there()) {
-        const auto missing = has_depth ? recording.depth_epoch() : recording.depth();
-        const auto lonely = has_depth ? recording.depth() : recording.depth_epoch();
-        return failure(missing.shown(),
-                       {.code = ErrorCode::not_found,
-                        .what = "no such file, but " + lonely.filename() + " exists",
-                        .remedy = "put it there, too, or move the other file away to map the ranges alone"});
+    for (const std::string& camera : recording.cameras()) {
+        if (const auto checked = check_depth(recording, camera); !checked) return checked;
     }
     return Done{};
 }

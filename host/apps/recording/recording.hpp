@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/result.hpp"
@@ -27,8 +28,18 @@ struct RecordingPaths {
     explicit RecordingPaths(OpenFolder opened) : directory(opened.shown()), folder(std::move(opened)) {}
 
     [[nodiscard]] FilePlace can_log() const { return file("can.log"); }
-    [[nodiscard]] FilePlace depth() const { return file("depth.oni"); }
-    [[nodiscard]] FilePlace depth_epoch() const { return file("depth.epoch.yaml"); }
+    /// Of the camera with this name: depth/NAME.oni; of a rig's only camera, without a name: depth.oni.
+    [[nodiscard]] FilePlace depth(std::string_view camera = {}) const {
+        return file(depth_name(camera, ".oni"));
+    }
+    [[nodiscard]] FilePlace depth_epoch(std::string_view camera = {}) const {
+        return file(depth_name(camera, ".epoch.yaml"));
+    }
+    /// The folder of the depth frames of named cameras.
+    static constexpr const char* kDepthFolder = "depth";
+    /// The names of the cameras with one of both files, sorted; "" for depth.oni. Other names in kDepthFolder
+    /// are ignored.
+    [[nodiscard]] std::vector<std::string> cameras() const;
     [[nodiscard]] FilePlace rig() const { return file("rig.yaml"); }
     [[nodiscard]] FilePlace robot() const { return file("robot.urdf"); }
     /// In a daemon's recording: the order of the map's updates, the mapping profile, and the map before and
@@ -51,6 +62,9 @@ struct RecordingPaths {
     [[nodiscard]] std::vector<FilePlace> files() const;
 
     [[nodiscard]] FilePlace file(const std::string& name) const { return {folder, name}; }
+
+    /// "depth.oni", or "depth/left.oni" of the camera `left`.
+    [[nodiscard]] static std::string depth_name(std::string_view camera, std::string_view ending);
 
     std::filesystem::path directory;  ///< as named by the user: for messages and provenance
     NamedFolder folder;
@@ -82,9 +96,10 @@ struct RecordingMeta {
 
 /// That `directory` holds every file a recording must have (docs/reference/recording-folder.md); names the
 /// one that is missing, and what to put there. rig.yaml may be missing if another one `is_rig_given`; a
-/// recording without a camera has neither depth.oni nor its sidecar. The robot is not looked for: the rig
-/// names it. Refuses a link, pipe, folder or device in the place of any file that a recording may have, and a
-/// recording that a killed process left half moved, with what finishes it. Writes nothing.
+/// recording without a camera has neither depth.oni nor its sidecar, and so with each named camera. The robot
+/// is not looked for: the rig names it. Refuses a link, pipe, folder or device in the place of any file that
+/// a recording may have, and a recording that a killed process left half moved, with what finishes it. Writes
+/// nothing.
 [[nodiscard]] Status<Error> check_recording(const RecordingPaths& recording, bool is_rig_given = false);
 
 }  // namespace octoskin

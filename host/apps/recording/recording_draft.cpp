@@ -10,10 +10,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Of the named ones.
+std::vector<FilePlace> files_of_cameras(const RecordingPaths& paths) {
+    std::vector<FilePlace> files;
+    for (const std::string& camera : paths.cameras()) {
+        if (camera.empty()) continue;
+        files.push_back(paths.depth(camera));
+        files.push_back(paths.depth_epoch(camera));
+    }
+    return files;
+}
+
 /// meta.yaml is the last.
 std::vector<FilePlace> files_of(const RecordingPaths& paths) {
     std::vector<FilePlace> files{paths.can_log(), paths.depth(),    paths.depth_epoch(), paths.rig(),
                                  paths.robot(),   paths.scenario(), paths.world(),       paths.motion()};
+    for (FilePlace& file : files_of_cameras(paths)) files.push_back(std::move(file));
     for (FilePlace& mesh : paths.meshes()) files.push_back(std::move(mesh));
     files.push_back(paths.meta());
     return files;
@@ -62,6 +74,7 @@ std::vector<fs::path> maps_of_recording() {
 /// All names that commit() may write or remove.
 std::vector<fs::path> places_of(const RecordingPaths& paths) {
     std::vector<fs::path> places = maps_of_recording();
+    places.emplace_back(RecordingPaths::kDepthFolder);
     for (const FilePlace& file : files_of(paths)) places.push_back(file.name());
     return places;
 }
@@ -119,10 +132,14 @@ Result<RecordingDraft, AppError> RecordingDraft::create(const FilePlace& named, 
 Status<AppError> RecordingDraft::commit() {
     std::vector<fs::path> files;
     std::vector<fs::path> retired;
-    for (const FilePlace& file : files_of(draft_))
-        (file.is_there() ? files : retired).push_back(file.filename());
-    for (const FilePlace& mesh : final_.meshes()) {  // belongs to another world
-        if (std::find(files.begin(), files.end(), mesh.name()) == files.end()) retired.push_back(mesh.name());
+    for (const FilePlace& file : files_of(draft_)) (file.is_there() ? files : retired).push_back(file.name());
+    // Those of another world, and of other cameras.
+    std::vector<FilePlace> former = final_.meshes();
+    for (FilePlace& file : files_of_cameras(final_)) former.push_back(std::move(file));
+    for (const FilePlace& file : former) {
+        const bool is_replaced = std::find(files.begin(), files.end(), file.name()) != files.end();
+        const bool is_known = std::find(retired.begin(), retired.end(), file.name()) != retired.end();
+        if (!is_replaced && !is_known) retired.push_back(file.name());
     }
     // create() has checked that an existing recording is a simulated one. Without a recording, the maps here
     // may be the user's own.

@@ -11,6 +11,7 @@
 #include "host/apps/robot/svg_view.hpp"
 #include "host/core/body_fit/bounding_box.hpp"
 #include "host/core/kinematics/self_hit.hpp"
+#include "host/core/rig/camera_text.hpp"
 #include "host/core/text/markup.hpp"
 #include "host/core/text/printable.hpp"
 
@@ -33,11 +34,16 @@ struct DrawnSensor {
     std::vector<Points> beams;  ///< a line, or the outline of a cone's end
 };
 
+struct DrawnCamera {
+    std::string name;  ///< empty: the only one
+    std::vector<Points> lines;
+};
+
 /// Everything in the base frame.
 struct Drawing {
     std::vector<PosedCapsule> arm;
     std::vector<DrawnSensor> sensors;
-    std::vector<Points> camera;  ///< lines
+    std::vector<DrawnCamera> cameras;
     Eigen::AlignedBox3d box;
 };
 
@@ -91,12 +97,13 @@ Drawing drawing_of(const HostSetup& setup, std::span<const double> position) {
             drawing.sensors.push_back(std::move(drawn));
         }
     }
-    if (const auto& camera = setup.rig.camera) {
-        const auto link = setup.robot.find_link(camera->link);
-        drawing.camera = pyramid_of(*camera, T_base_link[link.value_or(0)] * camera->T_link_camera);
+    for (const HostCamera& camera : setup.rig.cameras) {
+        const auto link = setup.robot.find_link(camera.link);
+        drawing.cameras.push_back(
+            {camera.name, pyramid_of(camera, T_base_link[link.value_or(0)] * camera.T_link_camera)});
+        for (const Points& line : drawing.cameras.back().lines)
+            for (const Eigen::Vector3d& point : line) drawing.box.extend(point);
     }
-    for (const Points& line : drawing.camera)
-        for (const Eigen::Vector3d& point : line) drawing.box.extend(point);
     return drawing;
 }
 
@@ -121,6 +128,13 @@ std::string sensor_of(const SvgView& view, const DrawnSensor& sensor) {
                               at.substr(comma + 1));
 }
 
+std::string camera_of(const SvgView& view, const DrawnCamera& camera) {
+    std::string lines;
+    for (const Points& line : camera.lines) lines += line_of(view, "camera", line);
+    if (camera.name.empty()) return lines;
+    return fmt::format("<g><title>{}</title>\n{}</g>\n", escaped(camera_text(printable(camera.name))), lines);
+}
+
 std::string panel_of(const Drawing& drawing, const ViewAxes& axes, double x_px) {
     const SvgView view(drawing.box, axes, kSide_px, x_px, kHead_px);
     std::string text = fmt::format("<text x=\"{:.0f}\" y=\"40\">{}</text>\n", x_px + 8.0, axes.name);
@@ -128,7 +142,7 @@ std::string panel_of(const Drawing& drawing, const ViewAxes& axes, double x_px) 
          {Eigen::Vector3d::Unit(axes.right).eval(), Eigen::Vector3d::Unit(axes.up).eval()})
         text += line_of(view, "grid", {Eigen::Vector3d::Zero(), kGrid_m * direction});
     for (const PosedCapsule& capsule : drawing.arm) text += view.capsule("arm", capsule);
-    for (const Points& line : drawing.camera) text += line_of(view, "camera", line);
+    for (const DrawnCamera& camera : drawing.cameras) text += camera_of(view, camera);
     for (const DrawnSensor& sensor : drawing.sensors) text += sensor_of(view, sensor);
     return text;
 }
@@ -155,9 +169,10 @@ std::string rig_picture(const HostSetup& setup, std::span<const double> position
         "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
         "<text x=\"8\" y=\"18\">{2}: {3} sensors, {4} capsules; black lines: 0.5 m from {5}'s origin; "
         "dashed: "
-        "the camera's view</text>\n{6}</svg>\n",
+        "{7}</text>\n{6}</svg>\n",
         3.0 * kSide_px, kHead_px + kSide_px, escaped(printable(setup.rig.name)), drawing.sensors.size(),
-        drawing.arm.size(), escaped(printable(setup.robot.link_names().front())), panels);
+        drawing.arm.size(), escaped(printable(setup.robot.link_names().front())), panels,
+        drawing.cameras.size() > 1 ? "the cameras' views" : "the camera's view");
 }
 
 }  // namespace octoskin

@@ -20,7 +20,7 @@ std::string to_text(const CounterTable& table) {
         rejected += row.count;
     }
     std::ostringstream text;
-    text << std::left << std::setw(22) << table.unit << std::right << std::setw(10) << table.in
+    text << std::left << std::setw(22) << table.title() << std::right << std::setw(10) << table.in
          << " in = " << table.used << " used + " << rejected << " rejected";
     if (table.pending > 0) {
         text << " + " << table.pending << " pending";

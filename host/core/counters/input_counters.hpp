@@ -76,12 +76,16 @@ struct CounterTable {
         std::uint64_t count = 0;
         std::string first = {};  ///< place of the first rejection as text; empty: not known
     };
-    std::string unit;  ///< what is counted: "frames", "readings"
+    std::string unit;     ///< what is counted: "frames", "readings"
+    std::string of = {};  ///< the camera's name, if each of several has a table of this unit
     std::uint64_t in = 0;
     std::uint64_t used = 0;
     std::uint64_t pending = 0;
     std::vector<Row> rejected;  ///< all reasons in the order of the enumeration, also those with a count of 0
     bool is_balanced = false;
+
+    /// "depth frames", "depth frames of left".
+    [[nodiscard]] std::string title() const { return of.empty() ? unit : unit + " of " + of; }
 };
 
 template <class Reject>

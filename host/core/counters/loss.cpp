@@ -34,8 +34,8 @@ Share share_of(const CounterTable& table, Cause cause) {
 std::optional<Loss> most_of(const CounterTable& table, Cause cause, std::uint64_t of) {
     const Share share = share_of(table, cause);
     if (2 * share.rejected <= of) return std::nullopt;
-    return Loss{table.unit,        share.rejected,   of, cause == Cause::mendable, share.most->name,
-                share.most->count, share.most->first};
+    return Loss{table.title(),    table.unit,        share.rejected,   of, cause == Cause::mendable,
+                share.most->name, share.most->count, share.most->first};
 }
 
 }  // namespace
@@ -62,15 +62,16 @@ std::optional<Loss> most_frequent(const CounterTable& table) {
     if (most == table.rejected.end() || most->count == 0) return std::nullopt;
     std::uint64_t rejected = 0;
     for (const CounterTable::Row& row : table.rejected) rejected += row.count;
-    return Loss{table.unit, rejected,    table.in,   cause_of(table.unit, *most) == Cause::mendable,
-                most->name, most->count, most->first};
+    return Loss{
+        table.title(), table.unit,  rejected,   table.in, cause_of(table.unit, *most) == Cause::mendable,
+        most->name,    most->count, most->first};
 }
 
 std::string describe(const Loss& loss) {
     const CounterMeaning* const meaning = find_counter(loss.unit, loss.reason);
     const std::string at = loss.first.empty() ? "" : ", the first at " + loss.first;
     std::string text =
-        fmt::format("{}: {} of {} are {}, most as {} ({}{})", loss.unit, loss.rejected, loss.of,
+        fmt::format("{}: {} of {} are {}, most as {} ({}{})", loss.title, loss.rejected, loss.of,
                     loss.is_mendable ? "lost" : "not used", loss.reason, loss.count, at);
     if (meaning == nullptr) return text;
     return fmt::format("{}: {}.{}", text, meaning->text, remedy_sentence(loss.unit, loss.reason));

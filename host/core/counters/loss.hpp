@@ -12,6 +12,7 @@ namespace octoskin {
 
 /// More than half of an input was rejected.
 struct Loss {
+    std::string title;           ///< CounterTable::title()
     std::string unit;            ///< "readings"
     std::uint64_t rejected = 0;  ///< of `of`
     std::uint64_t of = 0;

@@ -65,9 +65,9 @@ std::vector<std::size_t> sensors_of_nodes(const HostRig& rig) {
 
 }  // namespace
 
-CrossCheck::CrossCheck(const HostRig& rig, const CrossCheckConfig& config)
+CrossCheck::CrossCheck(const HostRig& rig, const CrossCheckConfig& config, std::size_t camera)
     : config_(config),
-      camera_(rig.camera.value().intrinsics),
+      camera_(rig.cameras.at(camera).intrinsics),
       ray_slope_max_(LensInverse(camera_.lens).radius()),
       judge_(sensors_of_nodes(rig), rig.joint_names().size()) {
     assert(0.0 < config.contradicted_sound && config.contradicted_sound < config.contradicted_faulty &&

@@ -1,4 +1,4 @@
-// Cross-check of the range sensors against the depth camera. Finds two sensors exchanged at the harness, a
+// Cross-check of the range sensors against one depth camera. Finds two sensors exchanged at the harness, a
 // wrong pose in the rig, ranges with an offset, and a stuck sensor. None of these shows on I2C or CAN, but
 // the camera shows surfaces and free space.
 #pragma once
@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -66,8 +67,10 @@ struct SensorEvidence {
 };
 
 /// "camera: its pose in the rig or its depth scale is wrong: ...", "joint panda_joint4: ...", "camera or
-/// joint panda_joint1: ..." with the remedy, for people. `joints`: the rig's, in its order.
-[[nodiscard]] std::string describe(const PoseFault& fault, std::span<const std::string> joints);
+/// joint panda_joint1: ..." with the remedy, for people. `joints`: the rig's, in its order. `camera`: the
+/// name of the camera, if the rig has several.
+[[nodiscard]] std::string describe(const PoseFault& fault, std::span<const std::string> joints,
+                                   std::string_view camera = {});
 
 /// Images of one instant, all of the same size. Their memory is swapped in and out.
 struct SeenImages {
@@ -77,7 +80,8 @@ struct SeenImages {
 };
 
 /// "contradicts the camera: ..." with the remedy and the number of contradicting ranges, for people.
-[[nodiscard]] std::string describe(const SensorEvidence& evidence);
+/// `camera`: the name of the camera, if the rig has several.
+[[nodiscard]] std::string describe(const SensorEvidence& evidence, std::string_view camera = {});
 /// "ranges_too_long", ...
 [[nodiscard]] const char* name(RangeFault fault);
 /// "too_few_comparisons", ...
@@ -87,8 +91,8 @@ struct SeenImages {
 
 class CrossCheck {
   public:
-    /// The rig must have a camera.
-    CrossCheck(const HostRig& rig, const CrossCheckConfig& config);
+    /// Against the rig's camera with this index (asserted).
+    CrossCheck(const HostRig& rig, const CrossCheckConfig& config, std::size_t camera = 0);
 
     /// A beam with its sensor's pose and motion with each joint, map frame. The newest ones of each sensor
     /// are stored. Compares one waiting beam: 0.05 to 0.2 ms if there is one, otherwise 0.1 us.

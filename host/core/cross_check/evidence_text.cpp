@@ -4,6 +4,7 @@
 #include <string>
 
 #include "host/core/cross_check/cross_check.hpp"
+#include "host/core/rig/camera_text.hpp"
 
 namespace octoskin {
 
@@ -37,6 +38,8 @@ const char* name(SensorDoubt doubt) {
             return "several_contradict";
         case SensorDoubt::joint_is_off:
             return "joint_is_off";
+        case SensorDoubt::cameras_disagree:
+            return "cameras_disagree";
     }
     return "unknown";
 }
@@ -93,27 +96,28 @@ std::string describe_error(const JointError& error) {
 
 /// Ranges that agree are not listed: a sensor with an offset of 6 cm has many of them, also shortly before it
 /// is cleared.
-std::string describe(const SensorEvidence& evidence) {
-    std::string text = "contradicts the camera: " + describe_fault(evidence);
+std::string describe(const SensorEvidence& evidence, std::string_view camera) {
+    std::string text = "contradicts the " + camera_text(camera) + ": " + describe_fault(evidence);
     if (evidence.in_free_space + evidence.behind_surface == 0) return text;
     return text + " (" + std::to_string(evidence.in_free_space) +
            " of its ranges end where the camera sees free space, " + std::to_string(evidence.behind_surface) +
            " behind a surface)";
 }
 
-std::string describe(const PoseFault& fault, std::span<const std::string> joints) {
+std::string describe(const PoseFault& fault, std::span<const std::string> joints, std::string_view camera) {
+    const std::string named = camera_text(camera);
     const std::string explains =
         ": that explains the contradictions of " + std::to_string(fault.explained) + " sensors (estimate: ";
     const std::string see = " (docs/concepts/cross-check.md)";
     if (!fault.joint)
-        return "camera: its pose in the rig or its depth scale is wrong" + explains +
+        return named + ": its pose in the rig or its depth scale is wrong" + explains +
                describe_error(*fault.camera) + "): measure the camera's pose again" + see;
     const std::string joint = "joint " + joints[fault.joint->joint];
     if (!fault.camera)
         return joint + ": its position differs from its joint states" + explains +
                describe_error(*fault.joint) +
                "): compare the arm's posture with its joint states, and set the joint's zero again" + see;
-    return "camera or " + joint + ": one of them has a wrong pose; which one is not known" + explains +
+    return named + " or " + joint + ": one of them has a wrong pose; which one is not known" + explains +
            describe_error(*fault.joint) + ", or the camera " + describe_error(*fault.camera) +
            "). Compare the arm's posture with its joint states first; otherwise measure the camera's pose "
            "again" +

@@ -36,6 +36,7 @@ enum class SensorDoubt : std::uint8_t {
     camera_is_off,        ///< an error of the camera is reported, or likely
     several_contradict,   ///< more than two sensors contradict the camera
     joint_is_off,         ///< an offset of a joint is reported (alone or beside the camera), or likely
+    cameras_disagree,     ///< it contradicts one camera and agrees with another
 };
 
 /// One range with the camera's predictions at its time.

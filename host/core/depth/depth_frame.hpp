@@ -31,6 +31,7 @@ struct DepthFrame {
     std::vector<std::uint16_t> depth_mm;
     /// Pose of the optical frame of a moving camera at the capture time. Empty: the pose of the rig.
     std::optional<Eigen::Isometry3d> T_map_camera = std::nullopt;
+    std::uint8_t camera = 0;  ///< index in HostRig::cameras
 };
 
 /// Depth along the optical axis in metres, height x width row-major; NaN = no value. Input and output of

@@ -1,8 +1,9 @@
-// What the depth camera's earlier images have left for the next ones, apart from the map.
+// What a depth camera's earlier images have left for the next ones, apart from the map.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "host/core/depth/depth_denoiser.hpp"
@@ -18,6 +19,7 @@ struct CameraMemory {
         EndMemory::End end;
         friend bool operator==(const Pixel&, const Pixel&) = default;
     };
+    std::string name = {};  ///< of the camera in the rig; empty: the only one
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     Eigen::Isometry3d T_map_camera = Eigen::Isometry3d::Identity();  ///< of that image

@@ -1,7 +1,7 @@
 // The complete state on which later maps depend, given the same joint samples, readings and images.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "host/core/mapping/camera_memory.hpp"
 #include "host/core/mapping/fused_map.hpp"
@@ -15,7 +15,7 @@ namespace octoskin {
 struct MapState {
     FusedMap map;
     SensorHistories histories;
-    std::optional<CameraMemory> camera = {};  ///< empty: no image yet, or the mapping needs none
+    std::vector<CameraMemory> cameras = {};  ///< of those with an image so far, if the mapping needs it
 };
 
 }  // namespace octoskin

@@ -68,13 +68,13 @@ struct MappingConfig {
     /// Maximum number of voxels in the box around one image's rays (1 byte each with `paper`, 8 with
     /// `robust`); an image with a larger box is refused.
     std::uint32_t depth_box_voxels_max = 1U << 26U;
+    static constexpr double kUsualDepth_m = 2.5;
     /// True if the camera's images lose their noise before they become rays.
     [[nodiscard]] bool removes_camera_noise() const noexcept {
         return depth_update == DepthUpdate::denoised || depth_filter.is_enabled;
     }
     /// The camera's noise, metres; of a noise law at a depth of 2.5 m.
     [[nodiscard]] double camera_sigma_m() const noexcept {
-        constexpr double kUsualDepth_m = 2.5;
         return depth_update == DepthUpdate::denoised ? depth_denoiser.noise.sigma_m(kUsualDepth_m)
                                                      : depth_filter.sigma_m;
     }

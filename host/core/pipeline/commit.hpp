@@ -16,10 +16,11 @@
 
 namespace octoskin {
 
-/// A depth frame without its pixels, which are in a recording of depth frames.
+/// A depth frame without its pixels, which are in a recording of its camera's depth frames.
 struct DepthCommit {
     std::optional<std::uint64_t> index;  ///< its index in that recording, from 0; empty: not recorded
     HostTime captured;
+    std::uint8_t camera = 0;  ///< index in HostRig::cameras
     friend bool operator==(const DepthCommit&, const DepthCommit&) = default;
 };
 

@@ -39,21 +39,30 @@ DepthFilterConfig filter_of(const MappingConfig& config) {
 
 }  // namespace
 
-DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads, bool finds_certain)
-    : camera_(rig.camera.value()),
-      config_(config),
+MappingConfig mapping_of(const HostCamera& camera, MappingConfig config) {
+    if (!camera.noise) return config;
+    config.depth_denoiser.noise = *camera.noise;
+    if (config.depth_update != DepthUpdate::denoised)
+        config.depth_filter.sigma_m = camera.noise->sigma_m(MappingConfig::kUsualDepth_m);
+    return config;
+}
+
+DepthStage::DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads, bool finds_certain,
+                       std::size_t camera)
+    : camera_(rig.cameras.at(camera)),
+      config_(mapping_of(camera_, config)),
       self_margin_m_(rig.depth_self_margin_m),
       T_map_base_(rig.T_map_base),
       T_map_camera_(rig.T_map_base * camera_.T_link_camera),
-      filter_(filter_of(config)),
-      integrator_(config, camera_.intrinsics, threads) {
-    if (config.depth_update == DepthUpdate::denoised) {
-        denoiser_.emplace(config.depth_denoiser, camera_.intrinsics);
+      filter_(filter_of(config_)),
+      integrator_(config_, camera_.intrinsics, threads) {
+    if (config_.depth_update == DepthUpdate::denoised) {
+        denoiser_.emplace(config_.depth_denoiser, camera_.intrinsics);
         ends_ = EndMemory(std::size_t{camera_.intrinsics.width} * camera_.intrinsics.height);
     }
     if (finds_certain)
-        certain_.emplace(camera_.intrinsics, CertaintyConfig{.camera_sigma_m = config.camera_sigma_m(),
-                                                             .is_filtered = config.removes_camera_noise()});
+        certain_.emplace(camera_.intrinsics, CertaintyConfig{.camera_sigma_m = config_.camera_sigma_m(),
+                                                             .is_filtered = config_.removes_camera_noise()});
 }
 
 std::uint64_t DepthStage::take_robot_out(DepthImage& image, const RobotPose& robot,
@@ -107,7 +116,8 @@ void DepthStage::keep(const DepthFrame& frame) {
 
 std::optional<CameraMemory> DepthStage::memory() const {
     if (!denoiser_ || !T_map_camera_before_) return std::nullopt;
-    CameraMemory memory{.width = denoiser_->width(),
+    CameraMemory memory{.name = camera_.name,
+                        .width = denoiser_->width(),
                         .height = denoiser_->height(),
                         .T_map_camera = *T_map_camera_before_,
                         .pixels = {}};
@@ -123,8 +133,8 @@ std::optional<CameraMemory> DepthStage::memory() const {
 bool DepthStage::resume_with(const CameraMemory& memory) {
     assert(memory.pixels.size() == std::size_t{memory.width} * memory.height);
     const bool is_of_pose = !camera_.link.empty() || memory.T_map_camera.matrix() == T_map_camera_.matrix();
-    const bool is_own =
-        denoiser_ && memory.width == denoiser_->width() && memory.height == denoiser_->height() && is_of_pose;
+    const bool is_own = denoiser_ && memory.name == camera_.name && memory.width == denoiser_->width() &&
+                        memory.height == denoiser_->height() && is_of_pose;
     if (!is_own) return false;
     std::vector<EndMemory::End> ends;
     ends.reserve(memory.pixels.size());

@@ -1,4 +1,5 @@
-// Converts a depth frame to the terms of its voxels: convert, filter, remove the robot, integrate.
+// Converts the depth frames of one camera to the terms of their voxels: convert, filter, remove the robot,
+// integrate.
 #pragma once
 
 #include <optional>
@@ -21,12 +22,15 @@
 
 namespace octoskin {
 
+/// The mapping with the noise of a camera that has its own; its filter follows it.
+[[nodiscard]] MappingConfig mapping_of(const HostCamera& camera, MappingConfig config);
+
 class DepthStage {
   public:
-    /// The rig must have a camera. `finds_certain`: also finds the reliable pixels, for the comparison with
-    /// range sensors.
+    /// Of the rig's camera with this index (asserted). `finds_certain`: also finds the reliable pixels, for
+    /// the comparison with range sensors.
     DepthStage(const HostRig& rig, const MappingConfig& config, unsigned threads = 1,
-               bool finds_certain = false);
+               bool finds_certain = false, std::size_t camera = 0);
 
     /// True if a frame requires the robot's pose: to remove the robot, or to place a camera on a link.
     [[nodiscard]] bool needs_robot() const noexcept {
@@ -42,8 +46,8 @@ class DepthStage {
     /// may be in `updates`, which does not change it, but not in `keep`. O(pixels). Throws std::bad_alloc.
     [[nodiscard]] std::optional<CameraMemory> memory() const;
     /// Continues from this memory, of as many pixels as its size says (asserted). False: nothing is changed,
-    /// because the update has no memory, or the rig's camera has another size or, unless it is on a link,
-    /// another pose. Throws std::bad_alloc.
+    /// because the update has no memory, or the rig's camera has another name or size or, unless it is on a
+    /// link, another pose. Throws std::bad_alloc.
     [[nodiscard]] bool resume_with(const CameraMemory& memory);
     /// The next frame builds on nothing.
     void forget() noexcept { T_map_camera_before_.reset(); }

@@ -81,36 +81,39 @@ Result<MapBuilder, RobotModelFault> MapBuilder::build(const HostRig& rig, RobotM
     if (!beams) {
         return unexpected(beams.error());
     }
-    std::optional<LinkId> camera_link;
-    if (rig.camera && !rig.camera->link.empty()) {
-        camera_link = robot.find_link(rig.camera->link);
-        if (!camera_link) return unexpected(RobotModelFault{RobotModelError::unreachable, rig.camera->link});
+    std::vector<std::optional<LinkId>> camera_links;
+    for (const HostCamera& camera : rig.cameras) {
+        camera_links.push_back(camera.link.empty() ? std::nullopt : robot.find_link(camera.link));
+        if (!camera.link.empty() && !camera_links.back())
+            return unexpected(RobotModelFault{RobotModelError::unreachable, camera.link});
     }
     auto tracker = RobotTracker::build(rig, std::move(robot), joints);
     if (!tracker) {
         return unexpected(tracker.error());
     }
-    return MapBuilder(rig, std::move(tracker).value(), camera_link, std::move(beams).value(), mapping, maps,
+    return MapBuilder(rig, std::move(tracker).value(), camera_links, std::move(beams).value(), mapping, maps,
                       depth_threads);
 }
 
-MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot, std::optional<LinkId> camera_link,
-                       BeamBuilder beams, const MappingConfig& mapping, const std::vector<MapFeed>& maps,
-                       unsigned depth_threads)
+MapBuilder::MapBuilder(const HostRig& rig, RobotTracker robot,
+                       std::span<const std::optional<LinkId>> camera_links, BeamBuilder beams,
+                       const MappingConfig& mapping, const std::vector<MapFeed>& maps, unsigned depth_threads)
     : robot_(std::move(robot)),
       T_map_base_(rig.T_map_base),
-      camera_link_(camera_link),
       beams_(std::move(beams)),
       ranges_(mapping, mapping.range_update == RangeUpdate::cone && sees_any_cone(rig)) {
     for (const MapFeed feed : maps) maps_.push_back({feed, FusedMap(mapping.map)});
     const bool compares =
-        rig.camera && mapping.removes_robot_from_depth && mapping.reports_contradicting_sensors;
-    if (rig.camera) {
-        depth_stage_.emplace(rig, mapping, depth_threads, compares);
+        !rig.cameras.empty() && mapping.removes_robot_from_depth && mapping.reports_contradicting_sensors;
+    std::vector<CrossCheckConfig> checks;
+    for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+        cameras_.push_back({camera_links[i], DepthStage(rig, mapping, depth_threads, compares, i)});
+        const MappingConfig of_camera = mapping_of(rig.cameras[i], mapping);
+        checks.push_back(
+            {.camera_sigma_m = of_camera.camera_sigma_m(), .is_filtered = of_camera.removes_camera_noise()});
     }
     if (compares) {
-        cross_check_.emplace(rig, CrossCheckConfig{.camera_sigma_m = mapping.camera_sigma_m(),
-                                                   .is_filtered = mapping.removes_camera_noise()});
+        cross_checks_.emplace(rig, checks);
         refuses_contradicting_ = mapping.refuses_contradicting_sensors;
     }
 }
@@ -121,12 +124,24 @@ void MapBuilder::begin_with(FusedMap map) {
 }
 
 MapBuilder::LeftOut MapBuilder::begin_with(MapState state) {
-    if (depth_stage_) depth_stage_->forget();
-    const bool is_camera_taken = !state.camera || (depth_stage_ && depth_stage_->resume_with(*state.camera));
+    LeftOut left_out;
+    for (Camera& camera : cameras_) camera.stage.forget();
+    for (const CameraMemory& memory : state.cameras) {
+        const bool is_taken = std::ranges::any_of(
+            cameras_, [&memory](Camera& camera) { return camera.stage.resume_with(memory); });
+        if (!is_taken) left_out.cameras.push_back(memory.name);
+    }
     begin_with(std::move(state.map));
-    const std::size_t zones = leave_out_others(state.histories, beams_);
+    left_out.zones = leave_out_others(state.histories, beams_);
     ranges_.resume_with(std::move(state.histories));
-    return {.zones = zones, .is_camera = !is_camera_taken};
+    return left_out;
+}
+
+std::vector<CameraMemory> MapBuilder::camera_memories() const {
+    std::vector<CameraMemory> memories;
+    for (const Camera& camera : cameras_)
+        if (auto memory = camera.stage.memory()) memories.push_back(std::move(*memory));
+    return memories;
 }
 
 void MapBuilder::wait(std::int64_t seconds) {
@@ -171,9 +186,7 @@ void MapBuilder::clear_motion(Nanoseconds jumped_by) {
     }
     for (FedMap& fed : maps_) fed.map.jump_time(jumped_by);
     ranges_.forget();
-    if (cross_check_) {
-        cross_check_->forget_beams();
-    }
+    if (cross_checks_) cross_checks_->forget_beams();
     robot_.forget();
 }
 
@@ -190,32 +203,36 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     const bool is_out = is_refused(source.node_id, source.sensor);
     const Status<ReadingReason> added = is_out ? unexpected(ReadingReason::contradicts_camera)
                                                : watched([&] { return add_range(measurement, *beam); });
-    if (cross_check_ && (added || is_out)) {
-        cross_check_->on_beam(*beam, beams_.T_map_sensor(source, *robot), twists_of(measurement, *robot));
-    }
+    if (cross_checks_ && (added || is_out)) compare(measurement, *beam, *robot);
     return added;
 }
 
-/// Relative to the camera, which a joint may move, too.
-JointTwists MapBuilder::twists_of(const RangeMeasurement& measurement, const RobotPose& robot) const {
-    JointTwists twists = beams_.twists_map(measurement.source, robot, robot_.robot());
-    if (!camera_link_) return twists;
+void MapBuilder::compare(const RangeMeasurement& measurement, const Beam& beam, const RobotPose& robot) {
+    const Eigen::Isometry3d T_map_sensor = beams_.T_map_sensor(measurement.source, robot);
+    const JointTwists twists_map = beams_.twists_map(measurement.source, robot, robot_.robot());
+    for (std::size_t i = 0; i < cameras_.size(); ++i)
+        cross_checks_->of(i).on_beam(beam, T_map_sensor, seen_from(cameras_[i], twists_map, robot));
+}
+
+JointTwists MapBuilder::seen_from(const Camera& camera, JointTwists twists_map,
+                                  const RobotPose& robot) const {
+    if (!camera.link) return twists_map;
     JointTwists of_camera;
-    robot_.robot().twists(*camera_link_, robot.T_base_link, of_camera);
+    robot_.robot().twists(*camera.link, robot.T_base_link, of_camera);
     of_camera = placed(T_map_base_, of_camera);
-    for (std::size_t i = 0; i < twists.size(); ++i) {
-        twists[i].turn -= of_camera[i].turn;
-        twists[i].shift -= of_camera[i].shift;
+    for (std::size_t i = 0; i < twists_map.size(); ++i) {
+        twists_map[i].turn -= of_camera[i].turn;
+        twists_map[i].shift -= of_camera[i].shift;
     }
-    return twists;
+    return twists_map;
 }
 
 Status<DepthReason> MapBuilder::place_camera(DepthFrame& frame, const RobotPose& robot) const {
-    if (!camera_link_ || frame.T_map_camera) return Done{};
-    if ((robot_.robot().joints_above(*camera_link_) & robot.unknown) != 0)
+    const Camera& camera = cameras_.at(frame.camera);
+    if (!camera.link || frame.T_map_camera) return Done{};
+    if ((robot_.robot().joints_above(*camera.link) & robot.unknown) != 0)
         return unexpected(DepthReason::joints_missing);
-    frame.T_map_camera =
-        T_map_base_ * robot.T_base_link[*camera_link_] * depth_stage_->camera().T_link_camera;
+    frame.T_map_camera = T_map_base_ * robot.T_base_link[*camera.link] * camera.stage.camera().T_link_camera;
     return Done{};
 }
 
@@ -241,11 +258,9 @@ Status<DepthReason> MapBuilder::integrate(DepthFrame frame) {
 }
 
 Result<MapBuilder::DepthWork, DepthReason> MapBuilder::begin(DepthFrame frame) {
-    if (!depth_stage_) {
-        return unexpected(DepthReason::no_camera);
-    }
+    if (frame.camera >= cameras_.size()) return unexpected(DepthReason::no_camera);
     DepthWork depth{.frame = std::move(frame), .robot = {}};
-    if (depth_stage_->needs_robot()) {
+    if (depth_needs_robot(depth.frame.camera)) {
         const RobotPose* const robot = robot_.at(depth.frame.captured);
         if (robot == nullptr) {
             return unexpected(DepthReason::joints_missing);
@@ -257,7 +272,8 @@ Result<MapBuilder::DepthWork, DepthReason> MapBuilder::begin(DepthFrame frame) {
 }
 
 void MapBuilder::work(DepthWork& depth) {
-    depth.updates = updates_or_reason(*depth_stage_, depth.frame, depth.robot ? &*depth.robot : nullptr);
+    DepthStage& stage = cameras_[depth.frame.camera].stage;
+    depth.updates = updates_or_reason(stage, depth.frame, depth.robot ? &*depth.robot : nullptr);
 }
 
 Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
@@ -274,13 +290,15 @@ Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
 }
 
 void MapBuilder::add_depth(const DepthWork& depth) {
-    depth_stage_->keep(depth.frame);
+    DepthStage& stage = cameras_[depth.frame.camera].stage;
+    stage.keep(depth.frame);
     MapFeeder feeder(maps_, depth.frame.captured, nullptr, listener_);
     if (!depth.updates->retracted.empty()) feeder.apply(depth.updates->retracted, nullptr);
     feeder.apply(depth.updates->terms, nullptr);
-    if (cross_check_) {
-        depth_stage_->swap_images(seen_);
-        cross_check_->on_depth(seen_, depth_stage_->T_map_camera_of(depth.frame), depth.frame.captured);
+    if (cross_checks_) {
+        stage.swap_images(seen_);
+        cross_checks_->of(depth.frame.camera)
+            .on_depth(seen_, stage.T_map_camera_of(depth.frame), depth.frame.captured);
     }
     if (listener_ != nullptr) {
         listener_->on_depth(depth.frame, depth.updates->terms);

@@ -7,12 +7,13 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/core/beams/beam_builder.hpp"
-#include "host/core/cross_check/cross_check.hpp"
+#include "host/core/cross_check/cross_checks.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
@@ -32,7 +33,8 @@ namespace octoskin {
 class MapBuilder {
   public:
     /// Refuses, by name, a link of the rig that the robot does not have. `robot` must move the joints of
-    /// `rig.joint_names()` in that order (asserted: equal count). `depth_threads`: see DepthIntegrator.
+    /// `rig.joint_names()` in that order (asserted: equal count). `depth_threads`: of each camera, see
+    /// DepthIntegrator.
     [[nodiscard]] static Result<MapBuilder, RobotModelFault> build(const HostRig& rig, RobotModel robot,
                                                                    const MappingConfig& mapping,
                                                                    const JointHistoryConfig& joints,
@@ -44,24 +46,23 @@ class MapBuilder {
     void begin_with(FusedMap map);
     /// What of a state was dropped, because this rig is another.
     struct LeftOut {
-        std::size_t zones = 0;   ///< that this rig does not have, or with other optics
-        bool is_camera = false;  ///< its camera has another size or pose
+        std::size_t zones = 0;  ///< that this rig does not have, or with other optics
+        /// Names of the cameras that this rig does not have, or with another size or pose.
+        std::vector<std::string> cameras = {};
         friend bool operator==(const LeftOut&, const LeftOut&) = default;
     };
-    /// The same, with the memory of the sensors and of the camera: for an equal rig and mapping, later inputs
-    /// have the same effect as in the builder that the state comes from. O(readings + pixels). Throws
+    /// The same, with the memory of the sensors and of the cameras: for an equal rig and mapping, later
+    /// inputs have the same effect as in the builder that the state comes from. O(readings + pixels). Throws
     /// std::bad_alloc.
     [[nodiscard]] LeftOut begin_with(MapState state);
     /// The complete state of the map of all sensors, except the joint samples (`for_each_joint_sample`). A
     /// copy: O(sensors + pixels). While a frame is in work, the state is that before the frame. Throws
     /// std::bad_alloc.
-    [[nodiscard]] MapState state() const { return {map().copy(), ranges_.histories(), camera_memory()}; }
+    [[nodiscard]] MapState state() const { return {map().copy(), ranges_.histories(), camera_memories()}; }
     /// The sensors' histories of that state. Throws std::bad_alloc.
     [[nodiscard]] SensorHistories histories() const { return ranges_.histories(); }
-    /// The camera's part of that state: DepthStage::memory.
-    [[nodiscard]] std::optional<CameraMemory> camera_memory() const {
-        return depth_stage_ ? depth_stage_->memory() : std::nullopt;
-    }
+    /// The cameras' part of that state: DepthStage::memory.
+    [[nodiscard]] std::vector<CameraMemory> camera_memories() const;
     /// The map of all sensors waits for its next measurement: FusedMap::begin_to_wait. A replay does not
     /// reproduce this: call it after `clear_motion`.
     void begin_to_wait() noexcept { own_map().begin_to_wait(); }
@@ -86,15 +87,16 @@ class MapBuilder {
     [[nodiscard]] Status<DepthReason> integrate(DepthFrame frame);
 
     /// The same in three steps, so that another thread can run the second, which takes most of the time. One
-    /// frame at a time. Between the first and the last step, readings and joint samples may be added, and
-    /// `depth_stage()` may be used for its camera and its memory only.
+    /// frame of each camera at a time. Between the first and the last step, readings, joint samples and
+    /// frames of other cameras may be added, and `depth_stage` of the camera may be used for its camera and
+    /// its memory only.
     struct DepthWork {
         DepthFrame frame;
         std::optional<RobotPose> robot;  ///< at the frame's time, if the frame requires it
         Result<DepthUpdates, DepthReason> updates = unexpected(DepthReason::no_camera);
     };
     [[nodiscard]] Result<DepthWork, DepthReason> begin(DepthFrame frame);
-    /// Uses only the builder's depth stage.
+    /// Uses only the depth stage of the frame's camera.
     void work(DepthWork& depth);
     /// `late`: the robot's pose at that time is no longer stored, or other joints are known by now.
     [[nodiscard]] Status<DepthReason> finish(const DepthWork& depth);
@@ -105,9 +107,12 @@ class MapBuilder {
 
     /// True if the rig has this sensor and zone. Other readings must not be added (asserted).
     [[nodiscard]] bool has(const BeamSource& source) const { return beams_.has(source); }
-    [[nodiscard]] bool has_camera() const noexcept { return depth_stage_.has_value(); }
-    /// True if a depth frame requires the robot's pose. There must be a camera.
-    [[nodiscard]] bool depth_needs_robot() const noexcept { return depth_stage_->needs_robot(); }
+    /// The number of the rig's cameras.
+    [[nodiscard]] std::size_t cameras() const noexcept { return cameras_.size(); }
+    /// True if a depth frame of that camera requires the robot's pose.
+    [[nodiscard]] bool depth_needs_robot(std::size_t camera) const {
+        return cameras_.at(camera).stage.needs_robot();
+    }
     /// True if the joint samples around `instant` have arrived or will never come.
     [[nodiscard]] bool is_settled(HostTime instant) const noexcept { return robot_.is_settled(instant); }
     /// The robot's motion: gaps between joint samples, joints without a position.
@@ -120,23 +125,28 @@ class MapBuilder {
     [[nodiscard]] std::span<const FedMap> maps() const noexcept { return maps_; }
     /// The map with this feed, which must exist (asserted).
     [[nodiscard]] const FusedMap& map(MapFeed feed = MapFeed::both) const noexcept;
-    /// Null if the rig has no camera.
-    [[nodiscard]] const DepthStage* depth_stage() const noexcept {
-        return depth_stage_ ? &*depth_stage_ : nullptr;
+    [[nodiscard]] const DepthStage& depth_stage(std::size_t camera) const {
+        return cameras_.at(camera).stage;
     }
-    /// The cross-check of the range sensors against the camera. Null without a camera, if the robot stays in
-    /// its image, and if the mapping disables the reports.
-    [[nodiscard]] const CrossCheck* cross_check() const noexcept {
-        return cross_check_ ? &*cross_check_ : nullptr;
+    /// The cross-checks of the range sensors against the cameras. Null without a camera, if the robot stays
+    /// in the images, and if the mapping disables the reports.
+    [[nodiscard]] const CrossChecks* cross_checks() const noexcept {
+        return cross_checks_ ? &*cross_checks_ : nullptr;
     }
-    /// True if the readings of a sensor of the rig are refused because it contradicts the camera.
+    /// True if the readings of a sensor of the rig are refused because it contradicts a camera.
     [[nodiscard]] bool is_refused(std::uint8_t node_id, std::uint8_t sensor) const {
-        return refuses_contradicting_ && cross_check_ && cross_check_->is_to_be_refused(node_id, sensor);
+        return refuses_contradicting_ && cross_checks_ && cross_checks_->is_to_be_refused(node_id, sensor);
     }
 
   private:
-    MapBuilder(const HostRig& rig, RobotTracker robot, std::optional<LinkId> camera_link, BeamBuilder beams,
-               const MappingConfig& mapping, const std::vector<MapFeed>& maps, unsigned depth_threads);
+    struct Camera {
+        std::optional<LinkId> link;  ///< that carries it; empty: the base link
+        DepthStage stage;
+    };
+    /// `camera_links`: of each camera; empty: the base link.
+    MapBuilder(const HostRig& rig, RobotTracker robot, std::span<const std::optional<LinkId>> camera_links,
+               BeamBuilder beams, const MappingConfig& mapping, const std::vector<MapFeed>& maps,
+               unsigned depth_threads);
 
     [[nodiscard]] FusedMap& own_map() noexcept;
     [[nodiscard]] Status<ReadingReason> add_range(const RangeMeasurement& measurement, const Beam& beam);
@@ -147,17 +157,19 @@ class MapBuilder {
 
     /// Gives a frame of a camera on a link its pose; `joints_missing`: the link is unplaced.
     [[nodiscard]] Status<DepthReason> place_camera(DepthFrame& frame, const RobotPose& robot) const;
-    [[nodiscard]] JointTwists twists_of(const RangeMeasurement& measurement, const RobotPose& robot) const;
+    void compare(const RangeMeasurement& measurement, const Beam& beam, const RobotPose& robot);
+    /// Relative to a camera, which a joint may move, too.
+    [[nodiscard]] JointTwists seen_from(const Camera& camera, JointTwists twists_map,
+                                        const RobotPose& robot) const;
 
     RobotTracker robot_;
     Eigen::Isometry3d T_map_base_;
-    std::optional<LinkId> camera_link_;  ///< that carries the camera; empty: the base link
     BeamBuilder beams_;
     RangeModel ranges_;
-    std::optional<DepthStage> depth_stage_;
-    std::optional<CrossCheck> cross_check_;
+    std::vector<Camera> cameras_;
+    std::optional<CrossChecks> cross_checks_;
     bool refuses_contradicting_ = false;
-    SeenImages seen_;  ///< memory swapped with the depth stage
+    SeenImages seen_;  ///< memory swapped with the depth stages
     std::vector<FedMap> maps_;
     CommitListener* listener_ = nullptr;
 };

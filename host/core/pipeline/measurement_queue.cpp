@@ -11,19 +11,21 @@ constexpr Nanoseconds kDepthAheadMax{1'000'000'000};
 /// Much less than any timing budget: two readings of one source this close are the same reading, placed by
 /// two states of the clock map.
 constexpr Nanoseconds kSameReading{5'000'000};
-/// The camera's rank in the order of sources: node 0 is the host.
-constexpr BeamSource kCameraSource{};
+/// A camera's rank in the order of sources: node 0 is the host.
+ReleaseKey key_of(const DepthFrame& frame) {
+    return {frame.captured, {.sensor = frame.camera}};
+}
 
 template <class T>
 using Pushed = typename ReorderBuffer<T>::Pushed;
 
 }  // namespace
 
-MeasurementQueue::MeasurementQueue(Release release, const QueueLimits& limits)
+MeasurementQueue::MeasurementQueue(Release release, const QueueLimits& limits, std::size_t cameras)
     : release_(release),
       joint_samples_(limits.joint_samples),
       readings_(limits.readings),
-      depth_frames_(limits.depth_frames) {}
+      cameras_(cameras, Camera{ReorderBuffer<DepthFrame>(limits.depth_frames)}) {}
 
 std::optional<ReadingReason> MeasurementQueue::put(const RangeMeasurement& measurement) {
     const ReleaseKey key{measurement.captured, measurement.source};
@@ -47,18 +49,20 @@ std::optional<JointReason> MeasurementQueue::put(const JointMeasurement& joints)
 }
 
 std::optional<DepthReason> MeasurementQueue::put(DepthFrame frame) {
-    const ReleaseKey key{frame.captured, kCameraSource};
-    if (depth_frames_.is_full() || depth_frames_.push(key, std::move(frame)) != Pushed<DepthFrame>::waits)
+    const ReleaseKey key = key_of(frame);
+    ReorderBuffer<DepthFrame>& frames = cameras_.at(frame.camera).frames;
+    if (frames.is_full() || frames.push(key, std::move(frame)) != Pushed<DepthFrame>::waits)
         return DepthReason::queue_overflow;
     return std::nullopt;
 }
 
 std::optional<DepthReason> MeasurementQueue::check_arrival(const DepthFrame& frame,
                                                            std::optional<HostTime> now) {
-    if (newest_depth_ && frame.captured <= *newest_depth_) return DepthReason::out_of_order;
+    std::optional<HostTime>& newest = cameras_.at(frame.camera).newest;
+    if (newest && frame.captured <= *newest) return DepthReason::out_of_order;
     if (now && frame.captured - *now > kDepthAheadMax) return DepthReason::ahead_of_time;
-    if (is_late({frame.captured, kCameraSource})) return DepthReason::late;
-    newest_depth_ = frame.captured;
+    if (is_late(key_of(frame))) return DepthReason::late;
+    newest = frame.captured;
     return std::nullopt;
 }
 
@@ -68,19 +72,29 @@ std::optional<JointMeasurement> MeasurementQueue::take_joints(HostTime until) {
     return joint_samples_.pop();
 }
 
-std::optional<MeasurementQueue::Next> MeasurementQueue::next(bool depth_wanted) const {
-    const auto reading = readings_.front();
-    const auto depth = depth_wanted ? depth_frames_.front() : std::nullopt;
-    if (depth && (!reading || *depth < *reading)) return Next{*depth, true};
-    if (reading) return Next{*reading, false};
-    return std::nullopt;
+std::optional<MeasurementQueue::Next> MeasurementQueue::next(CameraSet wanted) const {
+    std::optional<Next> next;
+    if (const auto reading = readings_.front()) next = Next{*reading};
+    for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
+        const auto depth = wanted.test(camera) ? oldest_depth(camera) : std::nullopt;
+        if (depth && (!next || depth->key < next->key)) next = depth;
+    }
+    return next;
+}
+
+std::optional<MeasurementQueue::Next> MeasurementQueue::oldest_depth(std::size_t camera) const {
+    const auto key = cameras_.at(camera).frames.front();
+    return key ? std::optional(Next{*key, camera}) : std::nullopt;
 }
 
 void MeasurementQueue::forget_time(std::optional<HostTime> begin) {
-    assert(readings_.size() == 0 && joint_samples_.size() == 0 && depth_frames_.size() == 0);
+    assert(readings_.size() == 0 && joint_samples_.size() == 0);
     newest_used_.reset();
     used_.clear();
-    newest_depth_.reset();
+    for (Camera& camera : cameras_) {
+        assert(camera.frames.size() == 0);
+        camera.newest.reset();
+    }
     begin_ = begin;
 }
 

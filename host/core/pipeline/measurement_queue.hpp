@@ -2,16 +2,19 @@
 // arrive. Decides which measurement is next, and refuses late and repeated ones.
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "common/time.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 #include "host/core/ingest/reasons.hpp"
 #include "host/core/pipeline/reorder_buffer.hpp"
+#include "host/core/rig/host_rig.hpp"
 
 namespace octoskin {
 
@@ -24,17 +27,21 @@ enum class Release : std::uint8_t {
     once_placed,
 };
 
-/// Maximum number of waiting inputs. Beyond it, the oldest input is dropped and counted. Of depth frames, the
-/// newest is dropped, because those that wait already have their joint samples.
+/// Maximum number of waiting inputs; of depth frames, of each camera. Beyond it, the oldest input is dropped
+/// and counted. Of depth frames, the newest is dropped, because those that wait already have their joint
+/// samples.
 struct QueueLimits {
     std::size_t readings = 4096;
     std::size_t depth_frames = 16;
     std::size_t joint_samples = 256;
 };
 
+/// Some cameras of a rig, by their indices.
+using CameraSet = std::bitset<kCamerasMax>;
+
 class MeasurementQueue {
   public:
-    MeasurementQueue(Release release, const QueueLimits& limits);
+    MeasurementQueue(Release release, const QueueLimits& limits, std::size_t cameras);
 
     /// Each returns why the measurement does not wait; empty: it waits. O(log waiting). For readings and
     /// joint samples, `queue_overflow` means that an older one was dropped.
@@ -42,7 +49,8 @@ class MeasurementQueue {
     [[nodiscard]] std::optional<JointReason> put(const JointMeasurement& joints);
     [[nodiscard]] std::optional<DepthReason> put(DepthFrame frame);
     /// Why an arriving depth frame cannot wait, even if there is room. `now`: host time, if known. Call once
-    /// for each frame, in order of arrival: the next frame must be newer.
+    /// for each frame, in order of arrival: the next frame of that camera must be newer. The camera must
+    /// exist (asserted, as for `put`).
     [[nodiscard]] std::optional<DepthReason> check_arrival(const DepthFrame& frame,
                                                            std::optional<HostTime> now);
 
@@ -50,14 +58,14 @@ class MeasurementQueue {
     [[nodiscard]] std::optional<JointMeasurement> take_joints(HostTime until);
     struct Next {
         ReleaseKey key;
-        bool is_depth = false;
+        std::optional<std::size_t> camera = {};  ///< of a depth frame; empty: a reading
     };
-    /// The oldest reading or, if `depth_wanted`, depth frame.
-    [[nodiscard]] std::optional<Next> next(bool depth_wanted) const;
+    /// The oldest reading or depth frame of the cameras in `wanted`. O(cameras).
+    [[nodiscard]] std::optional<Next> next(CameraSet wanted) const;
     /// The oldest one, which must exist.
     [[nodiscard]] RangeMeasurement take_reading() { return readings_.pop(); }
-    [[nodiscard]] DepthFrame take_depth() { return depth_frames_.pop(); }
-    [[nodiscard]] std::optional<ReleaseKey> oldest_depth() const { return depth_frames_.front(); }
+    [[nodiscard]] DepthFrame take_depth(std::size_t camera) { return cameras_.at(camera).frames.pop(); }
+    [[nodiscard]] std::optional<Next> oldest_depth(std::size_t camera) const;
 
     /// This measurement is in the maps. With release by capture time, older ones are late from now on.
     void on_used(const ReleaseKey& key) { newest_used_ = key; }
@@ -72,22 +80,29 @@ class MeasurementQueue {
     [[nodiscard]] std::optional<HostTime> begin() const noexcept { return begin_; }
 
     [[nodiscard]] std::size_t readings() const noexcept { return readings_.size(); }
-    [[nodiscard]] std::size_t depth_frames() const noexcept { return depth_frames_.size(); }
+    [[nodiscard]] std::size_t depth_frames(std::size_t camera) const {
+        return cameras_.at(camera).frames.size();
+    }
     [[nodiscard]] std::size_t joint_samples() const noexcept { return joint_samples_.size(); }
-    [[nodiscard]] std::optional<HostTime> newest_depth() const noexcept { return newest_depth_; }
+    [[nodiscard]] std::optional<HostTime> newest_depth(std::size_t camera) const {
+        return cameras_.at(camera).newest;
+    }
 
   private:
+    struct Camera {
+        ReorderBuffer<DepthFrame> frames;
+        std::optional<HostTime> newest = {};  ///< the newest that arrived
+    };
     [[nodiscard]] bool is_late(const ReleaseKey& key) const;
     [[nodiscard]] bool is_repeated(const ReleaseKey& key) const;
 
     Release release_;
     ReorderBuffer<JointMeasurement> joint_samples_;
     ReorderBuffer<RangeMeasurement> readings_;
-    ReorderBuffer<DepthFrame> depth_frames_;
+    std::vector<Camera> cameras_;
     std::optional<ReleaseKey> newest_used_;
-    std::map<BeamSource, HostTime> used_;   ///< the newest reading of each source in the maps
-    std::optional<HostTime> newest_depth_;  ///< the newest that arrived
-    std::optional<HostTime> begin_;         ///< after a jump ahead: earlier captures are from before the jump
+    std::map<BeamSource, HostTime> used_;  ///< the newest reading of each source in the maps
+    std::optional<HostTime> begin_;        ///< after a jump ahead: earlier captures are from before the jump
 };
 
 }  // namespace octoskin

@@ -5,7 +5,7 @@
 namespace octoskin {
 namespace {
 
-/// Depth frames requested by index, in ascending order.
+/// A camera's depth frames requested by index, in ascending order.
 class DepthByIndex {
   public:
     DepthByIndex(DepthSource* source, OrderedOutcome& outcome) : source_(source), outcome_(outcome) {}
@@ -14,7 +14,7 @@ class DepthByIndex {
         std::optional<DepthFrame> frame;
         while (source_ != nullptr && next_ <= index) {  // ends with the source
             auto read = source_->next();
-            if (!read) outcome_.depth_error = read.error();
+            if (!read) outcome_.depth_errors.push_back(read.error());
             frame = read ? std::move(read).value() : std::nullopt;
             if (!frame) source_ = nullptr;
             ++next_;
@@ -30,8 +30,10 @@ class DepthByIndex {
 
 class Committer {
   public:
-    Committer(MapBuilder& builder, DepthSource* depth, OrderedOutcome& outcome)
-        : builder_(builder), depth_(depth, outcome), outcome_(outcome) {}
+    Committer(MapBuilder& builder, const DepthSources& depth, OrderedOutcome& outcome)
+        : builder_(builder), outcome_(outcome) {
+        for (DepthSource* const source : depth) depth_.emplace_back(source, outcome);
+    }
 
     std::optional<HostTime> operator()(const WaitCommit& passed) {
         builder_.wait(passed.seconds);
@@ -52,8 +54,10 @@ class Committer {
         return reading.captured;
     }
     std::optional<HostTime> operator()(const DepthCommit& commit) {
-        auto frame = commit.index ? depth_.at(*commit.index) : std::nullopt;
+        const bool is_recorded = commit.index && commit.camera < depth_.size();
+        auto frame = is_recorded ? depth_[commit.camera].at(*commit.index) : std::nullopt;
         if (frame) {
+            frame->camera = commit.camera;
             frame->captured = commit.captured;  // recorded depth frames have whole microseconds
             outcome_.depth_frames.now_at(commit.captured.ns);
             outcome_.depth_frames.count_in();
@@ -66,13 +70,13 @@ class Committer {
 
   private:
     MapBuilder& builder_;
-    DepthByIndex depth_;
+    std::vector<DepthByIndex> depth_;  ///< by camera
     OrderedOutcome& outcome_;
 };
 
 }  // namespace
 
-OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSource* depth,
+OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, const DepthSources& depth,
                                const ReplayReport& report, std::optional<HostTime> begin) {
     OrderedOutcome outcome;
     outcome.begin = begin;

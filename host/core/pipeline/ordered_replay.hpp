@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/result.hpp"
 #include "host/core/counters/input_counters.hpp"
@@ -31,24 +32,24 @@ struct OrderedOutcome {
     std::uint64_t depth_missing = 0;  ///< committed by the daemon, but not recorded
     std::optional<HostTime> begin;    ///< of the recording
     std::optional<HostTime> now;      ///< of the newest commit
-    /// A source that failed before its end; its inputs until then were used.
+    /// Sources that failed before their end; their inputs until then were used.
     std::optional<Error> order_error;
-    std::optional<Error> depth_error;
+    std::vector<Error> depth_errors;
 
     /// True if everything that went into the daemon's maps went into these.
     [[nodiscard]] bool took_all() const noexcept {
-        return !order_error && !depth_error && depth_missing == 0 &&
+        return !order_error && depth_errors.empty() && depth_missing == 0 &&
                readings.rejected() + joint_samples.rejected() + depth_frames.rejected() == 0;
     }
 };
 
 /// Applies every commit to `builder`, in order, until the source ends. `depth`: the frames to which depth
-/// commits refer by index, from 0; null if there are none. `begin`: start of the recording, if known from
+/// commits refer by index, from 0. `begin`: start of the recording, if known from
 /// elsewhere; otherwise the first reading or depth frame, because the joint samples before it may be much
 /// older. With the rig, robot, mapping and first map of the recording, the maps are equal to the daemon's bit
 /// for bit.
-[[nodiscard]] OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order, DepthSource* depth,
-                                             const ReplayReport& report = {},
+[[nodiscard]] OrderedOutcome replay_in_order(MapBuilder& builder, CommitSource& order,
+                                             const DepthSources& depth, const ReplayReport& report = {},
                                              std::optional<HostTime> begin = {});
 
 }  // namespace octoskin

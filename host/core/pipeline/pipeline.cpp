@@ -55,11 +55,14 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
     : config_(config),
       intake_(rig, intake_config(config, mapping)),
       marks_(config.begin),
-      waiting_(config.release, limits_of(rig, config.waiting_max)),
+      waiting_(config.release, limits_of(rig, config.waiting_max), rig.cameras.size()),
       joint_gates_(gates_of(rig, builder.robot().robot().limits(), config.joints.limit_tolerance)),
-      builder_(std::move(builder)) {
-    if (rig.camera) {
-        camera_patience_ = Nanoseconds{std::llround(3e9 / rig.camera->rate_hz)};
+      builder_(std::move(builder)),
+      beside_(rig.cameras.size()) {
+    inputs_.depth_frames.resize(std::max(rig.cameras.size(), std::size_t{1}));
+    for (const HostCamera& camera : rig.cameras) {
+        camera_names_.push_back(camera.name);
+        camera_patiences_.emplace_back(std::llround(3e9 / camera.rate_hz));
     }
 }
 
@@ -117,30 +120,48 @@ void Pipeline::settle_waiting() {
     }
     queue(intake_.settle_joints());
     release_joints(kEndOfTime);
-    if (beside_.is_at_work()) finish_depth();
-    // A live map does not wait for queued images.
-    while (beside_.has_worker() && waiting_.depth_frames() > 0) drop_oldest_depth();
+    for (std::size_t camera = 0; camera < beside_.size(); ++camera) {
+        if (beside_[camera].is_at_work()) finish_depth(camera);
+        // A live map does not wait for queued images.
+        while (beside_[camera].has_worker() && waiting_.depth_frames(camera) > 0) drop_oldest_depth(camera);
+    }
     release_measurements(kEndOfTime);
 }
 
-void Pipeline::drop_oldest_depth() {
-    (void)waiting_.take_depth();
-    inputs_.depth_frames.reject(DepthReason::queue_overflow);
+void Pipeline::drop_oldest_depth(std::size_t camera) {
+    (void)waiting_.take_depth(camera);
+    counters_of(camera).reject(DepthReason::queue_overflow);
 }
 
-void Pipeline::work_beside(DepthWorker* worker) {
-    assert(worker == nullptr || config_.release == Release::once_placed);
-    beside_.lend(worker);
+void Pipeline::work_beside(const std::vector<DepthWorker*>& workers) {
+    assert(workers.empty() || config_.release == Release::once_placed);
+    for (std::size_t camera = 0; camera < beside_.size(); ++camera)
+        beside_[camera].lend(workers.empty() ? nullptr : workers.at(camera));
 }
 
 void Pipeline::on_worker_done() {
-    if (!beside_.is_at_work() || !beside_.is_done()) return;
-    finish_depth();
-    release_measurements(released_until_);
+    bool is_any_done = false;
+    for (std::size_t camera = 0; camera < beside_.size(); ++camera) {
+        if (!beside_[camera].is_at_work() || !beside_[camera].is_done()) continue;
+        finish_depth(camera);
+        is_any_done = true;
+    }
+    if (is_any_done) release_measurements(released_until_);
 }
 
-void Pipeline::finish_depth() {
-    inputs_.depth_frames.settle(beside_.finish(builder_));
+void Pipeline::finish_depth(std::size_t camera) {
+    counters_of(camera).settle(beside_[camera].finish(builder_));
+}
+
+CameraSet Pipeline::idle_cameras() const {
+    CameraSet idle;
+    for (std::size_t camera = 0; camera < beside_.size(); ++camera)
+        idle.set(camera, !beside_[camera].is_at_work());
+    return idle;
+}
+
+InputCounters<DepthReason>& Pipeline::counters_of(std::size_t camera) {
+    return inputs_.depth_frames[camera < inputs_.depth_frames.size() ? camera : 0];
 }
 
 void Pipeline::settle_marks(HostTime now) {
@@ -181,24 +202,26 @@ void Pipeline::queue(const JointMeasurement& joints) {
 void Pipeline::on_depth(DepthFrame frame) {
     assert(!is_finished_);
     if (!has_can_time_) inputs_.now_at(frame.captured.ns);
-    inputs_.depth_frames.count_in();
+    const std::size_t camera = frame.camera;
+    InputCounters<DepthReason>& counters = counters_of(camera);
+    counters.count_in();
     just_used_.clear();
     const auto known = external_time_ ? external_time_ : now();
-    const auto refused =
-        builder_.has_camera() ? waiting_.check_arrival(frame, known) : std::optional(DepthReason::no_camera);
+    const auto refused = camera < builder_.cameras() ? waiting_.check_arrival(frame, known)
+                                                     : std::optional(DepthReason::no_camera);
     if (refused) {
-        inputs_.depth_frames.reject(*refused);
+        counters.reject(*refused);
         return;
     }
-    // A rig without a bus, or with a silent one, has no clock but its camera. Integrating what is due first
+    // A rig without a bus, or with a silent one, has no clock but its cameras. Integrating what is due first
     // makes room for the frame.
     const std::optional<HostTime> now_known = has_can_time_ ? now() : frame.captured;
     if (now_known) advance(*now_known);
-    if (const auto full = waiting_.put(std::move(frame))) inputs_.depth_frames.reject(*full);
+    if (const auto full = waiting_.put(std::move(frame))) counters.reject(*full);
     if (now_known && config_.release == Release::once_placed) advance(*now_known);
-    while (beside_.is_at_work() && waiting_.depth_frames() > kBesideWorkMax &&
-           is_placed(*waiting_.oldest_depth(), true)) {
-        drop_oldest_depth();
+    while (beside_[camera].is_at_work() && waiting_.depth_frames(camera) > kBesideWorkMax &&
+           is_placed(*waiting_.oldest_depth(camera))) {
+        drop_oldest_depth(camera);
     }
 }
 
@@ -212,10 +235,10 @@ void Pipeline::advance(HostTime now) {
     release_measurements(now - config_.lag);
 }
 
-bool Pipeline::is_placed(const ReleaseKey& key, bool is_depth) const {
+bool Pipeline::is_placed(const MeasurementQueue::Next& next) const {
     if (config_.release == Release::by_capture_time) return false;
-    const bool needs_robot = !is_depth || builder_.depth_needs_robot();
-    return !needs_robot || builder_.is_settled(key.captured);
+    const bool needs_robot = !next.camera || builder_.depth_needs_robot(*next.camera);
+    return !needs_robot || builder_.is_settled(next.key.captured);
 }
 
 void Pipeline::release_joints(HostTime until) {
@@ -228,10 +251,10 @@ void Pipeline::release_joints(HostTime until) {
 void Pipeline::release_measurements(HostTime until) {
     released_until_ = until;
     while (true) {  // each iteration removes one from a bounded buffer
-        const auto next = waiting_.next(!beside_.is_at_work());
-        if (!next || (next->key.captured > until && !is_placed(next->key, next->is_depth))) return;
-        const bool is_used = next->is_depth ? take_depth(waiting_.take_depth())
-                                            : inputs_.readings.settle(integrate(waiting_.take_reading()));
+        const auto next = waiting_.next(idle_cameras());
+        if (!next || (next->key.captured > until && !is_placed(*next))) return;
+        const bool is_used = next->camera ? take_depth(waiting_.take_depth(*next->camera))
+                                          : inputs_.readings.settle(integrate(waiting_.take_reading()));
         if (is_used) waiting_.on_used(next->key);
     }
 }
@@ -251,13 +274,15 @@ Status<ReadingReason> Pipeline::integrate(const RangeMeasurement& measurement) {
 }
 
 bool Pipeline::take_depth(DepthFrame frame) {
+    InputCounters<DepthReason>& counters = counters_of(frame.camera);
+    DepthBeside& beside = beside_[frame.camera];
     if (!marks_.contains(frame.captured)) {
-        inputs_.depth_frames.reject(DepthReason::outside_marks);
+        counters.reject(DepthReason::outside_marks);
         return false;
     }
-    if (!beside_.has_worker()) return inputs_.depth_frames.settle(builder_.integrate(std::move(frame)));
-    const auto begun = beside_.begin(builder_, std::move(frame));
-    if (!begun) inputs_.depth_frames.reject(begun.error());
+    if (!beside.has_worker()) return counters.settle(builder_.integrate(std::move(frame)));
+    const auto begun = beside.begin(builder_, std::move(frame));
+    if (!begun) counters.reject(begun.error());
     return false;
 }
 
@@ -286,24 +311,31 @@ void Pipeline::finish() {
     is_finished_ = true;
 }
 
-bool Pipeline::is_camera_stale() const {
+bool Pipeline::is_camera_stale(std::size_t camera) const {
     const auto now_known = now();
-    if (!camera_patience_ || !now_known) {
-        return false;
-    }
-    const auto newest = waiting_.newest_depth();
-    return !newest || *now_known - *newest > *camera_patience_;
+    if (!now_known) return false;
+    const auto newest = waiting_.newest_depth(camera);
+    return !newest || *now_known - *newest > camera_patiences_.at(camera);
+}
+
+std::uint64_t Pipeline::depth_frames_pending(std::size_t camera) const {
+    if (camera >= beside_.size()) return 0;
+    return waiting_.depth_frames(camera) + (beside_[camera].is_at_work() ? 1U : 0U);
 }
 
 std::vector<CounterTable> Pipeline::counter_tables() const {
     const std::uint64_t samples_open = is_finished_ ? 0 : intake_.joint_samples_pending();
-    return {
+    std::vector<CounterTable> tables{
         tabulate("CAN frames", inputs_.frames, marks_.waiting(), seconds_text),
         tabulate("readings", inputs_.readings, waiting_.readings() + intake_.readings_held(), seconds_text),
         tabulate("joint samples", inputs_.joint_samples, waiting_.joint_samples() + samples_open,
-                 seconds_text),
-        tabulate("depth frames", inputs_.depth_frames,
-                 waiting_.depth_frames() + (beside_.is_at_work() ? 1U : 0U), seconds_text)};
+                 seconds_text)};
+    for (std::size_t camera = 0; camera < inputs_.depth_frames.size(); ++camera) {
+        tables.push_back(tabulate("depth frames", inputs_.depth_frames[camera], depth_frames_pending(camera),
+                                  seconds_text));
+        if (camera < camera_names_.size()) tables.back().of = camera_names_[camera];
+    }
+    return tables;
 }
 
 bool Pipeline::is_balanced() const {

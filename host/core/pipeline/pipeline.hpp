@@ -39,7 +39,7 @@ struct PipelineConfig {
     JointHistoryConfig joints;
     IntakeConfig intake;  ///< `uses_no_return` follows from the mapping
     QueueLimits waiting_max;
-    unsigned depth_threads = 1;  ///< threads that work on a depth image; the map does not depend on it
+    unsigned depth_threads = 1;  ///< threads that work on an image; the map does not depend on it
 };
 
 /// The result of every input, for each kind of input in `reasons.hpp`.
@@ -47,14 +47,15 @@ struct PipelineInputs {
     InputCounters<FrameReason> frames;
     InputCounters<ReadingReason> readings;
     InputCounters<JointReason> joint_samples;
-    InputCounters<DepthReason> depth_frames;
+    /// Of each camera; one without a camera, whose frames are refused.
+    std::vector<InputCounters<DepthReason>> depth_frames{1};
     /// Sets the time with which later rejections are recorded, in nanoseconds: a frame's time stamp or,
     /// without a bus, the capture time of an image.
     void now_at(std::int64_t ns) noexcept {
         frames.now_at(ns);
         readings.now_at(ns);
         joint_samples.now_at(ns);
-        depth_frames.now_at(ns);
+        for (InputCounters<DepthReason>& camera : depth_frames) camera.now_at(ns);
     }
 };
 
@@ -94,16 +95,18 @@ class Pipeline {
 
     /// Takes frames in order of arrival. `stamp`: time of reception; it does not place measurements.
     void on_can(const wire::CanFrame& frame, WallTime stamp);
-    /// Takes depth frames in the order of capture, at about the time of their arrival among the CAN frames.
+    /// Takes the depth frames of a camera in the order of capture, at about the time of their arrival among
+    /// the CAN frames.
     void on_depth(DepthFrame frame);
-    /// From now on, `worker` converts depth frames to terms, and later measurements may go into the maps
-    /// before a frame; a listener gets the order. While the worker has a frame, two more wait. A further one
-    /// displaces the oldest of them (`queue_overflow`). If waiting inputs must be resolved at once, waiting
-    /// frames are dropped, too. Null: the call that releases a frame converts it, and everything waits for
-    /// it. Requires `Release::once_placed` (asserted). The pipeline must not be moved while the worker has a
-    /// frame. The worker must live until it is replaced.
-    void work_beside(DepthWorker* worker);
-    /// The worker may have finished a frame: if so, the frame goes into the maps, and the next one begins.
+    /// From now on, each camera's frames are converted to terms by its worker, and later measurements may go
+    /// into the maps before a frame; a listener gets the order. While a worker has a frame, two more of its
+    /// camera wait. A further one displaces the oldest of them (`queue_overflow`). If waiting inputs must be
+    /// resolved at once, waiting frames are dropped, too. `workers`: one for each camera or more, in its
+    /// order (asserted); empty: the call that releases a frame converts it, and everything waits for it.
+    /// Requires `Release::once_placed` (asserted). The pipeline must not be moved while a worker has a frame.
+    /// The workers must live until they are replaced.
+    void work_beside(const std::vector<DepthWorker*>& workers);
+    /// Workers may have finished frames: these go into the maps, and the next ones begin.
     void on_worker_done();
     /// No CAN frame arrives at present, and the host time is `now`, known from a source other than the bus.
     /// Integrates what need not wait longer. Until the next CAN frame, time advances with the captures of
@@ -137,13 +140,11 @@ class Pipeline {
     [[nodiscard]] std::uint64_t times_ahead() const noexcept { return time_jump_.times_ahead(); }
     /// Capture times of the readings that the last `on_can`, `on_depth` or `on_silence` put into the maps.
     [[nodiscard]] std::span<const HostTime> just_used() const noexcept { return just_used_; }
-    /// True if the host time is known and three of the rig's frame periods have passed without a depth frame.
-    [[nodiscard]] bool is_camera_stale() const;
+    /// True if the host time is known and three periods of the camera have passed without a frame of it.
+    [[nodiscard]] bool is_camera_stale(std::size_t camera) const;
     [[nodiscard]] const CanIntake& intake() const noexcept { return intake_; }
     /// The check of a source's samples that rejects positions that the arm cannot have.
     [[nodiscard]] const JointGate& joint_gate(std::size_t source) const { return joint_gates_.at(source); }
-    /// Null if the rig has no camera.
-    [[nodiscard]] const DepthStage* depth_stage() const noexcept { return builder_.depth_stage(); }
     /// Converts measurements to maps. A recording that begins now also needs the joint samples stored there.
     [[nodiscard]] const MapBuilder& builder() const noexcept { return builder_; }
     /// For a replay in a daemon's order, which bypasses the pipeline's own inputs.
@@ -167,12 +168,16 @@ class Pipeline {
     void release_joints(HostTime until);
     /// Releases measurements captured at or before `until` and, with `Release::once_placed`, all placed ones.
     void release_measurements(HostTime until);
-    [[nodiscard]] bool is_placed(const ReleaseKey& key, bool is_depth) const;
+    [[nodiscard]] bool is_placed(const MeasurementQueue::Next& next) const;
+    /// The cameras whose worker has no frame.
+    [[nodiscard]] CameraSet idle_cameras() const;
+    [[nodiscard]] InputCounters<DepthReason>& counters_of(std::size_t camera);
+    [[nodiscard]] std::uint64_t depth_frames_pending(std::size_t camera) const;
     [[nodiscard]] Status<ReadingReason> integrate(const RangeMeasurement& measurement);
     /// Puts the frame into the maps, or gives it to the worker. True if it is in the maps.
     bool take_depth(DepthFrame frame);
-    void finish_depth();
-    void drop_oldest_depth();
+    void finish_depth(std::size_t camera);
+    void drop_oldest_depth(std::size_t camera);
 
     PipelineConfig config_;
     // From frames to measurements in host time.
@@ -187,11 +192,12 @@ class Pipeline {
     // Placement, and the maps' voxels.
     std::vector<JointGate> joint_gates_;  ///< one for each source of joint states
     MapBuilder builder_;
-    DepthBeside beside_;
+    std::vector<DepthBeside> beside_;  ///< one for each camera
 
     PipelineInputs inputs_;
-    std::vector<HostTime> just_used_;             ///< by the current call, or the last one
-    std::optional<Nanoseconds> camera_patience_;  ///< three frame periods; empty without a camera
+    std::vector<HostTime> just_used_;  ///< by the current call, or the last one
+    std::vector<std::string> camera_names_;
+    std::vector<Nanoseconds> camera_patiences_;  ///< three frame periods each
     bool is_finished_ = false;
 };
 

@@ -14,7 +14,7 @@
 
 namespace octoskin {
 
-/// The order in which measurements enter the map. The camera's source is node 0.
+/// The order in which measurements enter the map. A camera's source is node 0.
 struct ReleaseKey {
     HostTime captured;
     BeamSource source;

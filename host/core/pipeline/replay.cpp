@@ -5,44 +5,57 @@
 namespace octoskin {
 namespace {
 
-/// A depth source with its next frame prefetched.
+/// The depth sources, each with its next frame prefetched.
 class DepthFeed {
   public:
-    DepthFeed(DepthSource* source, ReplayOutcome& outcome) : source_(source), outcome_(outcome) { fetch(); }
+    DepthFeed(const DepthSources& sources, ReplayOutcome& outcome) : outcome_(outcome) {
+        for (DepthSource* const source : sources) cameras_.push_back({source, std::nullopt});
+        for (std::size_t camera = 0; camera < cameras_.size(); ++camera) fetch(camera);
+    }
 
     void feed_until(HostTime now, Pipeline& pipeline) {
-        while (next_ && next_->captured <= now) {  // ends with the source
-            feed_one(pipeline);
-        }
+        for (auto next = earliest(); next && frame_of(*next)->captured <= now; next = earliest())
+            feed(*next, pipeline);
     }
     void feed_rest(Pipeline& pipeline) {
-        while (next_) {
-            feed_one(pipeline);
-        }
+        while (const auto next = earliest()) feed(*next, pipeline);
     }
 
   private:
-    void feed_one(Pipeline& pipeline) {
-        pipeline.on_depth(*std::exchange(next_, std::nullopt));
-        ++outcome_.progress.depth_frames;
-        fetch();
+    struct Camera {
+        DepthSource* source;  ///< null: it has ended
+        std::optional<DepthFrame> next;
+    };
+    [[nodiscard]] std::optional<DepthFrame>& frame_of(std::size_t camera) { return cameras_[camera].next; }
+    /// The camera with the earliest next frame; empty if all sources have ended.
+    [[nodiscard]] std::optional<std::size_t> earliest() {
+        std::optional<std::size_t> earliest;
+        for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
+            if (!frame_of(camera)) continue;
+            if (!earliest || frame_of(camera)->captured < frame_of(*earliest)->captured) earliest = camera;
+        }
+        return earliest;
     }
-    void fetch() {
-        if (source_ == nullptr) {
+    void feed(std::size_t camera, Pipeline& pipeline) {
+        pipeline.on_depth(*std::exchange(frame_of(camera), std::nullopt));
+        ++outcome_.progress.depth_frames;
+        fetch(camera);
+    }
+    void fetch(std::size_t camera) {
+        DepthSource*& source = cameras_[camera].source;
+        if (source == nullptr) return;
+        Result<std::optional<DepthFrame>, Error> frame = source->next();
+        if (!frame) {
+            outcome_.depth_errors.push_back(frame.error());
+            source = nullptr;
             return;
         }
-        Result<std::optional<DepthFrame>, Error> frame = source_->next();
-        if (frame) {
-            next_ = std::move(frame).value();
-            return;
-        }
-        outcome_.depth_error = frame.error();
-        source_ = nullptr;
+        frame_of(camera) = std::move(frame).value();
+        if (frame_of(camera)) frame_of(camera)->camera = static_cast<std::uint8_t>(camera);
     }
 
-    DepthSource* source_;
+    std::vector<Camera> cameras_;
     ReplayOutcome& outcome_;
-    std::optional<DepthFrame> next_;
 };
 
 std::optional<StampedFrame> next_frame(CanSource& can, ReplayOutcome& outcome) {
@@ -56,7 +69,8 @@ std::optional<StampedFrame> next_frame(CanSource& can, ReplayOutcome& outcome) {
 
 }  // namespace
 
-ReplayOutcome replay(Pipeline& pipeline, CanSource& can, DepthSource* depth, const ReplayReport& report) {
+ReplayOutcome replay(Pipeline& pipeline, CanSource& can, const DepthSources& depth,
+                     const ReplayReport& report) {
     ReplayOutcome outcome;
     ReplayProgress& progress = outcome.progress;
     DepthFeed depth_feed(depth, outcome);

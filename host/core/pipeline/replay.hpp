@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/result.hpp"
 #include "host/core/depth/depth_source.hpp"
@@ -24,19 +25,23 @@ struct ReplayProgress {
 
 struct ReplayOutcome {
     ReplayProgress progress;
-    /// A source that failed before its end; its inputs until then were used.
+    /// Sources that failed before their end; their inputs until then were used.
     std::optional<Error> can_error;
-    std::optional<Error> depth_error;
-    [[nodiscard]] bool is_complete() const { return !can_error && !depth_error; }
+    std::vector<Error> depth_errors;
+    [[nodiscard]] bool is_complete() const { return !can_error && depth_errors.empty(); }
 };
 
 /// Called after every `kReplayReportEvery` frames and at the end.
 using ReplayReport = std::function<void(const ReplayProgress&)>;
 inline constexpr std::uint64_t kReplayReportEvery = 1000;
 
-/// Feeds both sources into `pipeline` until they end, then finishes it. `depth`: null if there is none. A
-/// depth frame is added once the host time of the log has reached its capture time.
-[[nodiscard]] ReplayOutcome replay(Pipeline& pipeline, CanSource& can, DepthSource* depth,
+/// The depth frames of a recording by the index of their camera in the rig; null, or missing at the end:
+/// there are none of it.
+using DepthSources = std::vector<DepthSource*>;
+
+/// Feeds all sources into `pipeline` until they end, then finishes it. A depth frame is added once the host
+/// time of the log has reached its capture time. The maps do not depend on which source is read first.
+[[nodiscard]] ReplayOutcome replay(Pipeline& pipeline, CanSource& can, const DepthSources& depth,
                                    const ReplayReport& report = {});
 
 }  // namespace octoskin

@@ -13,6 +13,7 @@
 #include "common/wire/bus_load.hpp"
 #include "common/wire/messages.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/core/depth/noise_law.hpp"
 #include "host/core/rig/beam_optics.hpp"
 
 namespace octoskin {
@@ -53,7 +54,10 @@ struct HostJointSource {
     bool is_local = false;
 };
 
+inline constexpr std::size_t kCamerasMax = 8;
+
 struct HostCamera {
+    std::string name = {};  ///< unique; empty: the rig's only camera
     CameraIntrinsics intrinsics;
     double depth_min_m = 0.5;  ///< along the optical axis
     double depth_max_m = 4.5;
@@ -61,6 +65,8 @@ struct HostCamera {
     /// Optical frame: z forward, x right, y down.
     Eigen::Isometry3d T_link_camera = Eigen::Isometry3d::Identity();
     double rate_hz = 10.0;
+    std::optional<DepthNoiseLaw> noise = {};  ///< empty: that of the mapping
+    std::string device = {};                  ///< OpenNI2 URI or .oni file; empty: the first device
 };
 
 /// A piece of the robot's body: all points within `radius_m` of the segment from p_link_a to p_link_b,
@@ -102,7 +108,7 @@ struct HostRig {
     Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
     std::vector<HostNode> nodes;                 ///< sensor nodes, unique ids
     std::vector<HostJointSource> joint_sources;  ///< unique ids and joints, at most kJointsMax in all
-    std::optional<HostCamera> camera;
+    std::vector<HostCamera> cameras;             ///< at most kCamerasMax
     std::vector<LinkCapsule> body;
     /// Space that only the robot can occupy: without padding, and inside each element of the robot
     /// description.

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "host/core/kinematics/joint_twist.hpp"
+#include "host/core/rig/host_rig.hpp"
 
 namespace octoskin::orderlog {
 namespace {
@@ -40,6 +41,13 @@ class Words {
         return to_crc(word);
     }
     std::uint32_t crc() { return to_crc(next()); }
+    /// Takes the next word if it is this one.
+    bool take(std::string_view word) {
+        const bool is_next =
+            !is_over_ && rest_.starts_with(word) && rest_.substr(word.size()).starts_with(' ');
+        if (is_next) (void)next();
+        return is_next;
+    }
     /// "7+2": the joints of each source.
     std::vector<std::size_t> joint_counts() {
         std::vector<std::size_t> counts;
@@ -116,9 +124,11 @@ std::string format(const RangeMeasurement& reading) {
                        reading.sigma_m);
 }
 
-std::string format(const DepthCommit& frame) {
+std::string format(const DepthCommit& frame, std::size_t cameras) {
+    assert(frame.camera < cameras);
     const std::string index = frame.index ? fmt::format("{}", *frame.index) : std::string(kNone);
-    return fmt::format("D {} {}\n", index, frame.captured.ns);
+    if (cameras == 1) return fmt::format("D {} {}\n", index, frame.captured.ns);
+    return fmt::format("D {} {} {}\n", frame.camera, index, frame.captured.ns);
 }
 
 JointMeasurement parse_joints(Words& words, std::span<const std::size_t> counts) {
@@ -145,9 +155,12 @@ std::string format(const WaitCommit& passed) {
     return fmt::format("W {}\n", passed.seconds);
 }
 
-DepthCommit parse_depth(Words& words) {
-    const auto index = words.optional_number<std::uint64_t>();
-    return {index, {words.number(kTimeMax)}};
+DepthCommit parse_depth(Words& words, std::size_t cameras) {
+    DepthCommit frame;
+    if (cameras > 1) frame.camera = words.number(static_cast<std::uint8_t>(cameras - 1));
+    frame.index = words.optional_number<std::uint64_t>();
+    frame.captured = {words.number(kTimeMax)};
+    return frame;
 }
 
 }  // namespace
@@ -163,16 +176,20 @@ std::string joints_text(std::span<const std::size_t> joints) {
 
 std::string format_header(const Header& header) {
     const auto& state = header.first_state;
-    return fmt::format("{} rig {:08x} mapping {:08x} joints {} first {}{}\n", state ? kSchema : kSchemaBefore,
-                       header.rig_hash, header.mapping_crc32, joints_text(header.joints),
-                       crc_or_none(header.first_map), state ? fmt::format(" state {:08x}", *state) : "");
+    const std::size_t cameras = header.form.cameras;
+    return fmt::format("{} rig {:08x} mapping {:08x} joints {}{} first {}{}\n",
+                       state ? kSchema : kSchemaBefore, header.rig_hash, header.mapping_crc32,
+                       joints_text(header.form.joints),
+                       cameras > 1 ? fmt::format(" cameras {}", cameras) : "", crc_or_none(header.first_map),
+                       state ? fmt::format(" state {:08x}", *state) : "");
 }
 
-std::string format_commit(const Commit& commit, std::span<const std::size_t> joints) {
-    if (const auto* const sample = std::get_if<JointMeasurement>(&commit)) return format(*sample, joints);
+std::string format_commit(const Commit& commit, const CommitForm& form) {
+    if (const auto* const sample = std::get_if<JointMeasurement>(&commit))
+        return format(*sample, form.joints);
     if (const auto* const reading = std::get_if<RangeMeasurement>(&commit)) return format(*reading);
     if (const auto* const passed = std::get_if<WaitCommit>(&commit)) return format(*passed);
-    return format(std::get<DepthCommit>(commit));
+    return format(std::get<DepthCommit>(commit), form.cameras);
 }
 
 std::string format_trailer(const Trailer& trailer) {
@@ -191,24 +208,25 @@ std::optional<Header> parse_header(std::string_view line) {
     words.expect("mapping");
     header.mapping_crc32 = words.crc();
     words.expect("joints");
-    header.joints = words.joint_counts();
+    header.form.joints = words.joint_counts();
+    if (words.take("cameras")) header.form.cameras = words.number(kCamerasMax);
     words.expect("first");
     header.first_map = words.optional_crc();
     if (!is_of_before) {
         words.expect("state");
         header.first_state = words.crc();
     }
-    if (!words.is_sound()) return std::nullopt;
+    if (!words.is_sound() || header.form.cameras == 0) return std::nullopt;
     return header;
 }
 
-std::optional<Commit> parse_commit(std::string_view line, std::span<const std::size_t> joints) {
+std::optional<Commit> parse_commit(std::string_view line, const CommitForm& form) {
     if (line.size() < 2 || line[1] != ' ') return std::nullopt;
     Words words(line.substr(2));
     std::optional<Commit> commit;
-    if (line[0] == 'J') commit = parse_joints(words, joints);
+    if (line[0] == 'J') commit = parse_joints(words, form.joints);
     if (line[0] == 'R') commit = parse_reading(words);
-    if (line[0] == 'D') commit = parse_depth(words);
+    if (line[0] == 'D') commit = parse_depth(words, form.cameras);
     if (line[0] == 'W') commit = WaitCommit{words.number(kWaitMax)};
     return words.is_sound() ? commit : std::nullopt;
 }

@@ -7,7 +7,9 @@
 //     R 2 3 0 71003000000 0.734 0.021         reading: node, sensor, zone, captured at (ns), range and sigma
 //                                             in metres; range "-": no target
 //     D 12 71010000000                        depth frame: its index in depth.oni, from 0, captured at (ns);
-//                                             "-": the image is not recorded
+//                                             "-": the image is not recorded. With several cameras,
+//                                             `joints 7 cameras 2`, its camera's index in the rig, from 0, is
+//                                             before, and the frame is in depth/NAME.oni
 //     W 12                                    a saved map waits for its first measurement; seconds that
 //                                             have passed
 //     # anything                              a comment
@@ -32,10 +34,17 @@
 
 namespace octoskin::orderlog {
 
+/// What the fields of a commit depend on.
+struct CommitForm {
+    std::vector<std::size_t> joints = {};  ///< of each source of the rig, 1..7 each
+    std::size_t cameras = 1;               ///< of the rig; 1 also if it has none
+    friend bool operator==(const CommitForm&, const CommitForm&) = default;
+};
+
 struct Header {
     std::uint32_t rig_hash = 0;
     std::uint32_t mapping_crc32 = 0;
-    std::vector<std::size_t> joints = {};           ///< of each source of the rig, 1..7 each
+    CommitForm form = {};
     std::optional<std::uint32_t> first_map;         ///< CRC-32 of first.ot; empty: the map was empty
     std::optional<std::uint32_t> first_state = {};  ///< CRC-32 of first.snapshot; empty: version 1
     friend bool operator==(const Header&, const Header&) = default;
@@ -56,9 +65,9 @@ struct Trailer {
 /// "7+2": the joints of each source.
 [[nodiscard]] std::string joints_text(std::span<const std::size_t> joints);
 
-/// Each with its line feed. A header without `first_state` is of version 1. `joints`: those of the header.
+/// Each with its line feed. A header without `first_state` is of version 1. `form`: that of the header.
 [[nodiscard]] std::string format_header(const Header& header);
-[[nodiscard]] std::string format_commit(const Commit& commit, std::span<const std::size_t> joints);
+[[nodiscard]] std::string format_commit(const Commit& commit, const CommitForm& form);
 [[nodiscard]] std::string format_trailer(const Trailer& trailer);
 
 /// Well above the longest line of any kind.
@@ -66,7 +75,7 @@ inline constexpr std::size_t kLineBytesMax = 1024;
 
 /// `line` has no line feed. Empty if it is not such a line. Safe for any bytes.
 [[nodiscard]] std::optional<Header> parse_header(std::string_view line);
-[[nodiscard]] std::optional<Commit> parse_commit(std::string_view line, std::span<const std::size_t> joints);
+[[nodiscard]] std::optional<Commit> parse_commit(std::string_view line, const CommitForm& form);
 [[nodiscard]] std::optional<Trailer> parse_trailer(std::string_view line);
 
 }  // namespace octoskin::orderlog

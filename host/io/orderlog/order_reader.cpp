@@ -69,7 +69,7 @@ Result<std::optional<Commit>, Error> OrderReader::next() {
     if (trailer_) return std::optional<Commit>{};
     while (read_line()) {
         if (line_.starts_with('#')) continue;
-        if (auto commit = parse_commit(line_, header_.joints)) {
+        if (auto commit = parse_commit(line_, header_.form)) {
             if (!can_be(*commit))
                 return failure({ErrorCode::out_of_range, "no sensor has that range", shown(line_)});
             ++commits_;

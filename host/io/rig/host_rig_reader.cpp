@@ -67,7 +67,7 @@ HostRig to_host(const rig::Rig& rig) {
         host.joint_sources.push_back(
             {source.node_id, source.joints, source.rate_hz, source.way == rig::JointWay::socket});
     host.bit_rates = {.nominal = rig.bus.nominal_bitrate, .data = rig.bus.data_bitrate};
-    if (rig.camera) host.camera = host_camera(*rig.camera);
+    for (const rig::Camera& camera : rig.cameras) host.cameras.push_back(host_camera(camera));
     host.links_ignored_by_sensors = rig.links_ignored_by_sensors;
     host.depth_self_margin_m = rig.depth_self_margin_m;
     host.range_self_margin_m = rig.range_self_margin_m;
@@ -112,14 +112,23 @@ std::vector<std::string> notes_of(const std::vector<LinkWithBorrowedBody>& links
 
 }  // namespace
 
+static_assert(rig::kCamerasMax == kCamerasMax);
+
 HostCamera host_camera(const rig::Camera& camera) {
     HostCamera host;
+    host.name = camera.name;
     host.intrinsics = {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, camera.lens};
     host.depth_min_m = camera.depth_min_m;
     host.depth_max_m = camera.depth_max_m;
     host.link = camera.link;
     host.T_link_camera = camera.T_link_camera;
     host.rate_hz = camera.rate_hz;
+    if (const auto& noise = camera.noise)
+        host.noise = DepthNoiseLaw{.constant_m = noise->noise_m,
+                                   .quadratic_per_m = noise->noise_per_m,
+                                   .from_m = noise->noise_from_m,
+                                   .bias_per_m = noise->bias_per_m};
+    host.device = camera.device;
     return host;
 }
 

@@ -13,7 +13,7 @@
 namespace octoskin::snapshot {
 
 /// The beginning of the file: 16 bytes, the last of which is the version.
-inline constexpr std::string_view kMagic = "octoskin-state/2";
+inline constexpr std::string_view kMagic = "octoskin-state/3";
 /// Limit of a block's bytes. The record of a brick has at most 2.1 kB, that of a row of a camera 86 kB, that
 /// of a zone's readings far less than this limit.
 inline constexpr std::size_t kPayloadMax = std::size_t{16} << 20U;

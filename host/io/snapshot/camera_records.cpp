@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <string>
+#include <utility>
 
+#include "host/core/rig/host_rig.hpp"
 #include "host/io/snapshot/matrices.hpp"
 
 namespace octoskin::snapshot {
@@ -65,6 +68,20 @@ void put_row(ByteWriter& writer, std::span<const CameraMemory::Pixel> row) {
     }
 }
 
+void put_name(ByteWriter& writer, const std::string& name) {
+    writer.put_count(name.size());
+    for (const char letter : name) writer.put(static_cast<std::uint8_t>(letter));
+}
+
+std::string get_name(ByteReader& reader) {
+    const std::uint64_t length = reader.get_count();
+    if (length > kCameraNameMax) reader.fail();
+    std::string name;
+    for (std::uint64_t i = 0; i < length && reader.is_sound(); ++i)
+        name += static_cast<char>(reader.get<std::uint8_t>());
+    return name;
+}
+
 /// False for a NaN.
 bool is_pose(const Eigen::Isometry3d& T_map_camera) {
     constexpr double kNotTurned = 1e-6;
@@ -77,6 +94,7 @@ bool is_pose(const Eigen::Isometry3d& T_map_camera) {
 
 void put_camera(BlockWriter& blocks, const CameraMemory& memory) {
     blocks.add(BlockKind::camera, [&](ByteWriter& writer, bool) {
+        put_name(writer, memory.name);
         writer.put(memory.width);
         writer.put(memory.height);
         put_matrix(writer, Eigen::Matrix3d(memory.T_map_camera.linear()));
@@ -90,25 +108,32 @@ void put_camera(BlockWriter& blocks, const CameraMemory& memory) {
 
 BlockRead CameraTaker::take(std::string_view payload) {
     ByteReader reader(payload);
-    if (!memory_ && !take_head(reader)) return BlockRead::malformed;
-    if (!is_within_limit()) return BlockRead::no_room;
-    while (!reader.is_over())
-        if (is_complete() || !take_row(reader)) return BlockRead::malformed;
+    while (!reader.is_over()) {
+        if (is_complete()) {
+            if (const BlockRead taken = take_head(reader); taken != BlockRead::all) return taken;
+        } else if (!take_row(reader)) {
+            return BlockRead::malformed;
+        }
+    }
     return reader.is_sound() ? BlockRead::all : BlockRead::malformed;
 }
 
 /// A row without any value takes two bytes of the file: the file's size is no limit.
 bool CameraTaker::is_within_limit() const noexcept {
-    const std::uint64_t pixels = std::uint64_t{memory_->width} * memory_->height;
+    std::uint64_t pixels = 0;
+    for (const CameraMemory& memory : memories_) pixels += std::uint64_t{memory.width} * memory.height;
     return pixels * sizeof(CameraMemory::Pixel) <= std::uint64_t{mapping_.map.memory_max_mib} << 20U;
 }
 
 bool CameraTaker::is_complete() const noexcept {
-    return !memory_ || memory_->pixels.size() == std::size_t{memory_->width} * memory_->height;
+    if (memories_.empty()) return true;
+    const CameraMemory& memory = memories_.back();
+    return memory.pixels.size() == std::size_t{memory.width} * memory.height;
 }
 
-bool CameraTaker::take_head(ByteReader& reader) {
-    CameraMemory& memory = memory_.emplace();
+BlockRead CameraTaker::take_head(ByteReader& reader) {
+    CameraMemory memory;
+    memory.name = get_name(reader);
     memory.width = reader.get<std::uint32_t>();
     memory.height = reader.get<std::uint32_t>();
     Eigen::Matrix3d R_map_camera;
@@ -118,13 +143,22 @@ bool CameraTaker::take_head(ByteReader& reader) {
     memory.T_map_camera.linear() = R_map_camera;
     memory.T_map_camera.translation() = p_map_camera;
     const auto is_side = [](std::uint32_t side) { return side >= 1 && side <= kSideMax; };
-    return reader.is_sound() && mapping_.depth_update == DepthUpdate::denoised && is_side(memory.width) &&
-           is_side(memory.height) && is_pose(memory.T_map_camera);
+    const bool is_possible = reader.is_sound() && mapping_.depth_update == DepthUpdate::denoised &&
+                             is_side(memory.width) && is_side(memory.height) &&
+                             is_pose(memory.T_map_camera) && is_new(memory);
+    if (!is_possible) return BlockRead::malformed;
+    memories_.push_back(std::move(memory));
+    return is_within_limit() ? BlockRead::all : BlockRead::no_room;
+}
+
+bool CameraTaker::is_new(const CameraMemory& memory) const noexcept {
+    return memories_.size() < kCamerasMax &&
+           std::ranges::find(memories_, memory.name, &CameraMemory::name) == memories_.end();
 }
 
 bool CameraTaker::take_row(ByteReader& reader) {
-    auto& pixels = memory_->pixels;
-    const std::size_t end = pixels.size() + memory_->width;
+    auto& pixels = memories_.back().pixels;
+    const std::size_t end = pixels.size() + memories_.back().width;
     while (pixels.size() < end) {
         const std::uint64_t without = reader.get_count();
         if (!reader.is_sound() || without > end - pixels.size()) return false;

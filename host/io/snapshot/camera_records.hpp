@@ -1,4 +1,5 @@
-// The memory of the depth camera as records: its size and pose, then row by row the pixels that have a value:
+// The memory of each depth camera as records: its name (count, bytes), size and pose, then row by row the
+// pixels that have a value:
 //
 //     until the row ends            pixels without a value; then, unless the row ends, pixels with one
 //     (counts)
@@ -8,9 +9,9 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "host/core/mapping/camera_memory.hpp"
 #include "host/core/mapping/mapping_config.hpp"
@@ -20,6 +21,8 @@ namespace octoskin::snapshot {
 
 /// Of one pixel with a value.
 inline constexpr std::uint64_t kPixelBytesMax = 21;
+/// Bytes of the longest name of a camera in a rig file.
+inline constexpr std::uint64_t kCameraNameMax = 32;
 /// Pixels of the largest camera of a rig file.
 inline constexpr std::uint64_t kCameraPixelsMax = std::uint64_t{4096} * 4096;
 
@@ -32,23 +35,24 @@ class CameraTaker {
     /// `mapping` must outlive it.
     explicit CameraTaker(const MappingConfig& mapping) noexcept : mapping_(mapping) {}
 
-    /// Malformed: the content is not the memory of a camera with this mapping. No room: the camera's memory
-    /// would be larger than the mapping allows the map. Throws std::bad_alloc.
+    /// Malformed: the content is not the memory of cameras with this mapping and unique names. No room: the
+    /// cameras' memory would be larger than the mapping allows the map. Throws std::bad_alloc.
     [[nodiscard]] BlockRead take(std::string_view payload);
-    /// True without any block, and after the last row.
+    /// True without any block, and after the last row of a camera.
     [[nodiscard]] bool is_complete() const noexcept;
-    /// Moves it out, after the last block; empty without any.
-    [[nodiscard]] std::optional<CameraMemory> memory() noexcept { return std::move(memory_); }
+    /// Moves them out, after the last block.
+    [[nodiscard]] std::vector<CameraMemory> memories() noexcept { return std::move(memories_); }
 
   private:
-    [[nodiscard]] bool take_head(ByteReader& reader);
+    [[nodiscard]] BlockRead take_head(ByteReader& reader);
+    [[nodiscard]] bool is_new(const CameraMemory& memory) const noexcept;
     [[nodiscard]] bool take_row(ByteReader& reader);
     [[nodiscard]] CameraMemory::Pixel take_pixel(ByteReader& reader) const;
     [[nodiscard]] bool is_within_limit() const noexcept;
     [[nodiscard]] bool is_possible(const DepthDenoiser::Pixel& depth) const noexcept;
 
     const MappingConfig& mapping_;
-    std::optional<CameraMemory> memory_;
+    std::vector<CameraMemory> memories_;  ///< of the last one maybe not all rows
 };
 
 }  // namespace octoskin::snapshot

@@ -94,7 +94,7 @@ class Decoder {
         }
         if (!blocks_.is_over()) return fail(ErrorCode::damaged, blocks_.at(), "bytes after the end");
         FusedMap map(mapping_.map, std::move(layers_), has_undated_);
-        return Snapshot{origin_, {std::move(map), std::move(histories_), camera_.memory()}};
+        return Snapshot{origin_, {std::move(map), std::move(histories_), cameras_.memories()}};
     }
 
   private:
@@ -130,7 +130,7 @@ class Decoder {
             case BlockKind::seen:
                 return records(block, readings_.take_seen(block.payload));
             case BlockKind::camera:
-                return within_limit(block, camera_.take(block.payload));
+                return within_limit(block, cameras_.take(block.payload));
             case BlockKind::done:
                 return take_done(block);
         }
@@ -183,7 +183,7 @@ class Decoder {
         for (const std::uint64_t there : are) are_all = reader.get<std::uint64_t>() == there && are_all;
         is_done_ = true;
         return records(block, are_all && reader.is_sound() && reader.is_over() &&
-                                  are_of_one_layer(layers_.counts) && camera_.is_complete());
+                                  are_of_one_layer(layers_.counts) && cameras_.is_complete());
     }
 
     [[nodiscard]] std::size_t bytes_max() const noexcept {
@@ -203,7 +203,7 @@ class Decoder {
     StampTree stamps_;
     SensorHistories histories_;
     ReadingsTaker readings_{histories_};
-    CameraTaker camera_{mapping_};
+    CameraTaker cameras_{mapping_};
     BrickTaker<float> log_odds_{layers_.log_odds, bytes_max()};
     BrickTaker<float> prior_{layers_.counts.prior, bytes_max()};
     BrickTaker<float> misses_{layers_.counts.misses, bytes_max()};

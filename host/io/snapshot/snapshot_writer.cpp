@@ -52,7 +52,7 @@ void write_snapshot(const MapState& state, const SnapshotOrigin& origin, const B
     put_bricks(blocks, BlockKind::hits, layers.counts.hits);
     put_bricks(blocks, BlockKind::ages, layers.ages.stamps());
     put_readings(blocks, state.histories);
-    if (state.camera) put_camera(blocks, *state.camera);
+    for (const CameraMemory& camera : state.cameras) put_camera(blocks, camera);
     blocks.add(BlockKind::done, [&](ByteWriter& writer, bool) { put_done(writer, state); });
     blocks.finish();
 }

@@ -11,7 +11,8 @@ namespace {
 HostRig without_robot(const rig::Camera& camera, const Eigen::Isometry3d& T_map_base) {
     HostRig rig;
     rig.T_map_base = T_map_base;
-    rig.camera = host_camera(camera);
+    rig.cameras = {host_camera(camera)};
+    rig.cameras.front().noise.reset();  // that of the mapping is under study
     return rig;
 }
 

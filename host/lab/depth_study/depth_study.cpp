@@ -32,14 +32,28 @@ struct Ground {
     std::vector<NoiseGround> noises;
 };
 
+/// Why the study cannot use this rig. It looks at one camera in place of choosing one of several.
+std::optional<Error> camera_fault(const rig::Rig& rig) {
+    if (rig.cameras.size() > 1)
+        return Error{.code = ErrorCode::unsupported,
+                     .what = "expected a rig with one camera, which is on no link",
+                     .value = fmt::format("{} cameras", rig.cameras.size()),
+                     .remedy =
+                         "give a rig with the camera to study only: one that `extends` this one, with "
+                         "`cameras: ~` and a `camera`",
+                     .key = "cameras"};
+    if (rig.external_cameras().empty())
+        return Error{.code = ErrorCode::missing_key,
+                     .what = "expected a rig with a camera that is on no link",
+                     .key = "camera"};
+    return std::nullopt;
+}
+
 Result<rig::Rig, AppError> read_rig_with_camera(const DepthRequest& request) {
     auto rig = read_given_rig(request.rig);
-    if (rig && !rig->external_camera()) {
-        return fail(ExitCode::bad_config, {.code = ErrorCode::missing_key,
-                                           .what = "expected a rig with a camera that is on no link",
-                                           .file = request.rig,
-                                           .key = "camera"});
-    }
+    if (!rig) return rig;
+    if (auto fault = camera_fault(*rig))
+        return fail(ExitCode::bad_config, in_file(std::move(*fault), request.rig));
     return rig;
 }
 
@@ -122,7 +136,7 @@ class Cases {
         const PartTimer timer("");
         auto figures = study_case({.world = scene.world,
                                    .scenario = scene.scenario,
-                                   .camera = ground_.rig.camera.value(),
+                                   .camera = ground_.rig.cameras.front(),
                                    .T_map_base = T_map_base,
                                    .noise = noise.noise,
                                    .seed = seed,

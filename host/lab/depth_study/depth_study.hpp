@@ -39,8 +39,9 @@ struct DepthResults {
 };
 
 /// `say`: progress, one line for each scenario, noise and seed, called under a lock. Errors: unreadable
-/// files, values that cannot be used, a rig without a camera (bad_config), a world with moving models unless
-/// `hand`. About 1 s for each second of images and configuration.
+/// files, values that cannot be used, a rig with several cameras or without one that is on no link
+/// (bad_config), a world with moving models unless `hand`. About 1 s for each second of images and
+/// configuration.
 [[nodiscard]] Result<DepthResults, AppError> run_depth_study(
     const DepthRequest& request, const std::function<void(const std::string&)>& say);
 

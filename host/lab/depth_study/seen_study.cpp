@@ -25,7 +25,7 @@ class SeenStudy {
     /// By what the camera sees from where it is.
     Status<AppError> look_from(const rig::Camera& camera) {
         const auto config = truth_config_of(of_.scenario, of_.contenders.front().mapping.map.resolution_m);
-        auto truth = evaluation::seen_truth(of_.world, camera, config, of_.T_map_base);
+        auto truth = evaluation::seen_truth(of_.world, {&camera, 1}, config, of_.T_map_base);
         if (!truth) return fail(ExitCode::bad_config, of_.scenario.error("region", std::move(truth.error())));
         truth_ = std::move(*truth);
         return Done{};

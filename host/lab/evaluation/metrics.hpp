@@ -65,7 +65,7 @@ struct Metrics {
     std::optional<double> f1;
     std::optional<double> iou;
     std::optional<double> precision_tolerant;  ///< one voxel beside a surface is right too
-    std::optional<double> occluded_recall;     ///< recall on surface voxels that the camera cannot see
+    std::optional<double> occluded_recall;     ///< recall on surface voxels that no camera sees
     std::optional<double> object_recall;       ///< the same on the hidden objects only
     std::optional<double> coverage;            ///< known voxels / all
     std::optional<double> log_loss;            ///< natural logarithm; unknown predicts 0.5
@@ -73,7 +73,7 @@ struct Metrics {
     Calibration calibration;
     FreeCalibration free_calibration;
 
-    std::optional<SeenMetrics> seen = std::nullopt;            ///< of the external camera; empty without one
+    std::optional<SeenMetrics> seen = std::nullopt;            ///< of the external cameras; empty without one
     std::optional<BesideCamera> beside_camera = std::nullopt;  ///< empty without the camera's map
 };
 

@@ -1,4 +1,4 @@
-// What a map says of the surfaces and of the space that a camera sees: occupied, free or unknown, by
+// What a map says of the surfaces and of the space that cameras see: occupied, free or unknown, by
 // thickness of the solids, and where a planner would drive. docs/reference/evaluation.md has the domain of
 // each figure.
 #pragma once
@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/result.hpp"
@@ -19,27 +20,27 @@
 
 namespace octoskin::evaluation {
 
-/// A voxel that holds a point of a surface that the camera sees.
+/// A voxel that holds a point of a surface that a camera sees.
 struct SeenVoxel {
     VoxelKey key;
     ThicknessClass thickness = ThicknessClass::other;  ///< of the thickest solid that is seen in it
-    /// The camera's pixels are fine enough for the class: always, except that a rod of 5 to 8 mm needs a
-    /// footprint of at most its thickness + 2 mm.
+    /// The pixels of a camera that sees it are fine enough for the class: always, except that a rod of 5 to 8
+    /// mm needs a footprint of at most its thickness + 2 mm.
     bool is_resolved = true;
     /// The seen point of that solid that is nearest to the voxel's centre, map frame, metres.
     Eigen::Vector3d p_map_point = Eigen::Vector3d::Zero();
     /// Out of the surface; at most 55 degrees from the direction to the camera. Unit, map frame.
     Eigen::Vector3d outwards_map = Eigen::Vector3d::UnitZ();
-    Eigen::Vector3d to_camera_map = Eigen::Vector3d::UnitZ();  ///< unit, map frame
+    Eigen::Vector3d to_camera_map = Eigen::Vector3d::UnitZ();  ///< that sees the point; unit, map frame
 };
 
-/// The seen surfaces and the seen empty space of a world at one instant, from one camera pose, on one map
-/// grid.
+/// The surfaces and the empty space of a world that cameras see from where they stand, on one map grid: what
+/// any of them sees is seen.
 struct SeenTruth {
     double resolution_m = 0.0;
     VoxelGrid<SurfaceVoxel> surface;  ///< of the region; what it says of a camera is not used
     std::vector<SeenVoxel> voxels;    ///< by index in the region
-    /// Centres of spheres of 5 cm in space that the camera sees, 4 cm clear of all that it sees; map frame.
+    /// Centres of spheres of 5 cm in space that one camera sees, 4 cm clear of all that it sees; map frame.
     std::vector<Eigen::Vector3d> p_map_clear_spheres;
     /// F1 (as Metrics::f1) of a map that has exactly the seen voxels as occupied. Empty without surfaces.
     std::optional<double> f1_noise_free;
@@ -47,14 +48,15 @@ struct SeenTruth {
     [[nodiscard]] const KeyBox& region() const noexcept { return surface.box(); }
 };
 
-/// `camera`: at its T_base_camera, noise-free, every pixel. `config`: region, resolution, surfaces; its
-/// external camera is not used. The robot is not in it. Errors: region_fault(), surface_fault(). About 0.2 s
-/// for the experiment.
-[[nodiscard]] Result<SeenTruth, Error> seen_truth(const sim::World& world, const rig::Camera& camera,
+/// `cameras`: each at its T_base_camera, noise-free, every pixel. `config`: region, resolution, surfaces; its
+/// external cameras are not used. The robot is not in it. Errors: region_fault(), surface_fault(). About 0.2
+/// s for the experiment.
+[[nodiscard]] Result<SeenTruth, Error> seen_truth(const sim::World& world,
+                                                  std::span<const rig::Camera> cameras,
                                                   const TruthConfig& config,
                                                   const Eigen::Isometry3d& T_map_base);
 /// The same with the surfaces of surface_truth() over the region of `config`, which take most of the time.
-[[nodiscard]] SeenTruth seen_truth(const sim::World& world, const rig::Camera& camera,
+[[nodiscard]] SeenTruth seen_truth(const sim::World& world, std::span<const rig::Camera> cameras,
                                    const TruthConfig& config, const Eigen::Isometry3d& T_map_base,
                                    VoxelGrid<SurfaceVoxel> surface);
 
@@ -101,7 +103,7 @@ using SharesByClass = std::array<SeenShares, kThicknessClasses>;
 struct SeenMetrics {
     SeenShares all;
     SharesByClass by_class;  ///< without the next
-    /// Seen voxels of rods of 5 to 8 mm that the camera's pixels are too coarse for: in `all` only.
+    /// Seen voxels of rods of 5 to 8 mm that all pixels are too coarse for: in `all` only.
     SeenShares too_coarse;
 
     std::optional<double> seen_occupied;  ///< share of `all`, as the next two

@@ -57,19 +57,22 @@ struct Chosen {
     double thickness_m = -1.0;
     double off_centre_m = 0.0;
 
-    /// A point of a thicker solid, or one nearer to the voxel's centre, takes its place.
+    /// A point of a thicker solid, or one nearer to the voxel's centre, is better.
+    [[nodiscard]] bool is_worse_than(double other_thickness_m, double other_off_centre_m) const {
+        if (other_thickness_m != thickness_m) return other_thickness_m > thickness_m;
+        return other_off_centre_m < off_centre_m;
+    }
     void offer(const ViewPoint& other, double other_thickness_m, double other_off_centre_m) {
-        if (other_thickness_m < thickness_m) return;
-        if (other_thickness_m == thickness_m && other_off_centre_m >= off_centre_m) return;
-        *this = {&other, other_thickness_m, other_off_centre_m};
+        if (is_worse_than(other_thickness_m, other_off_centre_m))
+            *this = {&other, other_thickness_m, other_off_centre_m};
     }
 };
 
-std::vector<SeenVoxel> seen_voxels(const CleanView& view, const sim::World& world, const rig::Camera& camera,
-                                   const KeyBox& region, const VoxelLattice& lattice,
-                                   const Eigen::Isometry3d& T_map_base) {
-    const auto thicknesses = thicknesses_of(world);
-    std::map<std::size_t, Chosen> chosen;  // by index in the region: an image sees a small part of it
+/// Of one view, by index in the region: an image sees a small part of it.
+std::map<std::size_t, Chosen> chosen_points(const CleanView& view, std::span<const Thickness> thicknesses,
+                                            const KeyBox& region, const VoxelLattice& lattice,
+                                            const Eigen::Isometry3d& T_map_base) {
+    std::map<std::size_t, Chosen> chosen;
     for (const ViewPoint& point : view.points()) {
         const Eigen::Vector3d p_map = T_map_base * point.p_base;
         const auto key = lattice.key_of(p_map);
@@ -77,11 +80,42 @@ std::vector<SeenVoxel> seen_voxels(const CleanView& view, const sim::World& worl
         chosen[region.index_of(*key)].offer(point, thicknesses[point.solid].thickness_m,
                                             (p_map - lattice.centre_of(*key)).norm());
     }
+    return chosen;
+}
+
+/// A voxel with the values of its point that make it the better of two cameras' ones.
+struct Judged {
+    SeenVoxel voxel;
+    Chosen chosen;
+
+    /// The same voxel as another camera sees it. Resolved by either camera is resolved.
+    void add(const Judged& other) {
+        const bool is_one_solid = chosen.thickness_m == other.chosen.thickness_m;
+        const bool is_resolved = is_one_solid && (voxel.is_resolved || other.voxel.is_resolved);
+        if (chosen.is_worse_than(other.chosen.thickness_m, other.chosen.off_centre_m)) *this = other;
+        voxel.is_resolved |= is_resolved;
+    }
+};
+
+/// The voxels that any of the cameras sees; `views`: theirs.
+std::vector<SeenVoxel> seen_voxels(std::span<const CleanView> views, const sim::World& world,
+                                   std::span<const rig::Camera> cameras, const KeyBox& region,
+                                   const VoxelLattice& lattice, const Eigen::Isometry3d& T_map_base) {
+    const auto thicknesses = thicknesses_of(world);
+    std::map<std::size_t, Judged> judged;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        for (const auto& [index, chosen] :
+             chosen_points(views[i], thicknesses, region, lattice, T_map_base)) {
+            const Judged seen{seen_voxel(region.key_at(index), *chosen.point,
+                                         thicknesses[chosen.point->solid], cameras[i], T_map_base),
+                              chosen};
+            if (const auto [known, is_new] = judged.try_emplace(index, seen); !is_new)
+                known->second.add(seen);
+        }
+    }
     std::vector<SeenVoxel> voxels;
-    voxels.reserve(chosen.size());
-    for (const auto& [index, voxel] : chosen)
-        voxels.push_back(seen_voxel(region.key_at(index), *voxel.point, thicknesses[voxel.point->solid],
-                                    camera, T_map_base));
+    voxels.reserve(judged.size());
+    for (const auto& [index, seen] : judged) voxels.push_back(seen.voxel);
     return voxels;
 }
 
@@ -94,8 +128,8 @@ Eigen::Vector3d even_point(std::uint32_t index) {
     return point - point.array().floor().matrix();
 }
 
-/// All voxels that a sphere overlaps are in the region.
-std::vector<Eigen::Vector3d> clear_spheres(const CleanView& view, const KeyBox& region,
+/// Clear for any of the cameras. All voxels that a sphere overlaps are in the region.
+std::vector<Eigen::Vector3d> clear_spheres(std::span<const CleanView> views, const KeyBox& region,
                                            const VoxelLattice& lattice, const Eigen::Isometry3d& T_map_base) {
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kClearRadius_m - lattice.resolution_m() / 2.0);
     const Eigen::Vector3d low = lattice.centre_of(region.min) + margin;
@@ -105,7 +139,10 @@ std::vector<Eigen::Vector3d> clear_spheres(const CleanView& view, const KeyBox& 
     const Eigen::Isometry3d T_base_map = T_map_base.inverse();
     for (std::uint32_t i = 0; i < kTriedSpheres && spheres.size() < kClearSpheres; ++i) {
         const Eigen::Vector3d p_map = low + even_point(i).cwiseProduct(size);
-        if (view.is_clear(T_base_map * p_map, kClearRadius_m + kClearance_m)) spheres.push_back(p_map);
+        const auto is_clear = [p_base = Eigen::Vector3d(T_base_map * p_map)](const CleanView& view) {
+            return view.is_clear(p_base, kClearRadius_m + kClearance_m);
+        };
+        if (std::ranges::any_of(views, is_clear)) spheres.push_back(p_map);
     }
     return spheres;
 }
@@ -127,30 +164,31 @@ std::optional<double> f1_of_seen(const std::vector<SeenVoxel>& voxels,
 
 }  // namespace
 
-Result<SeenTruth, Error> seen_truth(const sim::World& world, const rig::Camera& camera,
+Result<SeenTruth, Error> seen_truth(const sim::World& world, std::span<const rig::Camera> cameras,
                                     const TruthConfig& config, const Eigen::Isometry3d& T_map_base) {
     if (auto fault = region_fault(config.region, config.resolution_m, T_map_base))
         return unexpected(std::move(*fault));
     const KeyBox region = region_of(config.region, config.resolution_m, T_map_base);
     if (auto fault = surface_fault(world, config, region, T_map_base)) return unexpected(std::move(*fault));
     TruthConfig without_camera = config;
-    without_camera.external_camera.reset();
-    return seen_truth(world, camera, config, T_map_base,
+    without_camera.external_cameras.clear();
+    return seen_truth(world, cameras, config, T_map_base,
                       surface_truth(world, without_camera, region, T_map_base));
 }
 
-SeenTruth seen_truth(const sim::World& world, const rig::Camera& camera, const TruthConfig& config,
+SeenTruth seen_truth(const sim::World& world, std::span<const rig::Camera> cameras, const TruthConfig& config,
                      const Eigen::Isometry3d& T_map_base, VoxelGrid<SurfaceVoxel> surface) {
     const KeyBox region = surface.box();
     assert(region == region_of(config.region, config.resolution_m, T_map_base));
     const VoxelLattice lattice(config.resolution_m);
-    const CleanView view(world, camera);
-    auto voxels = seen_voxels(view, world, camera, region, lattice, T_map_base);
+    std::vector<CleanView> views;
+    for (const rig::Camera& camera : cameras) views.emplace_back(world, camera);
+    auto voxels = seen_voxels(views, world, cameras, region, lattice, T_map_base);
     const auto f1 = f1_of_seen(voxels, surface);
     return {.resolution_m = config.resolution_m,
             .surface = std::move(surface),
             .voxels = std::move(voxels),
-            .p_map_clear_spheres = clear_spheres(view, region, lattice, T_map_base),
+            .p_map_clear_spheres = clear_spheres(views, region, lattice, T_map_base),
             .f1_noise_free = f1};
 }
 

@@ -60,9 +60,8 @@ SurfaceMasks surface_masks(const sim::World& world, const TruthConfig& config, c
 VoxelMask seen_mask(const sim::World& world, const TruthConfig& config, const KeyBox& box,
                     const Eigen::Isometry3d& T_map_base) {
     VoxelMask seen(box);
-    if (config.external_camera) {
-        const VoxelLattice lattice(config.resolution_m);
-        const auto& camera = *config.external_camera;
+    const VoxelLattice lattice(config.resolution_m);
+    for (const rig::Camera& camera : config.external_cameras) {
         for (const auto& p_base : render_view(world, camera, camera.T_link_camera, 1).p_base_points) {
             mark(seen, lattice, T_map_base * p_base.cast<double>());
         }
@@ -118,8 +117,8 @@ Result<Truth, Error> build_truth(const sim::World& world, const Survey& survey, 
     Truth truth{config.resolution_m,
                 camera_truth(survey, config.camera, region, config.resolution_m, T_map_base),
                 surface_truth(world, config, region, T_map_base)};
-    if (config.external_camera)
-        truth.seen = seen_truth(world, *config.external_camera, config, T_map_base, truth.surface);
+    if (!config.external_cameras.empty())
+        truth.seen = seen_truth(world, config.external_cameras, config, T_map_base, truth.surface);
     return truth;
 }
 

@@ -18,7 +18,7 @@ struct Truth {
     double resolution_m;
     VoxelGrid<Occupancy> camera;
     VoxelGrid<SurfaceVoxel> surface;  ///< over the same box
-    /// Of the external camera; empty without one.
+    /// Of the external cameras together; empty without one.
     std::optional<SeenTruth> seen = std::nullopt;
 
     [[nodiscard]] const KeyBox& region() const noexcept { return camera.box(); }

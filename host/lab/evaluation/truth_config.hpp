@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,12 +23,13 @@ struct TruthConfig {
     double resolution_m = 0.04;
     RegionConfig region;
     CameraTruthConfig camera;
-    /// Names of the SDF models that the external camera is not supposed to see ("cone", "crate").
+    /// Names of the SDF models that no external camera is supposed to see ("cone", "crate").
     std::vector<std::string> hidden_models;
-    /// The external camera of the rig at its true pose. It decides which voxels are occluded. Empty: all are.
-    std::optional<rig::Camera> external_camera;
+    /// The external cameras of the rig at their true poses. They decide which voxels are occluded: those that
+    /// none of them sees. Empty: all are.
+    std::vector<rig::Camera> external_cameras;
     double surface_pitch_m = 0.008;
-    /// A surface voxel is occluded if no voxel that the camera sees is within so many voxels (Chebyshev).
+    /// A surface voxel is occluded if no voxel that a camera sees is within so many voxels (Chebyshev).
     std::uint16_t occlusion_margin_voxels = 2;
     /// Distance to a surface that `precision_tolerant` accepts, in voxels (Chebyshev).
     std::uint16_t tolerance_voxels = 1;
@@ -41,7 +41,7 @@ struct SurfaceVoxel {
     bool is_near_surface : 1 = false;   ///< itself or a neighbour within the tolerance does
     bool is_interior : 1 = false;       ///< centre inside a closed solid, no surface: not judged
     bool is_hidden_object : 1 = false;  ///< holds a point of a hidden model's surface
-    bool is_seen : 1 = false;           ///< holds a point that the external camera sees
+    bool is_seen : 1 = false;           ///< holds a point that an external camera sees
     bool is_occluded : 1 = false;       ///< a surface voxel further than the margin from every seen one
 };
 

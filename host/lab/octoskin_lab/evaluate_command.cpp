@@ -68,7 +68,7 @@ Scene recorded_scene(const FilePlace& recording, const EvaluateOptions& options)
 evaluation::Truth build(const Scene& scene, const rig::Rig& rig, double resolution_m) {
     spdlog::info("judging in {}, {}", scene.world_file.file.string(), scene.scenario_file.file.string());
     evaluation::TruthConfig config = truth_config_of(scene.scenario, resolution_m);
-    config.external_camera = rig.external_camera();
+    config.external_cameras = rig.external_cameras();
     if (const auto fault = evaluation::region_fault(config.region, resolution_m, rig.T_map_base))
         throw CommandFailure(ExitCode::bad_config, scene.scenario.error("region", *fault));
     spdlog::info("ground truth: rendering the tour of a noise-free camera");

@@ -133,7 +133,7 @@ std::string calibration_section(const ReportInput& input) {
     for (const auto& map : input.results.maps) {
         if (map.configuration == input.main_configuration) {
             maps.push_back(&map);
-            html += legend_entry(map.map, map_title(map.map));
+            html += legend_entry(map.map, map_title(map.map, input));
         }
     }
     html += "</ul>\n</div>\n";

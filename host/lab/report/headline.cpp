@@ -73,17 +73,20 @@ std::string f1_tile(const Contest& contest) {
 constexpr std::string_view kLeadText =
     R"(Of the surfaces that the external camera cannot see, its own map contains {}; with the range sensors on the arm, the
 fused map contains {}.)";
+constexpr std::string_view kLeadTextOfSeveral =
+    R"(Of the surfaces that no external camera can see, the cameras’ own map contains {}; with the range sensors on the arm,
+the fused map contains {}.)";
 
-std::string lead_sentence(const Contest& contest, const std::string& hidden_objects) {
+std::string lead_sentence(const Contest& contest, const ReportInput& input) {
     if (!contest.has("occluded_recall")) {
         return {};
     }
-    std::string text =
-        fmt::format(fmt::runtime(kLeadText), percent_text(*contest.depth.at("occluded_recall").mean),
-                    percent_text(*contest.fused.at("occluded_recall").mean));
+    std::string text = fmt::format(fmt::runtime(input.cameras > 1 ? kLeadTextOfSeveral : kLeadText),
+                                   percent_text(*contest.depth.at("occluded_recall").mean),
+                                   percent_text(*contest.fused.at("occluded_recall").mean));
     if (contest.has("object_recall")) {
         text += fmt::format(" Of the objects that the scenario names as hidden ({}): {} and {}.",
-                            hidden_objects, percent_text(*contest.depth.at("object_recall").mean),
+                            hidden_objects_text(input), percent_text(*contest.depth.at("object_recall").mean),
                             percent_text(*contest.fused.at("object_recall").mean));
     }
     if (contest.has("precision")) {
@@ -138,16 +141,18 @@ std::string headline_section(const ReportInput& input) {
     const auto* fused = find_map(input.results.maps, input.main_configuration, "fused");
     if (depth != nullptr && fused != nullptr) {
         const Contest contest{*depth, *fused, paired_difference(*fused, *depth)};
-        const std::string lead = lead_sentence(contest, hidden_objects_text(input));
+        const std::string lead = lead_sentence(contest, input);
         html += lead.empty() ? "" : fmt::format("<p class=\"lead\">{}</p>\n", lead);
         html += "<div class=\"tiles\">\n";
         html += share_tile(contest, "occluded_recall",
-                           "Surfaces out of the camera’s sight that the map contains");
+                           input.cameras > 1 ? "Surfaces out of the cameras’ sight that the map contains"
+                                             : "Surfaces out of the camera’s sight that the map contains");
         html += share_tile(contest, "object_recall", "The same, on the objects named as hidden");
         html += fewer_is_better_tile(contest, "missed", "Missed: occupied voxels that the map does not know");
         html += fewer_is_better_tile(contest, "lost", "Lost: occupied voxels that the map calls free");
         html += f1_tile(contest) + "</div>\n";
-        html += origin_line("Depth camera alone → fused", input.main_configuration, fused->seeds.size(),
+        html += origin_line(cameras_title(input) + " alone → fused", input.main_configuration,
+                            fused->seeds.size(),
                             "; differences are paired seed by seed, ± one standard deviation");
     } else if (const auto* ranges = find_map(input.results.maps, input.main_configuration, "proximity")) {
         html += ranges_headline(*ranges, input);

@@ -67,13 +67,13 @@ struct SceneDressing {
     /// Base frame. Floors and beams are clipped to this box.
     Eigen::AlignedBox3d stage;
     std::vector<PosedCapsule> robot;
-    std::optional<rig::Camera> camera;  ///< drawn with the edges of its view
+    std::vector<rig::Camera> cameras;  ///< each drawn with the edges of its view
     std::vector<Segment> beams;
     std::vector<std::string> hidden_models;  ///< coloured as `VoxelKind::hidden_object`
     PictureSize size;
 };
 
-/// The world in the base frame, from the front and from behind the camera. About 3 s of CPU time.
+/// The world in the base frame, from the front and from behind the cameras. About 3 s of CPU time.
 [[nodiscard]] ImagePair render_scene(const sim::World& world, const SceneDressing& dressing);
 
 }  // namespace octoskin::report

@@ -41,6 +41,7 @@ struct RangeCounting {
 struct ReportInput {
     std::string title = "octoskin: what the camera cannot see";
     evaluation::Results results;
+    std::size_t cameras = 1;  ///< of the rig; only several change a text
     /// The configuration of the headline and the pictures.
     std::string main_configuration = "fast";
     std::uint64_t picture_seed = 0;

@@ -72,6 +72,13 @@ std::vector<Eigen::Vector3d> outline_of(const CameraGlyph& glyph) {
     return points;
 }
 
+std::vector<Eigen::Vector3d> outline_of(const std::vector<rig::Camera>& cameras) {
+    std::vector<Eigen::Vector3d> points;
+    for (const rig::Camera& camera : cameras)
+        std::ranges::copy(outline_of(glyph_of(camera)), std::back_inserter(points));
+    return points;
+}
+
 void add_camera(Geometry& geometry, const CameraGlyph& glyph) {
     const Colour colour = colour_of(palette::kCamera);
     const Eigen::Vector3f eye = glyph.eye.cast<float>();
@@ -127,20 +134,20 @@ Eigen::AlignedBox3d occupied_part(const sim::World& world, const SceneDressing& 
             content.max() + Eigen::Vector3d::Constant(kRoom_m)};
 }
 
-/// A view pair from the front and from behind, in which the camera is either whole or absent.
+/// A view pair from the front and from behind, in which each camera is either whole or absent.
 ViewPair scene_views(const sim::World& world, const SceneDressing& dressing) {
     std::vector<Eigen::Vector3d> shown = corners_of(occupied_part(world, dressing));
     ViewPair views = views_of(shown, dressing.size);
-    if (!dressing.camera) {
+    if (dressing.cameras.empty()) {
         return views;
     }
-    const auto outline = outline_of(glyph_of(*dressing.camera));
+    const auto outline = outline_of(dressing.cameras);
     const bool is_in_front =
         std::ranges::any_of(outline, [&](const auto& point) { return shows(views.front, point); });
-    // From the front the camera is usually out of view; the view from behind always includes it.
+    // From the front a camera is usually out of view; the view from behind always includes all.
     std::ranges::copy(outline, std::back_inserter(shown));
-    const ViewPair with_camera = views_of(shown, dressing.size);
-    return {is_in_front ? with_camera.front : views.front, with_camera.back};
+    const ViewPair with_cameras = views_of(shown, dressing.size);
+    return {is_in_front ? with_cameras.front : views.front, with_cameras.back};
 }
 
 }  // namespace
@@ -160,8 +167,8 @@ ImagePair render_scene(const sim::World& world, const SceneDressing& dressing) {
     for (const auto& beam : dressing.beams) {
         add_beam(geometry, beam, stage);
     }
-    if (dressing.camera) {
-        add_camera(geometry, glyph_of(*dressing.camera));
+    for (const rig::Camera& camera : dressing.cameras) {
+        add_camera(geometry, glyph_of(camera));
     }
     const ViewPair views = scene_views(world, dressing);
     const Tracer tracer(geometry);

@@ -32,7 +32,9 @@ namespace octoskin::report {
 /// One entry of a legend of lines.
 [[nodiscard]] std::string legend_entry(std::string_view map, std::string_view title);
 
-/// "the fused map" in the words of the report; unknown names as they are, escaped.
-[[nodiscard]] std::string map_title(std::string_view map);
+/// "Depth camera", or "2 depth cameras".
+[[nodiscard]] std::string cameras_title(const ReportInput& input);
+/// The fused map in the words of the report; unknown names as they are, escaped.
+[[nodiscard]] std::string map_title(std::string_view map, const ReportInput& input);
 
 }  // namespace octoskin::report

@@ -94,7 +94,7 @@ std::string configuration_table(const ReportInput& input, const std::string& con
     for (const auto& map : input.results.maps) {
         if (map.configuration == configuration) {
             maps.push_back(&map);
-            head += fmt::format("<th>{}</th>", map_title(map.map));
+            head += fmt::format("<th>{}</th>", map_title(map.map, input));
         }
     }
     std::optional<evaluation::PairedDifference> difference;
@@ -114,11 +114,11 @@ std::string configuration_table(const ReportInput& input, const std::string& con
 constexpr std::array<std::string_view, evaluation::kThicknessClasses> kThicknessTitles = {
     "rod, 5 to 8 mm", "rod, 10 to 16 mm", "rod, 20 to 40 mm", "rod, 70 to 90 mm", "board", "other"};
 
-/// Shares of one class of thickness in one map; empty without a voxel of it.
-std::string thickness_row(std::string_view thickness, const MapSummary& map,
+/// Shares of one class of thickness in the map with this title; empty without a voxel of it.
+std::string thickness_row(std::string_view thickness, const std::string& map,
                           const evaluation::SeenShares& shares) {
     if (shares.voxels == 0) return "";
-    std::string html = fmt::format("<tr><th>{}: {}</th><td>{}</td>", thickness, map_title(map.map),
+    std::string html = fmt::format("<tr><th>{}: {}</th><td>{}</td>", thickness, map,
                                    count_text(static_cast<double>(shares.voxels)));
     for (const auto& share : {shares.occupied_share(), shares.free_share(), shares.unknown_share(),
                               shares.body_2cm.free_share(), shares.body_5cm.free_share()})
@@ -126,18 +126,22 @@ std::string thickness_row(std::string_view thickness, const MapSummary& map,
     return html + "</tr>\n";
 }
 
-std::string thickness_rows(const std::vector<const MapSummary*>& maps) {
+std::string thickness_rows(const std::vector<const MapSummary*>& maps, const ReportInput& input) {
     std::string html;
+    const auto add = [&](std::string_view thickness, const MapSummary& map,
+                         const evaluation::SeenShares& shares) {
+        html += thickness_row(thickness, map_title(map.map, input), shares);
+    };
     for (std::size_t i = 0; i < kThicknessTitles.size(); ++i) {
-        for (const auto* map : maps) html += thickness_row(kThicknessTitles[i], *map, map->seen->by_class[i]);
+        for (const auto* map : maps) add(kThicknessTitles[i], *map, map->seen->by_class[i]);
     }
-    for (const auto* map : maps) html += thickness_row("too coarse", *map, map->seen->too_coarse);
+    for (const auto* map : maps) add("too coarse", *map, map->seen->too_coarse);
     return html;
 }
 
 constexpr std::string_view kThicknessText =
     R"(<section id="thickness">
-<h2>What the camera sees, by thickness</h2>
+<h2>What the {}, by thickness</h2>
 <p>Surface voxels that a noise-free image has a pixel on, in <code>{}</code>, over all seeds; a voxel is of the thickest
 solid seen in it. Too coarse: rods of 5 to 8 mm on which a pixel is more than 2 mm wider than the rod. Body: share of
 spheres of 2 and 5 cm radius, 1 cm deep in a seen surface, whose voxels are all free: there a planner would collide.</p>
@@ -210,9 +214,13 @@ below; availability, the share of clear spheres of 5 cm in seen space that are f
 
 }  // namespace
 
-std::string map_title(std::string_view map) {
+std::string cameras_title(const ReportInput& input) {
+    return input.cameras > 1 ? fmt::format("{} depth cameras", input.cameras) : "Depth camera";
+}
+
+std::string map_title(std::string_view map, const ReportInput& input) {
     if (map == "depth") {
-        return "Depth camera only";
+        return cameras_title(input) + " only";
     }
     if (map == "proximity") {
         return "Range sensors only";
@@ -233,8 +241,8 @@ std::string paper_section(const ReportInput& input) {
             }
         }
         if (!rows.empty()) {
-            html += fmt::format("<tr class=\"group\"><th colspan=\"6\">{}</th></tr>\n{}", map_title(row.map),
-                                rows);
+            html += fmt::format("<tr class=\"group\"><th colspan=\"6\">{}</th></tr>\n{}",
+                                map_title(row.map, input), rows);
         }
     }
     html += "</tbody></table></div>\n";
@@ -258,7 +266,8 @@ std::string thickness_section(const ReportInput& input) {
         if (map.configuration == input.main_configuration && map.seen) maps.push_back(&map);
     }
     if (maps.empty()) return "";
-    return fmt::format(fmt::runtime(kThicknessText), escaped(input.main_configuration), thickness_rows(maps));
+    return fmt::format(fmt::runtime(kThicknessText), input.cameras > 1 ? "cameras see" : "camera sees",
+                       escaped(input.main_configuration), thickness_rows(maps, input));
 }
 
 std::string free_section(const ReportInput& input) {
@@ -267,7 +276,7 @@ std::string free_section(const ReportInput& input) {
     for (const auto& map : input.results.maps) {
         if (map.configuration != input.main_configuration) continue;
         maps.push_back(&map);
-        head += fmt::format("<th>{}</th><th>voxels</th>", map_title(map.map));
+        head += fmt::format("<th>{}</th><th>voxels</th>", map_title(map.map, input));
     }
     using evaluation::FreeCalibration;
     const std::string rows =

@@ -72,7 +72,7 @@ std::string unknown_curves_svg(const evaluation::UnknownSpace& space) {
                 {.low = 0.0, .high = 1.05 * space.region_m3, .label = "unknown, m³", .tick_count = 6});
     if (!depth.empty()) chart.line(depth, "depth");
     chart.line(fused, "fused");
-    return chart.svg("Unknown volume around the robot over time, with the camera alone and fused");
+    return chart.svg("Unknown volume around the robot over time, from depth images alone and fused");
 }
 
 double unknown_column_max_m(const evaluation::UnknownSpace& space) noexcept {
@@ -89,7 +89,7 @@ std::string depth_columns_svg(const evaluation::UnknownSpace& space) {
     assert(space.depth_columns);
     Chart chart = chart_from_above(space);
     paint(chart, *space.depth_columns, kDepth, unknown_column_max_m(space));
-    return finished(chart, "What is unknown with the camera alone, seen from above", space.region.radius_m);
+    return finished(chart, "What is unknown from depth images alone, seen from above", space.region.radius_m);
 }
 
 std::string fused_columns_svg(const evaluation::UnknownSpace& space, std::size_t count) {
@@ -99,7 +99,7 @@ std::string fused_columns_svg(const evaluation::UnknownSpace& space, std::size_t
         const Eigen::Vector3d at = space.pockets[i].centre - space.region.centre;
         chart.text({at.x(), at.y()}, 0.0, 5.0, fmt::format("{}", i + 1), "value", "middle");
     }
-    return finished(chart, "What is unknown with range sensors and camera, seen from above",
+    return finished(chart, "What is unknown with range sensors and depth images, seen from above",
                     space.region.radius_m);
 }
 

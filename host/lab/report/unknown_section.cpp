@@ -18,7 +18,7 @@ constexpr std::string_view kText =
 )";
 
 constexpr std::string_view kDepthText =
-    R"(<b>Depth camera only</b>, at the end, seen from above: how much of each column of that space is unknown,
+    R"(<b>{}</b>, at the end, seen from above: how much of each column of that space is unknown,
 from 0 m (no colour) to {} m (full colour).)";
 constexpr std::string_view kFusedText =
     R"(<b>Fused</b>, at the end, seen from above: how much of each column of that space is unknown, from 0 m
@@ -43,10 +43,13 @@ std::string pocket_table(const evaluation::UnknownSpace& space) {
     return html + "</tbody>\n</table>\n";
 }
 
-std::string change_caption(const evaluation::UnknownSpace& space) {
+std::string change_caption(const evaluation::UnknownSpace& space, bool has_several_cameras) {
     const auto& end = space.samples.back();
     std::string caption = fmt::format("At the end {} m³ are unknown", ratio_text(end.fused_m3, 2));
-    if (end.depth_m3) caption += fmt::format("; the camera alone leaves {} m³", ratio_text(*end.depth_m3, 2));
+    if (end.depth_m3)
+        caption +=
+            fmt::format("; the {} {} m³", has_several_cameras ? "cameras alone leave" : "camera alone leaves",
+                        ratio_text(*end.depth_m3, 2));
     return caption + ".";
 }
 
@@ -58,13 +61,14 @@ std::string unknown_section(const ReportInput& input) {
     std::string html =
         fmt::format(fmt::runtime(kText), ratio_text(space.region.radius_m, 1), ratio_text(space.region_m3, 2),
                     escaped(input.main_configuration), input.picture_seed);
-    if (space.samples.back().depth_m3) html += legend_entry("depth", "Depth camera only");
-    html += legend_entry("fused", map_title("fused")) + "</ul>\n<div class=\"charts\">\n";
-    html +=
-        chart_figure(unknown_curves_svg(space), change_caption(space)) + "</div>\n<div class=\"charts\">\n";
+    if (space.samples.back().depth_m3) html += legend_entry("depth", map_title("depth", input));
+    html += legend_entry("fused", map_title("fused", input)) + "</ul>\n<div class=\"charts\">\n";
+    html += chart_figure(unknown_curves_svg(space), change_caption(space, input.cameras > 1)) +
+            "</div>\n<div class=\"charts\">\n";
     const std::string most = ratio_text(unknown_column_max_m(space), 1);
     if (space.depth_columns)
-        html += chart_figure(depth_columns_svg(space), fmt::format(fmt::runtime(kDepthText), most));
+        html += chart_figure(depth_columns_svg(space),
+                             fmt::format(fmt::runtime(kDepthText), map_title("depth", input), most));
     std::string fused_text = fmt::format(fmt::runtime(kFusedText), most);
     if (!space.pockets.empty()) fused_text += kPocketText;
     html += chart_figure(fused_columns_svg(space, kPocketsShown), fused_text) + "</div>\n";

@@ -1,6 +1,8 @@
 #include "host/lab/simulation/simulation.hpp"
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "host/apps/recording/given_rig.hpp"
 #include "host/apps/recording/permission.hpp"
@@ -72,51 +74,66 @@ Error located(Error error, const sim::Scenario& scenario) {
     return scenario.error(key, std::move(error));
 }
 
+/// The writers of the cameras' depth frames, in the order of the rig.
+Result<std::vector<openni2::OniWriter>, Error> create_depth(const RecordingPaths& paths,
+                                                            const std::vector<rig::Camera>& cameras) {
+    std::vector<openni2::OniWriter> writers;
+    if (!cameras.empty() && !cameras.front().name.empty()) {
+        const auto folder = paths.file(RecordingPaths::kDepthFolder).make_folder();
+        if (!folder) return unexpected(to_error(folder.error()));
+    }
+    for (const rig::Camera& camera : cameras) {
+        auto writer = openni2::OniWriter::create(paths.depth(camera.name), paths.depth_epoch(camera.name),
+                                                 {camera.width, camera.height});
+        if (!writer) return unexpected(std::move(writer.error()));
+        writers.push_back(std::move(*writer));
+    }
+    return writers;
+}
+
 /// Writes the files of the recording. After the first error it writes nothing more and keeps the error.
 class Recorder {
   public:
     static Result<Recorder, AppError> create(const RecordingPaths& paths, const rig::Rig& rig) {
         if (const auto copied = copy_file(rig.urdf, paths.robot()); !copied)
             return unexpected(copied.error());
-        const std::string rig_text = rig::canonical_text(rig, paths.robot().filename());
+        const std::string rig_text = rig::canonical_text(rig::without_devices(rig), paths.robot().filename());
         if (const auto written = write_text(paths.rig(), rig_text); !written)
             return unexpected(written.error());
         auto log = candump::LogWriter::create(paths.can_log());
         if (!log) return fail(ExitCode::cannot_create, log.error());
-        Recorder recorder(std::move(*log));
-        if (rig.camera) {
-            auto depth = openni2::OniWriter::create(paths.depth(), paths.depth_epoch(),
-                                                    {rig.camera->width, rig.camera->height});
-            if (!depth) return fail(ExitCode::cannot_create, depth.error());
-            recorder.depth_.emplace(std::move(*depth));
-        }
-        return recorder;
+        auto depth = create_depth(paths, rig.cameras);
+        if (!depth) return fail(ExitCode::cannot_create, depth.error());
+        return Recorder(std::move(*log), std::move(*depth));
     }
 
     void write(const wire::CanFrame& frame, WallTime stamp) {
         if (error_) return;
         if (const auto written = log_.write(stamp, frame); !written) error_ = written.error();
     }
-    void write(HostTime captured, std::span<const std::uint16_t> depth_mm) {
+    void write(const sim::CameraImage& image) {
         if (error_) return;
-        if (const auto written = depth_->write(captured, depth_mm); !written) error_ = written.error();
+        const auto written = depth_.at(image.camera).write(image.captured, image.depth_mm);
+        if (!written) error_ = written.error();
     }
     Status<AppError> close() {
         if (!error_) {
             if (const auto closed = log_.close(); !closed) error_ = closed.error();
         }
-        if (!error_ && depth_) {
-            if (const auto closed = depth_->close(); !closed) error_ = closed.error();
+        for (openni2::OniWriter& camera : depth_) {
+            if (error_) break;
+            if (const auto closed = camera.close(); !closed) error_ = closed.error();
         }
         if (error_) return fail(ExitCode::cannot_create, *error_);
         return Done{};
     }
 
   private:
-    explicit Recorder(candump::LogWriter log) : log_(std::move(log)) {}
+    Recorder(candump::LogWriter log, std::vector<openni2::OniWriter> depth)
+        : log_(std::move(log)), depth_(std::move(depth)) {}
 
     candump::LogWriter log_;
-    std::optional<openni2::OniWriter> depth_;
+    std::vector<openni2::OniWriter> depth_;  ///< of each camera of the rig
     std::optional<Error> error_;
 };
 
@@ -163,8 +180,7 @@ Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequ
                                      .motions = inputs->scene.motions};
     const sim::ExperimentOutput output{
         .on_frame = [&](const wire::CanFrame& frame, WallTime stamp) { recorder->write(frame, stamp); },
-        .on_depth = [&](HostTime captured, std::uint32_t, std::uint32_t,
-                        const std::vector<std::uint16_t>& depth_mm) { recorder->write(captured, depth_mm); },
+        .on_depth = [&](const sim::CameraImage& image) { recorder->write(image); },
         .on_progress = on_progress};
     if (on_progress) on_progress(0.0);
     const auto summary = sim::run_experiment(input, output);

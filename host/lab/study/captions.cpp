@@ -121,19 +121,25 @@ std::vector<std::string> cone_sentences(const Optics& optics, const sim::RangeOp
                     ranges.min_m, ranges.max_m)};
 }
 
-std::string camera_sentence(const sim::DepthNoise& noise) {
+std::string external_cameras_text(std::size_t cameras) {
+    return cameras == 1 ? "the external camera" : fmt::format("the {} external cameras", cameras);
+}
+
+std::string camera_sentence(const sim::DepthNoise& noise, std::size_t cameras) {
+    const std::string of = cameras == 1 ? "The camera's noise"
+                                        : fmt::format("The noise of each of the {} depth cameras", cameras);
     if (const auto* gaussian = std::get_if<sim::GaussianNoise>(&noise.model))
         return fmt::format(
-            "The camera's noise ({:g} cm along the ray, independent from pixel to pixel) has no "
+            "{} ({:g} cm along the ray, independent from pixel to pixel) has no "
             "flying pixels, no reflections and no dependence on distance or material.",
-            100.0 * gaussian->sigma_m);
+            of, 100.0 * gaussian->sigma_m);
     const auto& kinect = std::get<sim::KinectNoise>(noise.model);
     return fmt::format(
-        "The camera's noise is that of a Kinect: a deviation of {:g} mm + {:g} mm (z - {:g} m)^2, "
+        "{} is that of a Kinect: a deviation of {:g} mm + {:g} mm (z - {:g} m)^2, "
         "a fixed error of up to {:g} mm z^2, disparity in steps of {:g} px; {:g} % of the pixels at edges "
         "fly "
         "and {:g} % are missing. It has no reflections and no dependence on material.",
-        1e3 * kinect.sigma_min_m, 1e3 * kinect.sigma_growth_per_m, kinect.sigma_min_at_m,
+        of, 1e3 * kinect.sigma_min_m, 1e3 * kinect.sigma_growth_per_m, kinect.sigma_min_at_m,
         1e3 * kinect.bias_growth_per_m, kinect.disparity_step_px, 100.0 * kinect.flying_share,
         100.0 * kinect.missing_share);
 }
@@ -160,7 +166,8 @@ std::string scene_caption(const rig::Rig& rig, const sim::Scenario& scenario, st
     for (const rig::Node& node : rig.nodes) sensors += node.sensors.size();
     std::string text = "The arm";
     if (beams > 0) text += fmt::format(" with beams of {} of its {} range sensors (red)", beams, sensors);
-    if (rig.camera) text += beams > 0 ? ", and the external camera" : " and the external camera";
+    if (const std::size_t cameras = rig.external_cameras().size(); cameras > 0)
+        text += (beams > 0 ? ", and " : " and ") + external_cameras_text(cameras);
     if (!scenario.hidden_models.empty()) {
         text +=
             fmt::format(". Yellow: what the scenario names as hidden ({})", joined(scenario.hidden_models));
@@ -176,7 +183,7 @@ std::vector<std::string> idealisations_of(const rig::Rig& rig, const sim::Scenar
     const Optics optics = optics_of(rig);
     for (auto& sentence : ray_sentences(optics, scenario.ranges)) sentences.push_back(std::move(sentence));
     for (auto& sentence : cone_sentences(optics, scenario.ranges)) sentences.push_back(std::move(sentence));
-    if (rig.camera) sentences.push_back(camera_sentence(scenario.depth_noise));
+    if (!rig.cameras.empty()) sentences.push_back(camera_sentence(scenario.depth_noise, rig.cameras.size()));
     sentences.push_back(
         "Extrinsics, link lengths and joint angles are exactly those of the rig file and the robot "
         "description.");

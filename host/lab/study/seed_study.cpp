@@ -71,7 +71,7 @@ PocketRegion region_about_arm(const rig::Rig& rig) {
 class UnknownSpaceWatch final : public CommitListener {
   public:
     explicit UnknownSpaceWatch(const rig::Rig& rig)
-        : has_camera_(rig.camera.has_value()), meter_(region_about_arm(rig)) {}
+        : has_camera_(!rig.cameras.empty()), meter_(region_about_arm(rig)) {}
     void on_joints(const JointMeasurement&) override {}
     void on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) override {
         captured_ = measurement.captured;
@@ -125,7 +125,7 @@ Result<evaluation::Truth, AppError> make_truth(const StudyGround& ground, const 
                                                SeedOutcome& outcome) {
     const PartTimer timer("ground truth");
     evaluation::TruthConfig config = ground.truth;
-    config.external_camera = rig.external_camera();
+    config.external_cameras = rig.external_cameras();
     if (auto fault = evaluation::region_fault(config.region, config.resolution_m, rig.T_map_base))
         return fail(ExitCode::bad_config, ground.scenario.error("region", std::move(*fault)));
     auto truth = evaluation::build_truth(ground.world, ground.survey, config, rig.T_map_base);

@@ -24,7 +24,7 @@ struct StudyGround {
     const sim::World& world;
     const sim::Scenario& scenario;
     const evaluation::Survey& survey;
-    const evaluation::TruthConfig& truth;  ///< without the external camera, which the seed's rig defines
+    const evaluation::TruthConfig& truth;  ///< without the external cameras, which the seed's rig defines
 };
 
 struct SeedRequest {

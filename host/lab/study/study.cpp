@@ -128,7 +128,7 @@ std::vector<evaluation::PartTime> total_times(const std::vector<SeedOutcome>& ou
 }
 
 report::ReportCounters report_counters(const CounterTable& table) {
-    report::ReportCounters inputs{table.unit, table.in, table.used, {}};
+    report::ReportCounters inputs{table.title(), table.in, table.used, {}};
     for (const auto& row : table.rejected) inputs.rejected.emplace_back(row.name, row.count);
     return inputs;
 }
@@ -148,7 +148,9 @@ Status<AppError> write_report(const StudyRequest& request, const OpenFolder& fol
                               .hidden_objects = world.scene.scenario.hidden_models,
                               .idealisations = idealisations_of(main.rig, world.scene.scenario),
                               .reproduce = {command_of(request)}};
-    if (!main.rig.camera) input.title = "octoskin: what the range sensors see";
+    input.cameras = main.rig.cameras.size();
+    if (input.cameras == 0) input.title = "octoskin: what the range sensors see";
+    if (input.cameras > 1) input.title = "octoskin: what the cameras cannot see";
     for (const CounterTable& table : main.inputs) {
         if (table.in > 0) input.inputs.push_back(report_counters(table));
     }

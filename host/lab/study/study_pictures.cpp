@@ -56,16 +56,21 @@ void dress_with_robot(const sim::World& world, const sim::Scenario& scenario, co
 
 /// A map with its title and caption.
 struct NamedMap {
-    const char* title;
-    const char* caption;
+    std::string title;
+    std::string caption;
     const FusedMap* map;
 };
 
-std::vector<NamedMap> maps_to_draw(std::span<const FedMap> maps, bool has_camera) {
+NamedMap camera_map_to_draw(const FusedMap* map, std::size_t cameras) {
+    if (cameras == 1) return {"Depth camera only", "The map of the external camera alone.", map};
+    return {std::to_string(cameras) + " depth cameras only", "The map of the depth cameras alone.", map};
+}
+
+std::vector<NamedMap> maps_to_draw(std::span<const FedMap> maps, std::size_t cameras) {
     const NamedMap ranges = {"Range sensors only", "What the sensors on the arm measured during its motion.",
                              find_map(maps, MapFeed::ranges)};
-    if (!has_camera) return {ranges};
-    return {{"Depth camera only", "The map of the external camera alone.", find_map(maps, MapFeed::camera)},
+    if (cameras == 0) return {ranges};
+    return {camera_map_to_draw(find_map(maps, MapFeed::camera), cameras),
             ranges,
             {"Fused", "One map of both.", find_map(maps, MapFeed::both)}};
 }
@@ -91,7 +96,7 @@ PicturePair draw_scene(const sim::World& world, const sim::Scenario& scenario, c
     report::SceneDressing dressing;
     dressing.stage = {scenario.region.p_base_min, scenario.region.p_base_max};
     if (scenario.region.floor_top_m) dressing.stage.min().z() = *scenario.region.floor_top_m;
-    dressing.camera = rig.external_camera();
+    dressing.cameras = rig.external_cameras();
     dressing.hidden_models = scenario.hidden_models;
     dress_with_robot(world, scenario, rig, dressing);
     report::ImagePair images = report::render_scene(world, dressing);
@@ -104,7 +109,7 @@ PicturePair draw_scene(const sim::World& world, const sim::Scenario& scenario, c
 std::vector<PicturePair> draw_pictures(const sim::World& world, const sim::Scenario& scenario,
                                        const rig::Rig& rig, std::span<const FedMap> maps,
                                        const evaluation::Truth& truth) {
-    std::vector<PicturePair> pictures = draw_maps(maps_to_draw(maps, rig.camera.has_value()), truth);
+    std::vector<PicturePair> pictures = draw_maps(maps_to_draw(maps, rig.cameras.size()), truth);
     pictures.insert(pictures.begin(), draw_scene(world, scenario, rig));
     return pictures;
 }

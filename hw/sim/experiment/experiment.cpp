@@ -1,5 +1,6 @@
 #include "hw/sim/experiment/experiment.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <deque>
@@ -7,10 +8,10 @@
 #include <random>
 
 #include "common/wire/codec.hpp"
-#include "hw/sim/camera/depth_camera.hpp"
 #include "hw/sim/camera/sensor_scene.hpp"
 #include "hw/sim/can/simulated_can_bus.hpp"
 #include "hw/sim/experiment/joint_node.hpp"
+#include "hw/sim/experiment/rig_camera.hpp"
 #include "hw/sim/experiment/simulated_board.hpp"
 #include "hw/sim/experiment/sync_master.hpp"
 
@@ -24,8 +25,6 @@ constexpr std::int64_t kTurnUs = 50;
 // turn; they receive frames at the exact time.
 constexpr std::int64_t kRemoteTurnUs = 200;
 constexpr Microseconds kSyncPeriod{1'000'000};
-// Depth frames before START. They must not enter the map, so a recording contains some to test this.
-constexpr int kFramesBeforeStart = 2;
 // The host's clocks at the start: up for a while, and an arbitrary wall time.
 constexpr HostTime kHostAtStart{4'321'000'000'000};
 constexpr WallTime kWallAtStart{1'750'000'000'000'000'000};
@@ -213,12 +212,39 @@ class RigInOneProcess {
 
 namespace {
 
-/// The rig's camera, as if fixed to the base where its link is.
-rig::Camera camera_at(const ExperimentInput& input, const Eigen::VectorXd& position) {
-    rig::Camera camera = *input.rig.camera;
-    if (!camera.link.empty())
-        camera.T_link_camera = input.arm.forward(position, camera.link) * camera.T_link_camera;
-    return camera;
+std::vector<RigCamera> cameras_of(const ExperimentInput& input, const CameraSurroundings& around,
+                                  SimTime start) {
+    const DepthNoise noise = input.is_depth_noise_free ? DepthNoise{} : input.scenario.depth_noise;
+    std::vector<RigCamera> cameras;
+    for (const rig::Camera& camera : input.rig.cameras)
+        cameras.emplace_back(around, camera, noise, noise_seed_of(input.seed, cameras.size()), start);
+    return cameras;
+}
+
+CameraImage next_image(RigCamera& camera, std::size_t index) {
+    const SimTime captured = camera.next();
+    return {.camera = index,
+            .captured = SimulatedHostClock(kHostAtStart).at(captured),
+            .width = camera.camera().width,
+            .height = camera.camera().height,
+            .depth_mm = camera.take()};
+}
+
+/// Runs the rig until `end`, with the images of all cameras. Returns their number.
+std::uint64_t run_with_cameras(RigInOneProcess& rig, std::vector<RigCamera>& cameras, SimTime end,
+                               const ExperimentOutput& output) {
+    std::uint64_t frames = 0;
+    while (!cameras.empty()) {
+        const auto camera = std::ranges::min_element(cameras, {}, [](const auto& c) { return c.next().us; });
+        const SimTime captured = camera->next();
+        if (captured >= end) break;
+        rig.run_until(captured);
+        output.on_depth(next_image(*camera, static_cast<std::size_t>(camera - cameras.begin())));
+        ++frames;
+        if (output.on_progress)
+            output.on_progress(static_cast<double>(captured.us) / static_cast<double>(end.us));
+    }
+    return frames;
 }
 
 Result<ExperimentSummary, Error> run(const ExperimentInput& input, const ExperimentOutput& output) {
@@ -233,30 +259,9 @@ Result<ExperimentSummary, Error> run(const ExperimentInput& input, const Experim
     RigInOneProcess rig(input, *trajectory, moving, output);
     rig.mark(wire::MarkKind::start, start);
     rig.mark(wire::MarkKind::stop, end);
-    std::uint32_t frames = 0;
-    if (input.rig.camera) {
-        const DepthNoise noise = input.is_depth_noise_free ? DepthNoise{} : input.scenario.depth_noise;
-        std::optional<DepthCamera> camera;
-        const double period_s = 1.0 / input.rig.camera->rate_hz;
-        for (int index = -kFramesBeforeStart;; ++index) {
-            const SimTime captured{start.us + from_seconds(period_s * index).us};
-            if (captured >= end) break;
-            rig.run_until(captured);
-            // A camera casts a static world once. If models or the camera move, it is created again for each
-            // frame.
-            if (!camera || moving || !input.rig.camera->link.empty())
-                camera.emplace(moving ? moving(captured) : input.world,
-                               camera_at(input, trajectory->at(captured)), noise, input.seed);
-            output.on_depth(
-                SimulatedHostClock(kHostAtStart).at(captured), input.rig.camera->width,
-                input.rig.camera->height,
-                camera->render(input.body.at(input.arm.forward(trajectory->at(captured))), frames));
-            ++frames;
-            if (output.on_progress) {
-                output.on_progress(static_cast<double>(captured.us) / static_cast<double>(end.us));
-            }
-        }
-    }
+    const CameraSurroundings around{input.world, input.arm, *trajectory, input.body, moving};
+    auto cameras = cameras_of(input, around, start);
+    const std::uint64_t frames = run_with_cameras(rig, cameras, end, output);
     rig.run_until({end.us + 500'000});  // delivers the frames still on the bus
     ExperimentSummary summary = rig.summary();
     summary.depth_frames = frames;

@@ -1,7 +1,8 @@
 // The whole rig in one process, on one virtual clock and from one seed: sensors, boards, bus, arm controller,
-// camera and the host's transmissions. The output is that of a recorder: frames on the bus and depth images.
+// cameras and the host's transmissions. The output is that of a recorder: frames on the bus and depth images.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -47,12 +48,20 @@ struct TrueRanging {
     RangingReturn seen;
 };
 
+/// An image of one of the rig's cameras.
+struct CameraImage {
+    std::size_t camera = 0;  ///< index in Rig::cameras
+    HostTime captured;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::uint16_t> depth_mm;
+};
+
 /// Handlers of a recorder. `captured` and `stamp` are in the clocks of a real recorder.
 struct ExperimentOutput {
     std::function<void(const wire::CanFrame& frame, WallTime stamp)> on_frame;
-    std::function<void(HostTime captured, std::uint32_t width, std::uint32_t height,
-                       std::vector<std::uint16_t> depth_mm)>
-        on_depth;
+    /// Of all cameras in the order of capture; at the same instant in the order of the rig.
+    std::function<void(CameraImage image)> on_depth;
     std::function<void(double fraction)> on_progress;
     std::function<void(const TrueRanging&)> on_ranging{};  ///< for tests
 };
@@ -60,7 +69,7 @@ struct ExperimentOutput {
 struct ExperimentSummary {
     double duration_s = 0.0;
     std::uint64_t can_frames = 0;
-    std::uint64_t depth_frames = 0;
+    std::uint64_t depth_frames = 0;  ///< of all cameras
     double can_busy_fraction = 0.0;
     std::vector<double> i2c_busy_fraction;  ///< per node and bus
     double first_range_s = 0.0;             ///< time of the first range on the bus

@@ -15,7 +15,8 @@ enum class NoiseSource : std::uint64_t {
     map_shift = 3,
     signal = 4,
     depth_edge = 5,
-    depth_bias = 6
+    depth_bias = 6,
+    further_camera = 7  ///< the seeds of the cameras of a rig after its first
 };
 
 /// A sequence of independent random numbers that can be read at any index, in O(1). Counter-based: Steele,

@@ -53,8 +53,8 @@ Eigen::Isometry3d looking(const Eigen::Vector3d& from, const Eigen::Vector3d& at
 rig::Rig read_rig_of(const std::string& name, std::uint32_t pixel_divisor, const KeptChoice& choice) {
     rig::Rig rig = needed(rig::read_rig(kHw / "rigs" / name));
     if (choice.camera_at_m)
-        rig.camera->T_link_camera = looking((*choice.camera_at_m)[0], (*choice.camera_at_m)[1]);
-    rig::Camera& camera = *rig.camera;
+        rig.cameras.front().T_link_camera = looking((*choice.camera_at_m)[0], (*choice.camera_at_m)[1]);
+    rig::Camera& camera = rig.cameras.front();
     camera.width /= pixel_divisor;
     camera.height /= pixel_divisor;
     for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *value /= pixel_divisor;
@@ -74,7 +74,7 @@ struct Stage {
           scenario(needed(sim::read_scenario(kHw / ".." / choice.scenario))),
           world(needed(sim::World::read(scenario.world))),
           trajectory(revolutions_of(arm, scenario, choice.revolutions)),
-          camera(world, *rig.camera, scenario.depth_noise, choice.seed) {}
+          camera(world, rig.cameras.front(), scenario.depth_noise, choice.seed) {}
 
     sim::Arm arm;
     sim::Body body;
@@ -122,7 +122,8 @@ class Rig {
           has_predictions_(choice.has_predictions),
           joint_offset_rad_(choice.joint_offset_rad) {
         run.rig = setup_.rig;
-        run.rig.camera->T_link_camera = reported(setup_.rig.camera->T_link_camera, choice.camera_error);
+        run.rig.cameras.front().T_link_camera =
+            reported(setup_.rig.cameras.front().T_link_camera, choice.camera_error);
         std::uint32_t noise_id = 0;
         const auto scene_of = [&](const rig::Sensor& sensor, const Eigen::Isometry3d& T_link_sensor) {
             return sim::ranging_scene({stage.world, stage.arm, stage.trajectory, stage.body,
@@ -244,11 +245,11 @@ std::vector<KeptRun> keep_runs(const std::vector<std::string>& names, std::uint3
         rigs.push_back(std::make_unique<Rig>(read_rig_of(name, pixel_divisor, choice), stage, choice));
     const HostRig& host = rigs.front()->host();
     const auto camera = std::make_shared<KeptCamera>();
-    camera->intrinsics = host.camera->intrinsics;
-    camera->ray_slope_max = LensInverse(host.camera->intrinsics.lens).radius();
-    camera->T_map_camera = host.T_map_base * host.camera->T_link_camera;
+    camera->intrinsics = host.cameras.front().intrinsics;
+    camera->ray_slope_max = LensInverse(host.cameras.front().intrinsics.lens).radius();
+    camera->T_map_camera = host.T_map_base * host.cameras.front().T_link_camera;
     const PixelRays pixel_rays(camera->intrinsics);
-    const Eigen::Isometry3d T_camera_base = host.camera->T_link_camera.inverse();
+    const Eigen::Isometry3d T_camera_base = host.cameras.front().T_link_camera.inverse();
     const bool is_full = pixel_divisor == 1;
     DepthFilter filter({.is_enabled = true,
                         .window = is_full ? 5U : 3U,
@@ -263,7 +264,7 @@ std::vector<KeptRun> keep_runs(const std::vector<std::string>& names, std::uint3
             {HostTime{1'000 * us}, camera->intrinsics.width, camera->intrinsics.height,
              stage.camera.render(stage.body.at(stage.arm.forward(stage.trajectory.at(sim::SimTime{us}))),
                                  image)},
-            {host.camera->depth_min_m, host.camera->depth_max_m}));
+            {host.cameras.front().depth_min_m, host.cameras.front().depth_max_m}));
         for (float& depth_m : world.depth_m) depth_m /= static_cast<float>(choice.camera_error.depth_scale);
         SeenImages& seen = camera->images.emplace_back();
         const DepthImage raw = world;

@@ -48,7 +48,7 @@ class ExperimentTruth : public ::testing::Test {
     static rig::Camera read_camera() {
         const auto rig = rig::read_rig(hw() / "rigs" / "experiment.yaml");
         EXPECT_TRUE(rig) << rig.error().message();
-        return rig->camera.value();
+        return rig->cameras.at(0);
     }
     static Eigen::Isometry3d shifted(double x, double y, double z) {
         Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
@@ -59,7 +59,7 @@ class ExperimentTruth : public ::testing::Test {
         const sim::World world = read_world();
         TruthConfig config;
         config.hidden_models = {"cone", "crate"};
-        config.external_camera = read_camera();
+        config.external_cameras = {read_camera()};
         return build_truth(world, render_survey(world, SurveyConfig{}), config, shifted(x, y, z)).value();
     }
 
@@ -108,7 +108,7 @@ TEST_F(ExperimentTruth, a_noise_free_image_is_right_in_all_that_it_sees) {
     const sim::World world = read_world();
     const rig::Camera camera = read_camera();
     const Eigen::Isometry3d T_map_base = shifted(0.002990, 0.020829, 0.001814);
-    const auto truth = seen_truth(world, camera, TruthConfig{}, T_map_base);
+    const auto truth = seen_truth(world, {&camera, 1}, TruthConfig{}, T_map_base);
     ASSERT_TRUE(truth) << truth.error().message();
     EXPECT_GT(truth->voxels.size(), 1500U);
     EXPECT_EQ(truth->p_map_clear_spheres.size(), 3000U);

@@ -52,7 +52,7 @@ class ShippedWorld : public testing::TestWithParam<Shipped> {
     static Truth truth_of_seed(std::uint64_t seed, const sim::Scenario& scenario, const sim::World& world,
                                const rig::Rig& rig) {
         TruthConfig config = truth_config_of(scenario, 0.04);
-        config.external_camera = rig.camera;
+        config.external_cameras = rig.external_cameras();
         Eigen::Isometry3d T_map_base = Eigen::Isometry3d::Identity();
         T_map_base.translation() = scenario.map_shift_m(seed);
         return build_truth(world, render_survey(world, survey_config_of(scenario)), config, T_map_base)
@@ -190,8 +190,8 @@ TEST_P(WorldOfAnArm, leaves_room_for_the_arm) {
 }
 
 TEST_P(WorldBeforeCamera, hides_its_hidden_objects_from_every_pixel_of_the_camera) {
-    ASSERT_TRUE(rig_.camera);
-    const rig::Camera& camera = *rig_.camera;
+    ASSERT_FALSE(rig_.cameras.empty());
+    const rig::Camera& camera = rig_.cameras.front();
     std::set<std::string> seen;
     for (std::uint32_t v = 0; v < camera.height; ++v) {
         for (std::uint32_t u = 0; u < camera.width; ++u) {

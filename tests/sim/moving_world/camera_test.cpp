@@ -117,10 +117,11 @@ class MovingWorldBeforeCamera : public testing::TestWithParam<std::pair<const ch
         for (int frame = 0; frame < kFramesInAll; ++frame) {
             const double time_s = kFramePeriod_s * frame;
             if (frame < kBlindFrom || frame >= kBlindUntil) {
-                const sim::DepthCamera camera(moving_.at(time_s), *rig_.camera, scenario_.depth_noise, seed);
-                ASSERT_TRUE(
-                    builder.integrate(DepthFrame{host_time(frame), rig_.camera->width, rig_.camera->height,
-                                                 camera.render({}, static_cast<std::uint32_t>(frame))}));
+                const sim::DepthCamera camera(moving_.at(time_s), rig_.cameras.front(), scenario_.depth_noise,
+                                              seed);
+                ASSERT_TRUE(builder.integrate(
+                    DepthFrame{host_time(frame), rig_.cameras.front().width, rig_.cameras.front().height,
+                               camera.render({}, static_cast<std::uint32_t>(frame))}));
             }
             count(builder.map());
         }

@@ -56,7 +56,7 @@ HostSensor host_sensor(const BusSetup& setup, std::size_t index) {
 HostRig rig_of(const BusSetup& setup) {
     HostRig rig = one_joint_rig();
     rig.nodes.clear();
-    rig.camera.reset();
+    rig.cameras.clear();
     for (std::uint8_t n = 0; n < setup.nodes; ++n) {
         const auto id = static_cast<wire::NodeId>(kFirst + n);
         HostNode node{.node_id = id,

@@ -38,7 +38,7 @@ struct Recorded {
 const Recorded& recorded() {
     static const Recorded one = [] {
         rig::Rig rig = rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml").value();
-        rig.camera.reset();
+        rig.cameras.clear();
         return Recorded{make_host_setup(rig).value(), experiment_log(rig, 5)};
     }();
     return one;
@@ -220,13 +220,14 @@ std::string map_without(const Placed& all, const Placed& kept) {
 /// The map of what was committed, by way of the text that a recording has of it.
 std::string map_of_order(const std::vector<Commit>& commits) {
     const HostSetup& setup = recorded().setup;
+    const orderlog::CommitForm form{.joints = setup.rig.joint_counts()};
     PipelineConfig config;
     config.maps = {MapFeed::both};
     Pipeline pipeline = Pipeline::build(setup.rig, setup.robot, robust_mapping(), config).value();
     for (const Commit& commit : commits) {
-        std::string line = orderlog::format_commit(commit, setup.rig.joint_counts());
+        std::string line = orderlog::format_commit(commit, form);
         line.pop_back();
-        const auto read = orderlog::parse_commit(line, setup.rig.joint_counts());
+        const auto read = orderlog::parse_commit(line, form);
         EXPECT_TRUE(read) << line;
         if (const auto* joints = std::get_if<JointMeasurement>(&*read)) {
             EXPECT_TRUE(pipeline.builder().add(*joints));

@@ -35,7 +35,7 @@ rig::Rig rig_of(const RobotText& robot, std::string urdf) {
     rig.base_link = robot.shapes.base_link;
     rig::JointSource& source = rig.joint_sources.emplace_back();
     for (const rig::ShapedJoint& joint : robot.shapes.joints) source.joints.push_back(joint.name);
-    rig.camera = needed(rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml")).camera;
+    rig.cameras = needed(rig::read_rig(OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml")).cameras;
     return rig;
 }
 
@@ -115,7 +115,7 @@ std::vector<PosedCapsule> MeshRobot::capsules_at(const Eigen::VectorXd& joints) 
     setup_.robot.forward(std::span(joints.data(), static_cast<std::size_t>(joints.size())), T_base_link);
     std::vector<PosedCapsule> capsules;
     capsules_.pose(T_base_link, capsules);
-    const Eigen::Isometry3d T_camera_base = rig_.camera->T_link_camera.inverse();
+    const Eigen::Isometry3d T_camera_base = rig_.cameras.front().T_link_camera.inverse();
     for (PosedCapsule& capsule : capsules) {
         capsule.p_a = T_camera_base * capsule.p_a;
         capsule.p_b = T_camera_base * capsule.p_b;
@@ -148,7 +148,7 @@ double MeshRobot::distance_to_mesh(const sim::PosedBody& body, const Eigen::Vect
 }
 
 MeshRobot::Pixels MeshRobot::filter(int frames, double late_s) const {
-    const rig::Camera& camera = *rig_.camera;
+    const rig::Camera& camera = rig_.cameras.front();
     const sim::DepthCamera seen(world_, camera, {}, 0);
     const PixelRays rays(host_camera(camera).intrinsics);
     const std::vector<std::uint16_t> scene = seen.render({}, 0);
@@ -187,7 +187,7 @@ MeshRobot::Pixels MeshRobot::filter(int frames, double late_s) const {
 }
 
 std::size_t MeshRobot::frames_occupied(int frames, double late_s, const MappingConfig& mapping) const {
-    const sim::DepthCamera seen(world_, *rig_.camera, sim::gaussian_noise(0.03), 1);
+    const sim::DepthCamera seen(world_, rig_.cameras.front(), sim::gaussian_noise(0.03), 1);
     const auto builder = [&](bool removes_robot) {
         MappingConfig config = mapping;
         config.removes_robot_from_depth = removes_robot;
@@ -219,7 +219,7 @@ std::size_t MeshRobot::frames_occupied(int frames, double late_s, const MappingC
         const double time_s = kFrame_s * (static_cast<double>(frame) - kFramesBefore);
         const auto integrate = [&](MapBuilder& built, const sim::PosedBody& body) {
             ASSERT_TRUE(built.integrate(DepthFrame{HostTime{kStart_ns + std::llround(1e9 * time_s)},
-                                                   rig_.camera->width, rig_.camera->height,
+                                                   rig_.cameras.front().width, rig_.cameras.front().height,
                                                    seen.render(body, frame)}));
         };
         const bool has_robot = frame >= kFramesBefore;

@@ -75,7 +75,7 @@ class MovingRobot : public testing::Test {
     [[nodiscard]] MapBuilder builder(const Injected& injected, double margin_m,
                                      const MappingConfig& mapping) const {
         HostSetup setup = make_host_setup(rig_).value();
-        setup.rig.camera->T_link_camera.pretranslate(injected.camera_off_m);
+        setup.rig.cameras.front().T_link_camera.pretranslate(injected.camera_off_m);
         setup.rig.depth_self_margin_m = margin_m;
         MapBuilder builder =
             MapBuilder::build(setup.rig, std::move(setup.robot), mapping, {}, {MapFeed::both}).value();
@@ -97,7 +97,7 @@ class MovingRobot : public testing::Test {
     void integrate(MapBuilder& builder, const sim::DepthCamera& camera, std::uint32_t frame,
                    const std::vector<sim::BodyCapsule>& body) const {
         ASSERT_TRUE(builder.integrate(DepthFrame{HostTime{kStart_ns + 1'000 * frame * kFramePeriod_us},
-                                                 rig_.camera->width, rig_.camera->height,
+                                                 rig_.cameras.front().width, rig_.cameras.front().height,
                                                  camera.render(body, frame)}));
     }
 
@@ -151,7 +151,7 @@ class MovingRobot : public testing::Test {
     /// a surface in it: of a panel seen at a grazing angle the arm may hide those rays that would clear it.
     /// What the second has less of, it lost.
     Outcome run(const Injected& injected, double margin_m, const MappingConfig& mapping, const char* what) {
-        const sim::DepthCamera camera(world_, *rig_.camera, scenario_.depth_noise, 1);
+        const sim::DepthCamera camera(world_, rig_.cameras.front(), scenario_.depth_noise, 1);
         MappingConfig without_filter = mapping;
         without_filter.removes_robot_from_depth = false;
         MapBuilder world = builder(injected, margin_m, without_filter);

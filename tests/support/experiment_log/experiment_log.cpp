@@ -12,7 +12,7 @@ std::vector<StampedFrame> experiment_log(rig::Rig rig, std::uint64_t seed, std::
     const auto world = sim::World::read(scenario.world).value();
     const auto arm = sim::Arm::read(rig.urdf, rig.base_link, rig.joint_names()).value();
     const sim::Body body(rig::read_capsules(rig.urdf, {}).value());
-    rig.camera.reset();
+    rig.cameras.clear();
     scenario.rest_s = 2.0;
     scenario.motion.revolutions = revolutions;
     std::vector<StampedFrame> log;

@@ -35,16 +35,21 @@ struct Walk {
     const char* from = "rec";          ///< what the folder is made of
 };
 
-const std::vector<std::string> kRead{"can.log",    "depth.oni",      "depth.epoch.yaml", "rig.yaml",
-                                     "robot.urdf", "meta.yaml",      "order.log",        "mapping.yaml",
-                                     "first.ot",   "first.snapshot", "last.ot",          ".octoskin-ready"};
+const std::vector<std::string> kRead{"can.log",          "depth.oni",
+                                     "depth.epoch.yaml", "rig.yaml",
+                                     "robot.urdf",       "meta.yaml",
+                                     "order.log",        "mapping.yaml",
+                                     "first.ot",         "first.snapshot",
+                                     "last.ot",          "depth",
+                                     "depth/left.oni",   "depth/left.epoch.yaml",
+                                     ".octoskin-ready"};
 const std::vector<std::string> kMaps{
     "maps",           "maps/depth.ot",  "maps/proximity.bt",   "maps/fused.ot",
     "maps/fused.ply", "maps/maps.yaml", "maps/.octoskin-ready"};
-const std::vector<std::string> kWritten{"can.log",       "depth.oni",   "depth.epoch.yaml", "rig.yaml",
-                                        "robot.urdf",    "meta.yaml",   "scenario.yaml",    "world.sdf",
-                                        "motion.yaml",   "mesh_01.obj", "maps/depth.ot",    "maps/fused.bt",
-                                        "maps/maps.yaml"};
+const std::vector<std::string> kWritten{"can.log",        "depth.oni",   "depth.epoch.yaml", "rig.yaml",
+                                        "robot.urdf",     "meta.yaml",   "scenario.yaml",    "world.sdf",
+                                        "motion.yaml",    "mesh_01.obj", "maps/depth.ot",    "maps/fused.bt",
+                                        "maps/maps.yaml", "depth",       "depth/left.oni"};
 
 std::vector<std::string> joined(std::vector<std::string> one, const std::vector<std::string>& other) {
     one.insert(one.end(), other.begin(), other.end());
@@ -139,7 +144,9 @@ class Walker {
 
     void go(const Walk& walk, const std::string& place, Trap trap) {
         // A folder is what belongs there, or what octoskin makes.
-        const bool is_folders = place == "maps" || place == "recording" || place.ends_with(".octoskin-ready");
+        const std::string name_of_place = fs::path(place).filename().string();
+        const bool is_folders = place == "maps" || place == "recording" || name_of_place == "depth" ||
+                                name_of_place == ".octoskin-ready";
         if (trap == Trap::folder && is_folders) return;
         const fs::path folder = make(walk);
         const std::string name =

@@ -93,7 +93,7 @@ class BusyLoopTest : public testing::Test {
     DaemonRequest request_{.rig = kExperiment,
                            .robot = {},
                            .can_descriptor = bus_[0],
-                           .camera_uri = record_wall(folder_).string(),
+                           .cameras = {record_wall(folder_).string()},
                            .joint_socket = folder_ / "joints",
                            .control_socket = {},
                            .map_folder = {}};
@@ -106,7 +106,7 @@ class BusyLoopTest : public testing::Test {
 };
 
 TEST_F(BusyLoopTest, takes_no_image_of_the_camera_for_one_of_the_future) {
-    const auto& frames = pipeline_.inputs().depth_frames;
+    const auto& frames = pipeline_.inputs().depth_frames.front();
     std::uint64_t before = 0;
     ASSERT_TRUE(run([&](const Inputs&) { return frames.in() > 0; },
                     [&] {

@@ -53,7 +53,7 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
         [](const Json& status) { return status["inputs"]["depth frames"]["used"].get<int>() >= 5; }, 15s);
     ASSERT_TRUE(took) << daemon_->status()["inputs"].dump(1) << daemon_->log();
     const Json status = daemon_->status();
-    EXPECT_TRUE(status["camera"]["open"].get<bool>());
+    EXPECT_TRUE(status["cameras"][0]["open"].get<bool>());
     // The first ones come before there is a pose.
     for (const auto& [reason, count] : status["inputs"]["depth frames"]["rejected"].items()) {
         const bool is_of_start = reason == "joints_missing" || reason == "outside_marks";
@@ -73,7 +73,7 @@ TEST_F(DaemonTest, takes_the_frames_of_a_camera_and_goes_on_without_it) {
     EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) > before; }, 2s)) << "they stand";
     (void)record_wall(folder_);
     const auto back = daemon_->wait_until(
-        [](const Json& now) { return now.value(Json::json_pointer("/camera/open"), false); }, 10s);
+        [](const Json& now) { return now.value(Json::json_pointer("/cameras/0/open"), false); }, 10s);
     ASSERT_TRUE(back) << daemon_->log();
     std::printf("named %ld ms after it was gone, back %ld ms after it was there again\n",
                 static_cast<long>(reported->count()), static_cast<long>(back->count()));
@@ -135,7 +135,7 @@ TEST_F(DaemonTest, goes_on_with_camera_and_joint_socket_when_the_adapter_is_gone
     EXPECT_TRUE(daemon_->wait_until([&](const Json& now) { return used(now) > used_then + 80; }, 30s))
         << daemon_->status()["inputs"].dump(1);
     EXPECT_FALSE(has_problem(daemon_->status(), "time_unknown"));
-    EXPECT_LT(daemon_->status()["camera"]["untimed"].get<int>(), 12)
+    EXPECT_LT(daemon_->status()["cameras"][0]["untimed"].get<int>(), 12)
         << "four at first; the film began anew four times since, and its time went on";
     daemon_->signal(SIGTERM);
     EXPECT_EQ(daemon_->wait(5s), 0) << daemon_->log();

@@ -81,17 +81,17 @@ TEST_F(DaemonTest, listens_to_another_hosts_clock_and_puts_its_own_camera_on_it)
 // What it shows cannot be put on the time of a bus that nobody tells.
 TEST_F(DaemonTest, counts_its_cameras_frames_as_untimed_until_somebody_tells_the_time) {
     start({"--camera", record_wall(folder_, 24).string(), "--listen-only"});
-    const auto frames = [](const Json& now) { return now["camera"]["frames"].get<int>(); };
+    const auto frames = [](const Json& now) { return now["cameras"][0]["frames"].get<int>(); };
     ASSERT_TRUE(daemon_->wait_until([&](const Json& now) { return frames(now) >= 20; }, 20s))
-        << daemon_->status()["camera"].dump() << daemon_->log();
+        << daemon_->status()["cameras"][0].dump() << daemon_->log();
     const Json unreported = daemon_->status();
-    EXPECT_GE(unreported["camera"]["untimed"].get<int>(), frames(unreported) - 3)
+    EXPECT_GE(unreported["cameras"][0]["untimed"].get<int>(), frames(unreported) - 3)
         << "what waits is not counted yet";
     EXPECT_EQ(unreported["inputs"]["depth frames"]["in"], 0);
     bus_->speak_as_host(std::chrono::minutes(15));
     EXPECT_TRUE(daemon_->wait_until(
         [](const Json& now) { return now["inputs"]["depth frames"]["in"].get<int>() >= 10; }, 30s))
-        << daemon_->status()["camera"].dump();
+        << daemon_->status()["cameras"][0].dump();
 }
 
 // It hears them all the time; that their time is in doubt says nothing about them.

@@ -50,8 +50,8 @@ class DaemonOnFrames {
             return sensor.second.readings > 0 && !sensor.second.zones.begin()->second.passages.empty();
         });
     }
-    [[nodiscard]] std::optional<CameraMemory> camera_memory() const {
-        return pipeline_.builder().camera_memory();
+    [[nodiscard]] std::vector<CameraMemory> camera_memories() const {
+        return pipeline_.builder().camera_memories();
     }
     [[nodiscard]] std::string state() const { return encode_snapshot(pipeline_.builder().state(), {}); }
     /// What a recording began with, as `state` has it.
@@ -165,7 +165,7 @@ TEST_P(Looking, changes_nothing_and_the_replay_gives_the_same_bytes) {
     int compared = 0;
     bool had_counts = false;
     std::string first_state;
-    std::optional<CameraMemory> second_before;
+    std::vector<CameraMemory> second_before;
     std::size_t moved = 0;
     for (const StampedFrame& entry : log()) {
         for (DaemonOnFrames* daemon : {&recorded, &alone}) daemon->on_can(entry);
@@ -185,12 +185,13 @@ TEST_P(Looking, changes_nothing_and_the_replay_gives_the_same_bytes) {
         }
         if (second == GetParam().begin_s) {
             first_state = recorded.state();
-            if (second_before) moved = moved_means(*second_before, *recorded.camera_memory());
+            if (!second_before.empty())
+                moved = moved_means(second_before.at(0), recorded.camera_memories().at(0));
             had_counts = !recorded.map().layers().counts.empty() && recorded.has_readings();
             const auto answer = recorded.record("start 0 " + out, *now);
             ASSERT_TRUE(answer["ok"].get<bool>()) << answer;
         }
-        second_before = recorded.camera_memory();
+        second_before = recorded.camera_memories();
         ++compared;
         EXPECT_TRUE(recorded.state() == alone.state()) << "in second " << second;
         EXPECT_TRUE(encode_ot(recorded.map()) == encode_ot(alone.map())) << "in second " << second;

@@ -66,7 +66,7 @@ class Daemon:
 
 
 def timed_frames(status):
-    return status["camera"]["frames"] - status["camera"]["untimed"]
+    return status["cameras"][0]["frames"] - status["cameras"][0]["untimed"]
 
 
 def unplug_and_plug_in(scratch):
@@ -74,7 +74,7 @@ def unplug_and_plug_in(scratch):
         daemon.wait_until("frames", lambda status: timed_frames(status) >= 2)
         daemon.plug.unlink()
         named_s = daemon.wait_until("its name", lambda status: any(problem.get("on") == "camera" for problem in status["problems"]))
-        daemon.wait_until("its end", lambda status: not status["camera"]["open"] and "no camera" in status["camera"]["why"])
+        daemon.wait_until("its end", lambda status: not status["cameras"][0]["open"] and "no camera" in status["cameras"][0]["why"])
         before = timed_frames(daemon.status())
         daemon.plug.write_text("1500\n")
         back_s = daemon.wait_until("frames again", lambda status: timed_frames(status) > before)

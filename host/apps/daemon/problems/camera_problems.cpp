@@ -2,23 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/problems/unused_input.hpp"
+#include "host/core/rig/camera_text.hpp"
 
 namespace octoskin {
 namespace {
 
 /// Images were left out for over two seconds and still are: a short overload is not reported.
-bool is_left_behind(const DaemonView& view) {
+bool is_left_behind(const CameraUse& use, HostTime now) {
     constexpr Nanoseconds kLong{2'000'000'000};
     constexpr Nanoseconds kStill{1'000'000'000};
-    const auto& last = view.used.depth_left_out;
-    if (!last) return false;
-    const Nanoseconds ago = view.now - *last;
-    const Nanoseconds lasted = *last - *view.used.depth_left_out_since;
+    if (!use.left_out) return false;
+    const Nanoseconds ago = now - *use.left_out;
+    const Nanoseconds lasted = *use.left_out - *use.left_out_since;
     return ago < kStill && lasted > kLong;
 }
 
@@ -80,67 +82,111 @@ std::optional<Problem> camera_rate_problem(const CameraRecord& camera, double ra
         .key = "camera.rate_hz"};
 }
 
-void add_pose_fault(const DaemonView& view, Problems& problems) {
-    const CrossCheck* const cross_check = view.pipeline->builder().cross_check();
-    if (cross_check == nullptr || !cross_check->pose().fault()) return;
-    const PoseFault& fault = *cross_check->pose().fault();
-    const ProblemCode code = !fault.joint    ? ProblemCode::camera_pose
-                             : !fault.camera ? ProblemCode::joint_pose
-                                             : ProblemCode::camera_or_joint_pose;
-    problems.push_back({.code = code, .what = describe(fault, view.rig->joint_names())});
+namespace {
+
+/// One camera of the view.
+struct Looked {
+    const HostCamera& of_rig;
+    const CameraRecord& record;
+    const InputCounters<DepthReason>& frames;
+    CameraUse use;
+};
+
+std::optional<Problem> unused_frames(const DaemonView& view, const Looked& camera) {
+    const auto& [of_rig, record, frames, use] = camera;
+    const Nanoseconds patience = std::max(kUnusedPatience, Nanoseconds{std::llround(3e9 / of_rig.rate_hz)});
+    const bool is_used = use.frame && !has_stopped(use.frame, view.now, patience);
+    CounterTable table = tabulate("depth frames", frames);
+    table.of = of_rig.name;
+    if (frames.in() > 0 && !is_used && view.inputs->has_bus_fallen_silent(view.now)) {
+        return Problem{.code = ProblemCode::camera_bus_silent,
+                       .on = camera_text(of_rig.name),
+                       .what =
+                           "its frames are not used, because the bus is silent: no node sends joint "
+                           "states for the robot's pose (joints_missing)",
+                       .key = "joints_missing"};
+    }
+    if (view.is_listen_only && !view.inputs->foreign_clock().ahead(view.now)) {
+        return Problem{.code = ProblemCode::camera_untimed,
+                       .on = camera_text(of_rig.name),
+                       .what =
+                           "its frames have no time: the clock of the host that sends SYNC is not "
+                           "known, or in doubt (three FOLLOW_UPs must agree)"};
+    }
+    if (frames.in() > 0 && frames.rejected(DepthReason::wrong_size) == frames.in()) {
+        const CameraIntrinsics& wanted = of_rig.intrinsics;
+        return Problem{
+            .code = ProblemCode::camera_size,
+            .on = camera_text(of_rig.name),
+            .what = fmt::format("none of its images is {} x {}, the size in the rig (wrong_size)",
+                                wanted.width, wanted.height),
+            .remedy =
+                "set camera.width_px and camera.height_px of the rig to those of one of the camera's "
+                "modes (`octoskin cameras` lists them)",
+            .key = "wrong_size"};
+    }
+    if (frames.in() > 0 && !use.frame) {
+        return Problem{.code = ProblemCode::depth_unused,
+                       .what = "no depth frame could be used yet: " + see_counters(table)};
+    }
+    if (has_stopped(use.frame, view.now, patience)) {
+        return Problem{.code = ProblemCode::depth_stopped,
+                       .what = table.title() + " no longer reach the map: " + see_counters(table)};
+    }
+    return std::nullopt;
 }
 
-void add_camera(const DaemonView& view, Problems& problems) {
-    add_pose_fault(view, problems);
-    if (!view.camera || !view.rig->camera) return;
-    const double rate_hz = view.rig->camera->rate_hz;
-    const auto& frames = view.pipeline->inputs().depth_frames;
-    const bool is_used = view.used.depth_frame && !has_stopped(view.used.depth_frame, view.now);
-    const std::size_t others = problems.size();
-    if (auto problem = camera_problem(*view.camera, rate_hz, view.now)) {
+Problem overload(const HostCamera& camera) {
+    return {.code = ProblemCode::camera_overload,
+            .on = camera_text(camera.name),
+            .what =
+                "its images come faster than this machine can process them, and some are left out "
+                "(queue_overflow)",
+            .remedy = "use a coarser resolution_m, or a mode with a lower rate or fewer pixels",
+            .key = "queue_overflow"};
+}
+
+void add_camera(const DaemonView& view, const Looked& camera, Problems& problems) {
+    const std::string subject = camera_text(camera.of_rig.name);
+    const auto add = [&](std::optional<Problem> problem) {
+        if (!problem) return;
+        if (!problem->on.empty()) problem->on = subject;
+        problem->subject = subject;
         problems.push_back(std::move(*problem));
-    } else if (frames.in() > 0 && !is_used && view.inputs->has_bus_fallen_silent(view.now)) {
-        problems.push_back({.code = ProblemCode::camera_bus_silent,
-                            .on = "camera",
-                            .what = "its frames are not used, because the bus is silent: no node sends joint "
-                                    "states for the robot's pose (joints_missing)",
-                            .key = "joints_missing"});
-    } else if (view.is_listen_only && !view.inputs->foreign_clock().ahead(view.now)) {
-        problems.push_back({.code = ProblemCode::camera_untimed,
-                            .on = "camera",
-                            .what = "its frames have no time: the clock of the host that sends SYNC is not "
-                                    "known, or in doubt (three FOLLOW_UPs must agree)"});
-    } else if (frames.in() > 0 && frames.rejected(DepthReason::wrong_size) == frames.in()) {
-        const CameraIntrinsics& wanted = view.rig->camera->intrinsics;
+    };
+    auto problem = camera_problem(camera.record, camera.of_rig.rate_hz, view.now);
+    add(problem ? std::move(problem) : unused_frames(view, camera));
+    if (is_left_behind(camera.use, view.now)) add(overload(camera.of_rig));
+    auto rate = camera_rate_problem(camera.record, camera.of_rig.rate_hz);
+    if (!rate) return;
+    rate->on = subject;
+    problems.push_back(std::move(*rate));
+}
+
+/// Errors of cameras and joints that the comparison of images with ranges finds.
+void add_pose_faults(const DaemonView& view, Problems& problems) {
+    const CrossChecks* const checks = view.pipeline->builder().cross_checks();
+    for (std::size_t i = 0; checks != nullptr && i < checks->cameras(); ++i) {
+        const auto& fault = checks->of(i).pose().fault();
+        if (!fault) continue;
+        const ProblemCode code = !fault->joint    ? ProblemCode::camera_pose
+                                 : !fault->camera ? ProblemCode::joint_pose
+                                                  : ProblemCode::camera_or_joint_pose;
         problems.push_back(
-            {.code = ProblemCode::camera_size,
-             .on = "camera",
-             .what = fmt::format("none of its images is {} x {}, the size in the rig (wrong_size)",
-                                 wanted.width, wanted.height),
-             .remedy = "set camera.width_px and camera.height_px of the rig to those of one of the camera's "
-                       "modes (`octoskin cameras` lists them)",
-             .key = "wrong_size"});
-    } else if (frames.in() > 0 && !view.used.depth_frame) {
-        problems.push_back(
-            {.code = ProblemCode::depth_unused,
-             .what = "no depth frame could be used yet: " + see_counters("depth frames", frames)});
-    } else if (has_stopped(view.used.depth_frame, view.now)) {
-        problems.push_back(
-            {.code = ProblemCode::depth_stopped,
-             .what = "depth frames no longer reach the map: " + see_counters("depth frames", frames)});
+            {.code = code, .what = describe(*fault, view.rig->joint_names(), view.rig->cameras.at(i).name)});
     }
-    if (problems.size() > others) problems.back().subject = "camera";
-    if (is_left_behind(view)) {
-        problems.push_back(
-            {.code = ProblemCode::camera_overload,
-             .on = "camera",
-             .what = "its images come faster than this machine can process them, and some are left out "
-                     "(queue_overflow)",
-             .remedy = "use a coarser resolution_m, or a mode with a lower rate or fewer pixels",
-             .key = "queue_overflow",
-             .subject = "camera"});
+}
+
+}  // namespace
+
+void add_cameras(const DaemonView& view, Problems& problems) {
+    add_pose_faults(view, problems);
+    for (std::size_t i = 0; i < std::min(view.cameras.size(), view.rig->cameras.size()); ++i) {
+        const CameraUse use = i < view.used.cameras.size() ? view.used.cameras[i] : CameraUse{};
+        add_camera(
+            view, {view.rig->cameras.at(i), view.cameras[i], view.pipeline->inputs().depth_frames.at(i), use},
+            problems);
     }
-    if (auto problem = camera_rate_problem(*view.camera, rate_hz)) problems.push_back(std::move(*problem));
 }
 
 }  // namespace octoskin

@@ -162,13 +162,13 @@ void add_sensor(const DaemonView& view, const HostNode& node, std::size_t index,
              .key = counter_of(*streak),
              .hidden_by = on});
     }
-    const CrossCheck* const cross_check = view.pipeline->builder().cross_check();
-    if (cross_check == nullptr) return;
-    const SensorEvidence& evidence = cross_check->evidence(node.node_id, static_cast<std::uint8_t>(index));
+    const CrossChecks* const checks = view.pipeline->builder().cross_checks();
+    if (checks == nullptr) return;
+    const auto [evidence, camera] = checks->finding(node.node_id, static_cast<std::uint8_t>(index));
     if (!evidence.contradicts()) return;
     problems.push_back({.code = ProblemCode::sensor_contradicts_camera,
                         .on = who,
-                        .what = describe(evidence),
+                        .what = describe(evidence, view.rig->cameras.at(camera).name),
                         .hidden_by = on});
 }
 

@@ -36,7 +36,7 @@ void add_silence(const DaemonView& view, const HostNode& node, Problems& problem
 void add_joints(const DaemonView& view, Problems& problems);
 
 // --- camera_problems.cpp
-void add_camera(const DaemonView& view, Problems& problems);
+void add_cameras(const DaemonView& view, Problems& problems);
 
 // --- map_problems.cpp: the map, its folder, the recording, the newest reload
 void add_map(const DaemonView& view, Problems& problems);

@@ -14,7 +14,7 @@ std::vector<Problem> problems(const DaemonView& view) {
         add_joint_nodes(view, problems);
         add_joints(view, problems);
         add_readings(view, problems);
-        add_camera(view, problems);
+        add_cameras(view, problems);
     }
     add_map(view, problems);
     add_log(view, problems);

@@ -14,17 +14,22 @@
 
 namespace octoskin {
 
-/// Whether it was used before, and has not been for 0.8 s.
-inline bool has_stopped(const std::optional<HostTime>& last, HostTime now) {
-    constexpr Nanoseconds kPatience{800'000'000};
-    return last && now - *last > kPatience;
+inline constexpr Nanoseconds kUnusedPatience{800'000'000};
+
+/// Whether it was used before, and has not been for longer than `patience`.
+inline bool has_stopped(const std::optional<HostTime>& last, HostTime now,
+                        Nanoseconds patience = kUnusedPatience) {
+    return last && now - *last > patience;
 }
 
 /// The most frequent reason, its meaning and its remedy.
+inline std::string see_counters(const CounterTable& table) {
+    const auto loss = most_frequent(table);
+    return loss ? describe(*loss) : fmt::format("see the counters of {}", table.title());
+}
 template <class Reject>
 std::string see_counters(const char* unit, const InputCounters<Reject>& inputs) {
-    const auto loss = most_frequent(tabulate(unit, inputs));
-    return loss ? describe(*loss) : fmt::format("see the counters of {}", unit);
+    return see_counters(tabulate(unit, inputs));
 }
 
 }  // namespace octoskin

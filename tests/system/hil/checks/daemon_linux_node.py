@@ -43,18 +43,18 @@ def has_camera_problem(status):
 
 def unplug_and_plug_in(daemon, plug):
     """The camera, while the node ranges: what that took, in seconds."""
-    opened, before = daemon.status()["camera"]["opened"], used(daemon.status(), "readings")
+    opened, before = daemon.status()["cameras"][0]["opened"], used(daemon.status(), "readings")
     plug.unlink()
     named_s = daemon.await_status("the camera's name", lambda now: has_camera_problem(now))
     claim(named_s <= CAMERA_NAMED_S, f"the camera that is gone was named after {named_s:.2f} s")
-    daemon.await_status("an end of it", lambda now: not now["camera"]["open"] and "no camera" in now["camera"]["why"])
+    daemon.await_status("an end of it", lambda now: not now["cameras"][0]["open"] and "no camera" in now["cameras"][0]["why"])
     daemon.await_status("readings without a camera", lambda now: used(now, "readings") > before, PATIENCE_S)
     gone = used(daemon.status(), "depth frames")
     plug.write_text(f"{WALL_MM}\n")
     back_s = daemon.await_status("the camera's frames again", lambda now: used(now, "depth frames") > gone, PATIENCE_S)
     claim(back_s <= CAMERA_BACK_S, f"the camera's frames were on the map {back_s:.2f} s after it was back")
     status = daemon.status()
-    claim(status["camera"]["open"] and status["camera"]["opened"] > opened, f"the camera: {status['camera']}")
+    claim(status["cameras"][0]["open"] and status["cameras"][0]["opened"] > opened, f"the camera: {status['cameras'][0]}")
     claim(not has_camera_problem(status), f"problems: {status['problems']}")
     return named_s, back_s
 
@@ -70,7 +70,7 @@ def check(bench):
     try:
         await_images(daemon, 2)
     except daemon_bench.CheckFailed:
-        print(daemon.status()["inputs"], daemon.status()["camera"])
+        print(daemon.status()["inputs"], daemon.status()["cameras"][0])
         raise
     of_camera = daemon.status()["map"]["known_voxels"]
     await_images(daemon, 5)

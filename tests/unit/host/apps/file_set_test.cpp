@@ -278,7 +278,8 @@ TEST(FileSetTest, what_cannot_be_finished_is_left_as_it_lies_and_said_once) {
 TEST(FileSetTest, follows_no_journal_out_of_its_folder) {
     for (const char* line :
          {"put ../escaped", "drop /etc/passwd", "put can.log/../../escaped", "burn can.log", "put", "",
-          "put notes", "drop .bashrc", "put maps/../can.log", "put ./can.log", "drop recording/can.log"}) {
+          "put notes", "drop .bashrc", "put depth/../can.log", "put depth/.x.oni", "drop depth/notes",
+          "put maps/../can.log", "put ./can.log", "drop recording/can.log"}) {
         const ScratchFolder folder;
         fs::create_directories(folder / "in/.octoskin-ready");
         folder.write("escaped", "mine");
@@ -305,6 +306,9 @@ TEST(FileSetTest, follows_no_link_out_of_its_folder) {
     const Trap traps[] = {{"in/maps", "../victim", "put maps/fused.ot"},
                           {"in/maps", "../victim", "drop maps/fused.ot"},
                           {"in/can.log", "../victim/fused.ot", "drop can.log"},
+                          {"in/depth", "../victim", "put depth/left.oni"},
+                          {"in/depth", "../victim", "drop depth/left.oni"},
+                          {"in/.octoskin-ready/depth", "../../victim", "put depth/left.oni"},
                           {"in/.octoskin-ready/maps", "../../victim", "put maps/fused.ot"},
                           {"in/.octoskin-ready/.before", "../../victim", "drop robot.urdf"}};
     for (const Trap& trap : traps) {
@@ -397,6 +401,177 @@ TEST(FileSetTest, leaves_nothing_unfinished_of_a_process_that_is_told_to_end) {
     ASSERT_TRUE(set->commit(kFiles, {"robot.urdf"}));
     EXPECT_FALSE(remove_unfinished().is_any) << "it is whole";
     EXPECT_EQ(reported(parent.path()), kNew);
+}
+
+/// Everything below the folder: "can.log=new depth/left.oni=new".
+std::string all_in(const fs::path& folder) {
+    std::vector<std::string> entries;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        const std::string name = entry.path().lexically_relative(folder).string();
+        if (entry.is_regular_file()) entries.push_back(name + "=" + ScratchFolder::read(entry.path()));
+        if (entry.is_directory() && fs::is_empty(entry.path())) entries.push_back(name);
+    }
+    std::sort(entries.begin(), entries.end());
+    std::string text;
+    for (const std::string& entry : entries) text.append(text.empty() ? "" : " ").append(entry);
+    return text;
+}
+
+const std::vector<fs::path> kOfTwoCameras = {"can.log", "depth/left.oni", "depth/left.epoch.yaml",
+                                             "depth/right.oni", "meta.yaml"};
+constexpr const char* kNewOfTwoCameras =
+    "can.log=new depth/left.epoch.yaml=new depth/left.oni=new depth/right.oni=new meta.yaml=new";
+
+/// A recording of the cameras `left` and `front`.
+void fill_old_of_cameras(const fs::path& folder) {
+    fs::create_directory(folder / "depth");
+    for (const char* name : {"can.log", "depth/left.oni", "depth/front.oni", "meta.yaml"})
+        write(folder / name, "old");
+}
+
+Status<AppError> replace_by(const fs::path& folder, const std::vector<fs::path>& files,
+                            const std::vector<fs::path>& retired) {
+    auto set = FileSet::begin(folder);
+    if (!set) return unexpected(set.error());
+    for (const fs::path& file : files) {
+        fs::create_directories((set->draft().shown() / file).parent_path());
+        write(set->draft().shown() / file, "new");
+    }
+    return set->commit(files, retired);
+}
+
+TEST(FileSetOfCameras, comes_with_its_folder_and_goes_with_it) {
+    const ScratchFolder folder;
+    fill_old(folder.path());
+    const auto made = replace_by(folder.path(), kOfTwoCameras, {"robot.urdf"});
+    ASSERT_TRUE(made) << made.error().message();
+    EXPECT_EQ(all_in(folder.path()), kNewOfTwoCameras);
+    const auto gone = replace_by(folder.path(), {"can.log", "meta.yaml"},
+                                 {"depth/left.oni", "depth/left.epoch.yaml", "depth/right.oni"});
+    ASSERT_TRUE(gone) << gone.error().message();
+    EXPECT_EQ(all_in(folder.path()), "can.log=new meta.yaml=new") << "without an empty folder";
+}
+
+TEST(FileSetOfCameras, leaves_what_others_have_in_their_folder) {
+    const ScratchFolder folder;
+    fill_old_of_cameras(folder.path());
+    write(folder / "depth/notes.txt", "mine");
+    ASSERT_TRUE(replace_by(folder.path(), {"can.log", "meta.yaml"}, {"depth/left.oni", "depth/front.oni"}));
+    EXPECT_EQ(all_in(folder.path()), "can.log=new depth/notes.txt=mine meta.yaml=new");
+}
+
+TEST(FileSetOfCameras, what_was_killed_after_any_step_is_brought_to_its_end_by_the_next_one) {
+    for (std::size_t moved = 0; moved <= kOfTwoCameras.size(); ++moved) {
+        const ScratchFolder folder;
+        fill_old_of_cameras(folder.path());
+        const fs::path ready = folder / ".octoskin-ready";
+        fs::create_directories(ready / "depth");
+        std::string journal = "octoskin-file-set/1\ndrop depth/front.oni\n";
+        for (std::size_t i = 0; i < kOfTwoCameras.size(); ++i) {
+            journal += "put " + kOfTwoCameras[i].string() + "\n";
+            write((i < moved ? folder.path() : ready) / kOfTwoCameras[i], "new");
+        }
+        write(ready / ".journal", journal);
+        const auto settled = settle(folder.path());
+        ASSERT_TRUE(settled) << moved << settled.error().message();
+        EXPECT_TRUE(*settled) << moved;
+        EXPECT_EQ(all_in(folder.path()), kNewOfTwoCameras) << moved;
+    }
+}
+
+TEST(FileSetOfCameras, killed_at_any_instant_it_is_the_old_set_or_the_new_one) {
+    std::mt19937 random(2);
+    for (int i = 0; i < 30; ++i) {
+        const ScratchFolder folder;
+        fill_old_of_cameras(folder.path());
+        const std::string old = all_in(folder.path());
+        const pid_t child = ::fork();
+        if (child == 0) {
+            static_cast<void>(replace_by(folder.path(), kOfTwoCameras, {"depth/front.oni"}));
+            ::_exit(0);
+        }
+        ::usleep(static_cast<useconds_t>(random() % 3000));
+        ::kill(child, SIGKILL);
+        ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+        { ASSERT_TRUE(FileSet::begin(folder.path())); }
+        fs::remove(folder / kDaemonsLock);  // a killed one can leave it
+        const std::string now = all_in(folder.path());
+        EXPECT_TRUE(now == old || now == kNewOfTwoCameras) << now;
+    }
+}
+
+TEST(FileSetOfCameras, an_error_while_it_moves_takes_the_folder_back_too) {
+    const ScratchFolder folder;
+    fill_old(folder.path());
+    const fs::path ready = folder / ".octoskin-ready";
+    fs::create_directories(ready / "depth");
+    for (const char* name : {"depth/left.oni", "meta.yaml"}) write(ready / name, "new");
+    // Of a set that never had its can.log: it is in the way as a folder.
+    write(ready / ".journal", "octoskin-file-set/1\nput depth/left.oni\nput can.log\nput meta.yaml\n");
+    fs::remove(folder / "can.log");
+    fs::create_directory(folder / "can.log");
+    ASSERT_FALSE(settle(folder.path()));
+    EXPECT_FALSE(fs::exists(folder / "depth"));
+    EXPECT_EQ(ScratchFolder::read(ready / "depth/left.oni"), "new");
+}
+
+TEST(FileSetOfCameras, refuses_a_file_or_a_link_in_place_of_their_folder) {
+    for (const bool is_link : {false, true}) {
+        const ScratchFolder parent;
+        const fs::path folder = parent / "in";
+        for (const char* made : {"in", "victim"}) fs::create_directory(parent / made);
+        write(parent / "victim/left.oni", "mine");
+        fill_old(folder);
+        is_link ? fs::create_directory_symlink("../victim", folder / "depth")
+                : write(folder / "depth", "mine");
+        const auto refused = replace_by(folder, kOfTwoCameras, {});
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
+        EXPECT_EQ(refused.error().error.file, folder / "depth");
+        EXPECT_EQ(refused.error().error.code, is_link ? ErrorCode::link : ErrorCode::wrong_kind_of_file);
+        EXPECT_EQ(ScratchFolder::read(parent / "victim/left.oni"), "mine");
+        EXPECT_EQ(ScratchFolder::read(folder / "can.log"), "old");
+    }
+}
+
+TEST(FileSetOfCameras, of_more_files_than_a_journal_names_is_refused) {
+    const ScratchFolder folder;
+    fill_old(folder.path());
+    std::vector<fs::path> retired;
+    for (int i = 0; i < 400; ++i)
+        retired.emplace_back("depth/camera-with_a_long-name_" + std::to_string(i) + ".epoch.yaml");
+    const auto refused = replace_by(folder.path(), kFiles, retired);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().error.code, ErrorCode::limit_exceeded);
+    EXPECT_EQ(refused.error().error.file, folder.path());
+    EXPECT_EQ(reported(folder.path()), kOld);
+    retired.resize(50);  // of more cameras than two rigs have
+    EXPECT_TRUE(replace_by(folder.path(), kFiles, retired));
+}
+
+TEST(FileSetOfCameras, knows_their_files_by_name) {
+    const std::string longest(32, 'x');
+    for (const std::string& camera :
+         {std::string("left"), std::string("_"), std::string("A-z_0.9"), longest}) {
+        EXPECT_EQ(camera_of_file(camera + ".oni"), camera);
+        EXPECT_EQ(camera_of_file(camera + ".epoch.yaml"), camera);
+        EXPECT_TRUE(is_file_of_set("depth/" + camera + ".oni"));
+        EXPECT_TRUE(is_file_of_set("depth/" + camera + ".epoch.yaml"));
+        EXPECT_FALSE(is_file_of_set("maps/" + camera + ".oni"));
+        EXPECT_FALSE(is_file_of_set(camera + ".oni"));
+    }
+    for (const std::string& camera :
+         {std::string(), std::string(".left"), std::string("-left"), std::string("a/b"), std::string("../x"),
+          std::string("le ft"), std::string("l\xC3\xA4"), std::string("x..y"), std::string("x\n"),
+          longest + "x"}) {
+        EXPECT_EQ(camera_of_file(camera + ".oni"), "") << camera;
+        EXPECT_FALSE(is_file_of_set("depth/" + camera + ".oni")) << camera;
+        EXPECT_FALSE(is_file_of_set("depth/" + camera + ".epoch.yaml")) << camera;
+    }
+    for (const char* name :
+         {"depth/left", "depth/left.ONI", "depth/left.yaml", "depth/", "depth", "/depth/left.oni",
+          "depth//left.oni", "./depth/left.oni", "depth/depth/left.oni", "depth/left.oni/"})
+        EXPECT_FALSE(is_file_of_set(name)) << name;
 }
 
 TEST(SceneMesh, is_known_by_its_name) {

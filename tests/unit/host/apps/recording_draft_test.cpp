@@ -183,7 +183,8 @@ TEST(RecordingDraftTest, a_directory_in_the_way_leaves_the_former_recording_whol
 }
 
 TEST(RecordingDraftTest, is_not_begun_where_it_could_not_come_into_its_place) {
-    for (const std::string place : {"can.log", "depth.oni", "rig.yaml", "maps/fused.ot", "maps/maps.yaml"}) {
+    for (const std::string place :
+         {"can.log", "depth.oni", "depth/left.oni", "rig.yaml", "maps/fused.ot", "maps/maps.yaml"}) {
         const ScratchFolder folder;
         folder.write("meta.yaml", kSimulated);
         std::filesystem::create_directories(folder / place);
@@ -201,6 +202,48 @@ TEST(RecordingDraftTest, is_not_begun_where_it_could_not_come_into_its_place) {
         }
         EXPECT_EQ(folder.entries(), 2) << "nothing is left of it";
     }
+}
+
+TEST(RecordingDraftTest, replaces_the_files_of_other_cameras) {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "depth");
+    folder.write("meta.yaml", kSimulated);
+    for (const char* old : {"depth.oni", "depth.epoch.yaml", "depth/left.oni", "depth/left.epoch.yaml",
+                            "depth/front.oni", "depth/front.epoch.yaml"})
+        folder.write(old, "old");
+    {
+        auto draft = RecordingDraft::create(folder.path(), true);
+        ASSERT_TRUE(draft) << draft.error().message();
+        fill(*draft, "log");
+        ASSERT_TRUE(draft->paths().file(RecordingPaths::kDepthFolder).make_folder());
+        for (const char* camera : {"left", "right"}) {
+            write(draft->paths().depth(camera), "new");
+            write(draft->paths().depth_epoch(camera), "new");
+        }
+        const auto committed = draft->commit();
+        ASSERT_TRUE(committed) << committed.error().message();
+    }
+    const RecordingPaths recording(folder.path());
+    EXPECT_EQ(recording.cameras(), (std::vector<std::string>{"left", "right"}));
+    EXPECT_EQ(ScratchFolder::read(folder / "depth/left.oni"), "new");
+    EXPECT_TRUE(check_recording(recording));
+    auto next = RecordingDraft::create(folder.path(), true);
+    ASSERT_TRUE(next) << next.error().message();
+    fill(*next, "log");
+    ASSERT_TRUE(next->commit());
+    EXPECT_FALSE(std::filesystem::exists(folder / "depth")) << "of no camera";
+}
+
+TEST(RecordingDraftTest, is_not_begun_where_the_cameras_files_cannot_come_into_their_place) {
+    const ScratchFolder folder;
+    folder.write("meta.yaml", kSimulated);
+    folder.write("depth", "mine");
+    const auto refused = RecordingDraft::check(folder.path(), true);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
+    EXPECT_EQ(refused.error().error.code, ErrorCode::wrong_kind_of_file);
+    EXPECT_EQ(refused.error().error.file, folder / "depth");
+    EXPECT_FALSE(RecordingDraft::create(folder.path(), true));
 }
 
 TEST(RecordingDraftTest, leaves_maps_that_belong_to_no_recording) {

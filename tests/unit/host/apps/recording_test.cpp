@@ -196,6 +196,64 @@ TEST_F(RecordingTest, what_lies_in_a_files_place_and_is_none_is_refused_by_name)
     EXPECT_TRUE(check_recording(recording_));
 }
 
+TEST_F(RecordingTest, knows_the_cameras_by_the_files_that_are_there) {
+    EXPECT_TRUE(recording_.cameras().empty());
+    std::filesystem::create_directory(recording_.directory / "depth");
+    EXPECT_TRUE(recording_.cameras().empty());
+    for (const char* name :
+         {"right.oni", "left.oni", "left.epoch.yaml", ".hidden.oni", "notes.txt", "-x.oni"})
+        write(recording_.file(std::string("depth/") + name), "x");
+    EXPECT_EQ(recording_.cameras(), (std::vector<std::string>{"left", "right"}));
+    write(recording_.depth(), "x");
+    EXPECT_EQ(recording_.cameras(), (std::vector<std::string>{"", "left", "right"}));
+    EXPECT_EQ(recording_.depth().name(), "depth.oni");
+    EXPECT_EQ(recording_.depth("left").name(), "depth/left.oni");
+    EXPECT_EQ(recording_.depth_epoch("left").name(), "depth/left.epoch.yaml");
+}
+
+TEST_F(RecordingTest, of_a_camera_without_one_of_its_files_it_is_named) {
+    for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) write(file, "x");
+    std::filesystem::create_directory(recording_.directory / "depth");
+    EXPECT_TRUE(check_recording(recording_));
+    write(recording_.depth("left"), "x");
+    const auto checked = check_recording(recording_);
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().code, ErrorCode::not_found);
+    EXPECT_EQ(checked.error().file, recording_.depth_epoch("left").shown());
+    EXPECT_THAT(checked.error().what, testing::HasSubstr("depth/left.oni"));
+    write(recording_.depth_epoch("left"), "x");
+    EXPECT_TRUE(check_recording(recording_));
+    write(recording_.depth_epoch("right"), "x");
+    EXPECT_EQ(check_recording(recording_).error().file, recording_.depth("right").shown());
+}
+
+TEST_F(RecordingTest, what_lies_in_the_place_of_the_cameras_files_is_refused_by_name) {
+    for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) write(file, "x");
+    const auto depth = recording_.directory / "depth";
+    const auto refused = [&](const std::filesystem::path& file, ErrorCode code) {
+        const auto checked = check_recording(recording_);
+        ASSERT_FALSE(checked) << file;
+        EXPECT_EQ(checked.error().file, file);
+        EXPECT_EQ(checked.error().code, code) << file;
+    };
+    write(recording_.file("depth"), "x");
+    refused(depth, ErrorCode::wrong_kind_of_file);
+    std::filesystem::remove(depth);
+    std::filesystem::create_directory(recording_.directory / "elsewhere");
+    std::filesystem::create_directory_symlink("elsewhere", depth);
+    refused(depth, ErrorCode::link);
+    std::filesystem::remove(depth);
+    std::filesystem::create_directory(depth);
+    std::filesystem::create_symlink("../can.log", depth / "left.oni");
+    refused(depth / "left.oni", ErrorCode::link);
+    std::filesystem::remove(depth / "left.oni");
+    ASSERT_EQ(::mkfifo((depth / "left.epoch.yaml").c_str(), 0600), 0);
+    refused(depth / "left.epoch.yaml", ErrorCode::wrong_kind_of_file);
+    std::filesystem::remove(depth / "left.epoch.yaml");
+    std::filesystem::create_symlink("../can.log", depth / "notes.txt");
+    EXPECT_TRUE(check_recording(recording_)) << "no name of a camera";
+}
+
 TEST_F(RecordingTest, one_that_was_left_half_moved_is_refused_with_what_finishes_it) {
     for (const auto& file : {recording_.can_log(), recording_.rig(), recording_.meta()}) write(file, "x");
     std::filesystem::create_directory(recording_.directory / ".octoskin-ready");

@@ -151,11 +151,11 @@ TEST_F(RigText, every_value_of_a_full_rig_arrives) {
     EXPECT_EQ(rig.links_without_body, std::vector<std::string>{"base"});
     EXPECT_EQ(rig.range_limits.sigma_max_m, 0.15);
     EXPECT_EQ(rig.range_limits.time_uncertainty_max_ms, 2.5);
-    EXPECT_EQ(rig.camera->fy, 60.5);
-    EXPECT_EQ(rig.camera->lens,
+    EXPECT_EQ(rig.cameras.front().fy, 60.5);
+    EXPECT_EQ(rig.cameras.front().lens,
               (LensDistortion{.k1 = 0.125, .k2 = -0.25, .p1 = 0.001, .p2 = -0.002, .k3 = 0.0625}));
-    EXPECT_EQ(rig.camera->link, "arm");
-    EXPECT_EQ(rig.camera->data_set,
+    EXPECT_EQ(rig.cameras.front().link, "arm");
+    EXPECT_EQ(rig.cameras.front().data_set,
               (DataSetKeys{.units_per_m = 1000.0, .no_value = 65'535, .pose_gap_max_ms = 150.0}));
     EXPECT_EQ(rig.joint_sources.at(0).rate_hz, 100.5);
     const Node& node = rig.nodes.at(0);
@@ -192,9 +192,9 @@ TEST_F(RigText, canonical_text_reads_back_to_the_same_text_and_the_same_numbers)
     const Rig again = read_good(text);
     EXPECT_EQ(canonical_text(again, "two-links.urdf"), text);
     EXPECT_TRUE(again.T_map_base.matrix() == rig.T_map_base.matrix());
-    EXPECT_TRUE(again.camera->T_link_camera.matrix() == rig.camera->T_link_camera.matrix());
-    EXPECT_EQ(again.camera->lens, rig.camera->lens);
-    EXPECT_EQ(again.camera->data_set, rig.camera->data_set);
+    EXPECT_TRUE(again.cameras.front().T_link_camera.matrix() == rig.cameras.front().T_link_camera.matrix());
+    EXPECT_EQ(again.cameras.front().lens, rig.cameras.front().lens);
+    EXPECT_EQ(again.cameras.front().data_set, rig.cameras.front().data_set);
     EXPECT_TRUE(again.nodes[0].sensors[0].T_link_sensor.matrix() ==
                 rig.nodes[0].sensors[0].T_link_sensor.matrix());
     EXPECT_EQ(again.nodes[0].config, rig.nodes[0].config);
@@ -328,7 +328,7 @@ TEST_F(RigText, of_a_camera_without_lens_and_scale_is_what_it_was_before_there_w
     plain = replaced(
         plain, "  data_set: {depth_units_per_m: 1000, depth_no_value: 65535, pose_gap_max_ms: 150}\n", "");
     const Rig rig = read_good(plain);
-    EXPECT_TRUE(rig.camera->lens.is_none());
+    EXPECT_TRUE(rig.cameras.front().lens.is_none());
     EXPECT_EQ(canonical_text(rig, "r").find("distortion"), std::string::npos);
     EXPECT_EQ(canonical_text(rig, "r").find("data_set"), std::string::npos);
     const Rig written_out = read_good(

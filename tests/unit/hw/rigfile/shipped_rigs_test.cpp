@@ -101,14 +101,14 @@ TEST(ShippedRigs, experiment_has_the_bus_camera_joints_and_limits_of_the_experim
     EXPECT_EQ(rig.joint_sources.at(0).node_id, 3);
     EXPECT_EQ(rig.joint_sources.at(0).rate_hz, 100.0);
     EXPECT_EQ(rig.joint_names().size(), 7U);
-    ASSERT_TRUE(rig.camera);
-    EXPECT_EQ(rig.camera->width, 512U);
-    EXPECT_EQ(rig.camera->height, 424U);
-    EXPECT_EQ(rig.camera->fx, 365.0);
-    EXPECT_EQ(rig.camera->fy, 365.0);
-    EXPECT_EQ(rig.camera->cx, 256.0);
-    EXPECT_EQ(rig.camera->cy, 212.0);
-    EXPECT_EQ(rig.camera->rate_hz, 10.0);
+    ASSERT_EQ(rig.cameras.size(), 1U);
+    EXPECT_EQ(rig.cameras.front().width, 512U);
+    EXPECT_EQ(rig.cameras.front().height, 424U);
+    EXPECT_EQ(rig.cameras.front().fx, 365.0);
+    EXPECT_EQ(rig.cameras.front().fy, 365.0);
+    EXPECT_EQ(rig.cameras.front().cx, 256.0);
+    EXPECT_EQ(rig.cameras.front().cy, 212.0);
+    EXPECT_EQ(rig.cameras.front().rate_hz, 10.0);
     EXPECT_EQ(rig.range_limits.min_m, 0.04);
     EXPECT_EQ(rig.range_limits.max_m, 4.0);
     EXPECT_TRUE(rig.T_map_base.isApprox(Eigen::Isometry3d::Identity(), 0.0));
@@ -119,7 +119,7 @@ TEST(ShippedRigs, camera_looks_at_its_point_with_the_picture_upright) {
     for (const auto& [name, height_m] :
          {std::pair{"experiment.yaml", 1.8}, std::pair{"experiment_low_camera.yaml", 0.6}}) {
         const Rig rig = shipped(name);
-        const Eigen::Isometry3d& T_base_camera = rig.camera->T_link_camera;
+        const Eigen::Isometry3d& T_base_camera = rig.cameras.front().T_link_camera;
         EXPECT_TRUE(T_base_camera.translation().isApprox(Eigen::Vector3d(2.7, 0.0, height_m))) << name;
         const Eigen::Vector3d p_camera_target = T_base_camera.inverse() * Eigen::Vector3d(0.4, 0.0, 0.45);
         EXPECT_NEAR(p_camera_target.x(), 0.0, 1e-12) << name;
@@ -146,7 +146,7 @@ TEST(ShippedRigs, bench_rig_has_four_sensors_on_one_board) {
     const Rig rig = shipped("bench_one_board.yaml");
     ASSERT_EQ(rig.nodes.size(), 1U);
     EXPECT_EQ(rig.nodes[0].sensors.size(), 4U);
-    EXPECT_FALSE(rig.camera);
+    EXPECT_TRUE(rig.cameras.empty());
     EXPECT_EQ(rig.nodes[0].config.sensors[3].inter_measurement_ms, 20);
 }
 

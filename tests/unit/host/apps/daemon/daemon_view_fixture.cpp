@@ -46,7 +46,7 @@ DaemonViewTest::DaemonViewTest(const DaemonRequest& request) : request_(request)
     camera.is_open = true;
     camera.begun = host_at(0.0);
     camera.newest = host_at(4.5);
-    view_.camera = camera;
+    view_.cameras = {camera};
 }
 
 void DaemonViewTest::play(const Scene& scene, double until_s) {

@@ -108,7 +108,8 @@ class DaemonViewTest : public testing::Test {
                                .robot = "<robot/>",
                                .mapping = "base: robust\n",
                                .rig_hash = 1,
-                               .joints = {1},
+                               .form = {.joints = {1}},
+                               .cameras = {""},
                                .interface = "can7"};
     DaemonRequest request_;
     Scene scene_ = daemon_scene();

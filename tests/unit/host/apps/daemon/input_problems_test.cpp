@@ -223,37 +223,38 @@ class CameraProblemsTest : public DaemonViewTest {};
 TEST_F(CameraProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) {
     EXPECT_EQ(reported(ProblemCode::depth_unused), std::nullopt);
     const auto look_after = [&](Nanoseconds duration) {
-        view_.now = *view_.used.depth_frame + duration;
-        view_.camera->newest = view_.now;
+        view_.now = *view_.used.cameras[0].frame + duration;
+        view_.cameras[0].newest = view_.now;
         return reported(ProblemCode::depth_stopped);
     };
     EXPECT_EQ(look_after(Nanoseconds{800'000'000}), std::nullopt);
     EXPECT_THAT(look_after(Nanoseconds{800'000'001}), Optional(what_has("counters of depth frames")));
-    view_.camera->newest = view_.now - kSecond;
+    view_.cameras[0].newest = view_.now - kSecond;
     EXPECT_EQ(reported(ProblemCode::depth_stopped), std::nullopt) << "its own fault is told first";
     EXPECT_NE(reported(ProblemCode::camera_silent, "camera"), std::nullopt);
     play(daemon_scene(), 3.95);
-    view_.camera->newest = view_.now;
+    view_.cameras[0].newest = view_.now;
     EXPECT_EQ(reported(ProblemCode::depth_unused), std::nullopt) << "none has come";
-    play_changed([](Scene& scene) { scene.rig.camera->T_link_camera.translation().x() = 2000.0; });
-    view_.camera->newest = view_.now;
+    play_changed([](Scene& scene) { scene.rig.cameras.front().T_link_camera.translation().x() = 2000.0; });
+    view_.cameras[0].newest = view_.now;
     EXPECT_THAT(reported(ProblemCode::depth_unused),
                 Optional(AllOf(what_has("6 of 6"), what_has("outside_map (6)"), what_has("camera's pose"))));
     EXPECT_EQ(reported(ProblemCode::camera_size), std::nullopt);
-    play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
-    view_.camera->newest = view_.now;
-    EXPECT_THAT(reported(ProblemCode::camera_size, "camera"),
-                Optional(AllOf(key_is("wrong_size"),
-                               what_has("17 x " + std::to_string(scene_.rig.camera->intrinsics.height)),
-                               remedy_has("camera.width_px"), remedy_has("camera.height_px"),
-                               remedy_has("`octoskin cameras`"))));
+    play_changed([](Scene& scene) { scene.rig.cameras.front().intrinsics.width = 17; });
+    view_.cameras[0].newest = view_.now;
+    EXPECT_THAT(
+        reported(ProblemCode::camera_size, "camera"),
+        Optional(AllOf(key_is("wrong_size"),
+                       what_has("17 x " + std::to_string(scene_.rig.cameras.front().intrinsics.height)),
+                       remedy_has("camera.width_px"), remedy_has("camera.height_px"),
+                       remedy_has("`octoskin cameras`"))));
     EXPECT_EQ(reported(ProblemCode::depth_unused), std::nullopt);
 }
 
 TEST_F(CameraProblemsTest, have_images_that_there_is_no_time_for_once_that_has_lasted_two_seconds) {
     const auto is_reported = [this](Nanoseconds lasted, Nanoseconds ago) {
-        view_.used.depth_left_out = view_.now - ago;
-        view_.used.depth_left_out_since = *view_.used.depth_left_out - lasted;
+        view_.used.cameras[0].left_out = view_.now - ago;
+        view_.used.cameras[0].left_out_since = *view_.used.cameras[0].left_out - lasted;
         return reported(ProblemCode::camera_overload, "camera").has_value();
     };
     EXPECT_TRUE(is_reported(2 * kSecond + kNs, kSecond - kNs));
@@ -261,7 +262,7 @@ TEST_F(CameraProblemsTest, have_images_that_there_is_no_time_for_once_that_has_l
                 Optional(AllOf(key_is("queue_overflow"), remedy_has("resolution_m"))));
     EXPECT_FALSE(is_reported(2 * kSecond, kSecond - kNs)) << "a busy moment";
     EXPECT_FALSE(is_reported(2 * kSecond + kNs, kSecond)) << "it keeps up again";
-    view_.used.depth_left_out.reset();
+    view_.used.cameras[0].left_out.reset();
     EXPECT_EQ(reported(ProblemCode::camera_overload), std::nullopt);
 }
 
@@ -275,7 +276,7 @@ TEST_F(CameraProblemsTest, know_since_when_images_have_been_left_out_again_and_a
     } worker;
     const Scene scene = daemon_scene();
     Pipeline pipeline = make_pipeline(scene);
-    pipeline.work_beside(&worker);
+    pipeline.work_beside({&worker});
     for (const StampedFrame& entry : scene.bus.frames()) pipeline.on_can(entry.frame, entry.stamp);
     const auto at = [](double seconds) { return HostTime{std::llround(seconds * 1e9)}; };
     auto leave_one_out_at = [&, used = LastUsed{}, captured = 4.0](double at_s) mutable {
@@ -284,34 +285,34 @@ TEST_F(CameraProblemsTest, know_since_when_images_have_been_left_out_again_and_a
         used.note(pipeline, scene.rig, at(at_s));
         return used;
     };
-    for (int i = 0; i < 3; ++i) EXPECT_FALSE(leave_one_out_at(9.0).depth_left_out) << i;
-    EXPECT_EQ(leave_one_out_at(10.0).depth_left_out_since, at(10.0));
-    EXPECT_EQ(leave_one_out_at(11.0).depth_left_out_since, at(10.0)) << "at least once a second";
+    for (int i = 0; i < 3; ++i) EXPECT_FALSE(leave_one_out_at(9.0).cameras[0].left_out) << i;
+    EXPECT_EQ(leave_one_out_at(10.0).cameras[0].left_out_since, at(10.0));
+    EXPECT_EQ(leave_one_out_at(11.0).cameras[0].left_out_since, at(10.0)) << "at least once a second";
     const LastUsed later = leave_one_out_at(12.5);
-    EXPECT_EQ(later.depth_left_out, at(12.5));
-    EXPECT_EQ(later.depth_left_out_since, at(12.5)) << "for a second and a half there was time for all";
+    EXPECT_EQ(later.cameras[0].left_out, at(12.5));
+    EXPECT_EQ(later.cameras[0].left_out_since, at(12.5)) << "for a second and a half there was time for all";
     pipeline.finish();
 }
 
 TEST_F(CameraProblemsTest, have_nothing_of_a_camera_that_nobody_wants) {
-    view_.now = *view_.used.depth_frame + kSecond;
+    view_.now = *view_.used.cameras[0].frame + kSecond;
     EXPECT_NE(reported(ProblemCode::camera_silent, "camera"), std::nullopt);
-    view_.camera.reset();
+    view_.cameras.clear();
     EXPECT_EQ(reported(ProblemCode::camera_silent), std::nullopt);
     EXPECT_EQ(reported(ProblemCode::depth_stopped), std::nullopt);
 }
 
 TEST_F(CameraProblemsTest, have_a_camera_beside_a_bus_that_fell_silent) {
-    play_changed([](Scene& scene) { scene.rig.camera->intrinsics.width = 17; });
+    play_changed([](Scene& scene) { scene.rig.cameras.front().intrinsics.width = 17; });
     ScriptedBus bus;
     bus.heartbeat(0.0, node_of(scene_, kLeft));
     say(bus.frames().front().frame);
     view_.now = monotonic_now() + kSecond;
-    view_.camera->newest = view_.now;
+    view_.cameras[0].newest = view_.now;
     EXPECT_THAT(reported(ProblemCode::camera_bus_silent, "camera"), Optional(key_is("joints_missing")));
     EXPECT_EQ(reported(ProblemCode::camera_size), std::nullopt);
     view_.now = monotonic_now();
-    view_.camera->newest = view_.now;
+    view_.cameras[0].newest = view_.now;
     EXPECT_EQ(reported(ProblemCode::camera_bus_silent), std::nullopt);
     EXPECT_NE(reported(ProblemCode::camera_size), std::nullopt);
 }
@@ -326,11 +327,11 @@ TEST_F(CameraProblemsTest, have_a_camera_without_a_time_until_three_exchanges_of
         say(wire::encode(wire::FollowUp{sequence, static_cast<std::uint64_t>(heard.ns / 1'000) + 900'000'000},
                          wire::kHostId));
         view_.now = heard;
-        view_.camera->newest = view_.used.depth_frame = heard;
+        view_.cameras[0].newest = view_.used.cameras[0].frame = heard;
     }
     EXPECT_EQ(reported(ProblemCode::camera_untimed), std::nullopt);
     view_.now = view_.now + 6 * kSecond;
-    view_.camera->newest = view_.now;
+    view_.cameras[0].newest = view_.now;
     EXPECT_THAT(reported(ProblemCode::camera_untimed), is_untimed) << "it is silent again";
 }
 

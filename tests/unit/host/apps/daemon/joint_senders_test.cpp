@@ -69,9 +69,9 @@ TEST(JointSenders, that_cannot_be_seen_are_one) {
 }
 
 TEST(JointSenders, are_told_by_process_program_user_and_address) {
-    EXPECT_EQ(describe({4711, 1000, ""}, "python3"), "process 4711 (python3, user 1000)");
-    EXPECT_EQ(describe({4711, 0, "/run/driver"}, ""), "process 4711 (user 0) at /run/driver");
-    EXPECT_EQ(describe({}, ""), "a process that is not visible from here");
+    EXPECT_EQ(describe(JointSender{4711, 1000, ""}, "python3"), "process 4711 (python3, user 1000)");
+    EXPECT_EQ(describe(JointSender{4711, 0, "/run/driver"}, ""), "process 4711 (user 0) at /run/driver");
+    EXPECT_EQ(describe(JointSender{}, ""), "a process that is not visible from here");
 }
 
 TEST(JointSenders, keep_no_more_than_a_few_of_a_flood_of_processes) {

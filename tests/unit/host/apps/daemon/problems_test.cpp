@@ -172,8 +172,8 @@ TEST_F(ProblemsTest, come_the_most_fundamental_first) {
     play_changed([](Scene& scene) { scene.bus = ScriptedBus{}, scene.depth.clear(); });
     other_end_.reset();
     inputs_->catch_up();
-    view_.camera->is_open = false;
-    view_.camera->why = "no such device";
+    view_.cameras[0].is_open = false;
+    view_.cameras[0].why = "no such device";
     view_.saves.error = "the disk is full";
     EXPECT_THAT(
         all_reported(),
@@ -449,12 +449,13 @@ TEST_F(ProblemsTest, have_a_node_that_loses_over_a_twentieth_of_a_second_s_readi
 TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is_decided) {
     int reported_after = 0;
     let_camera_contradict([&] {
-        const bool is_decided = pipeline_->builder().cross_check()->evidence(kLeft, kGood).contradicts();
+        const bool is_decided =
+            pipeline_->builder().cross_checks()->of(0).evidence(kLeft, kGood).contradicts();
         EXPECT_EQ(reported(ProblemCode::sensor_contradicts_camera, kGoodSensor).has_value(), is_decided);
         reported_after += is_decided ? 0 : 1;
     });
     EXPECT_THAT(reported_after, AllOf(testing::Gt(1), testing::Lt(80)));
-    const SensorEvidence evidence = pipeline_->builder().cross_check()->evidence(kLeft, kGood);
+    const SensorEvidence evidence = pipeline_->builder().cross_checks()->of(0).evidence(kLeft, kGood);
     EXPECT_THAT(all_reported(),
                 ElementsAre(AllOf(is_problem(ProblemCode::sensor_contradicts_camera, kGoodSensor,
                                              std::to_string(evidence.in_free_space) +
@@ -464,7 +465,7 @@ TEST_F(ProblemsTest, have_a_sensor_that_contradicts_the_camera_from_when_that_is
     Scene scene = daemon_scene();
     scene.mapping.removes_robot_from_depth = false;
     play(scene, kAllWell);
-    ASSERT_EQ(pipeline_->builder().cross_check(), nullptr);
+    ASSERT_EQ(pipeline_->builder().cross_checks(), nullptr);
     EXPECT_THAT(all_reported(), IsEmpty());
 }
 
@@ -556,7 +557,7 @@ TEST_F(ProblemsTest, have_a_recording_that_failed) {
 }
 
 TEST_F(ProblemsTest, have_a_recording_that_is_not_complete) {
-    play_changed([](Scene& scene) { scene.rig.camera->depth_max_m = 40.0; });
+    play_changed([](Scene& scene) { scene.rig.cameras.front().depth_max_m = 40.0; });
     Recorder recorder(folder_ / "recording", {}, settings_, *pipeline_, view_.now);
     view_.recorder = &recorder;
     EXPECT_THAT(all_reported(), IsEmpty());

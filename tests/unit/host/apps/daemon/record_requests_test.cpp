@@ -48,7 +48,8 @@ class RecordRequestsTest : public testing::Test {
                                .robot = "<robot/>",
                                .mapping = "base: robust\n",
                                .rig_hash = 1,
-                               .joints = {1},
+                               .form = {.joints = {1}},
+                               .cameras = {""},
                                .interface = "can0"};
     std::function<void()> before_copy_ = [] {};  ///< of a map
     RecordRequests requests_{[this](const FusedMap& map) {

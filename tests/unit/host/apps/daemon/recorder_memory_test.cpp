@@ -64,7 +64,8 @@ TEST(RecorderWithoutMemory, counts_what_it_could_not_keep_as_lost_and_goes_on) {
                                     .robot = "<robot/>",
                                     .mapping = "base: robust\n",
                                     .rig_hash = 1,
-                                    .joints = {1},
+                                    .form = {.joints = {1}},
+                                    .cameras = {""},
                                     .interface = "can0"};
     Recorder recorder(folder / "recording", {}, settings, pipeline, HostTime{1'000'000'000});
     const wire::CanFrame frame = test::good_scene().bus.frames().front().frame;
@@ -122,7 +123,8 @@ bool record_and_replay(const test::Scene& scene, std::int64_t allocations, std::
                                     .robot = "<robot/>",
                                     .mapping = "base: fast\n",
                                     .rig_hash = 1,
-                                    .joints = {1},
+                                    .form = {.joints = {1}},
+                                    .cameras = {""},
                                     .interface = "can0"};
     Recorder recorder(folder / "recording", {}, settings, pipeline, HostTime{1'000'000'000});
     fails_after = allocations;
@@ -136,7 +138,7 @@ bool record_and_replay(const test::Scene& scene, std::int64_t allocations, std::
     auto order = orderlog::OrderReader::open(RecordingPaths(folder / "recording").order());
     EXPECT_TRUE(order);
     Pipeline again = test::make_pipeline(scene);
-    const OrderedOutcome outcome = replay_in_order(again.builder(), *order, nullptr);
+    const OrderedOutcome outcome = replay_in_order(again.builder(), *order, {});
     EXPECT_FALSE(outcome.order_error) << outcome.order_error->message();
     EXPECT_EQ(order->trailer()->is_complete(), recorder.is_complete());
     if (recorder.is_complete()) {

@@ -43,12 +43,14 @@ class SmallDisk {
 class RecordingWriterTest : public testing::Test {
   protected:
     RecordingBegin begin() const {
-        return {.paths = RecordingPaths(folder_ / "recording"),
-                .rig = "rig text\n",
-                .robot = "robot text\n",
-                .mapping = "mapping text\n",
-                .order = {.rig_hash = 1, .mapping_crc32 = 2, .joints = {1}, .first_map = std::nullopt},
-                .first = {FusedMap(MapConfig{}), {}}};
+        return {
+            .paths = RecordingPaths(folder_ / "recording"),
+            .rig = "rig text\n",
+            .robot = "robot text\n",
+            .mapping = "mapping text\n",
+            .order = {.rig_hash = 1, .mapping_crc32 = 2, .form = {.joints = {1}}, .first_map = std::nullopt},
+            .first = {FusedMap(MapConfig{}), {}},
+            .cameras = {""}};
     }
     static RecordingEnd end(std::uint64_t commits) {
         RecordingMeta meta;

@@ -147,7 +147,7 @@ TEST_F(StatusTest, has_nothing_of_a_node_that_nobody_has_heard) {
         Json::parse(R"({"index": 0, "name": "good", "state": null, "fault": null, "received": 0, "lost": 0,
         "age_s": null, "rejected": null, "contradictions": 0, "strays": 0, "second_sender": false,
         "disputed": false, "reflexes": 0, "reflex_below_m": 0.0, "reflex_m": null,
-        "camera": {"verdict": "cannot_tell", "contradicts": false, "fault": null, "doubt": "too_few_comparisons",
+        "camera": {"of": "", "verdict": "cannot_tell", "contradicts": false, "fault": null, "doubt": "too_few_comparisons",
                    "not_excluded": ["ranges_too_long", "ranges_too_short", "often_short", "turned", "exchanged"],
                    "refused": false, "compared": 0, "fitted": 0,
                    "agreed": 0, "in_free_space": 0, "behind_surface": 0}})"));
@@ -275,7 +275,7 @@ TEST_F(StatusTest, has_how_often_something_came_too_close_to_a_sensor_and_how_cl
 
 TEST_F(StatusTest, has_what_the_camera_says_of_a_sensor_or_null_without_one) {
     let_camera_contradict();
-    const SensorEvidence& evidence = pipeline_->builder().cross_check()->evidence(kLeft, kGood);
+    const SensorEvidence& evidence = pipeline_->builder().cross_checks()->of(0).evidence(kLeft, kGood);
     const Json camera = sensor(kGood)["camera"];
     EXPECT_EQ(camera["contradicts"], true);
     EXPECT_EQ(camera["verdict"], "contradicts");
@@ -286,29 +286,31 @@ TEST_F(StatusTest, has_what_the_camera_says_of_a_sensor_or_null_without_one) {
     EXPECT_EQ(camera["behind_surface"], evidence.behind_surface);
     EXPECT_EQ(sensor(kSpare)["camera"]["in_free_space"], 0);
     Scene scene = daemon_scene();
-    scene.rig.camera.reset();
+    scene.rig.cameras.clear();
     play(scene, kAllWell);
     EXPECT_EQ(sensor(kGood)["camera"], nullptr);
 }
 
 TEST_F(StatusTest, has_the_cameras_record_or_null) {
-    view_.camera->frames = 60;
-    view_.camera->displaced = 3;
-    view_.camera->untimed = 2;
-    view_.camera->repeated = 7;
-    view_.camera->opened = 4;
-    view_.camera->why = "was gone";
-    Json camera = status()["camera"];
+    view_.cameras[0].frames = 60;
+    view_.cameras[0].displaced = 3;
+    view_.cameras[0].untimed = 2;
+    view_.cameras[0].repeated = 7;
+    view_.cameras[0].opened = 4;
+    view_.cameras[0].why = "was gone";
+    Json camera = status()["cameras"][0];
     EXPECT_NEAR(camera["age_s"], 0.05, kTiny);
     camera.erase("age_s");
-    EXPECT_EQ(camera,
-              Json::parse(R"({"open": true, "why": "was gone", "frames": 60, "displaced": 3, "untimed": 2,
+    EXPECT_EQ(
+        camera,
+        Json::parse(
+            R"({"name": "", "link": "", "device": "", "open": true, "why": "was gone", "frames": 60, "displaced": 3, "untimed": 2,
         "repeated": 7, "opened": 4, "is_off": false, "turned_deg": null, "shifted_m": null, "depth_scale": null,
         "explains_sensors": 0})"));
-    view_.camera->newest.reset();
-    EXPECT_EQ(status()["camera"]["age_s"], nullptr);
-    view_.camera.reset();
-    EXPECT_EQ(status()["camera"], nullptr);
+    view_.cameras[0].newest.reset();
+    EXPECT_EQ(status()["cameras"][0]["age_s"], nullptr);
+    view_.cameras.clear();
+    EXPECT_EQ(status()["cameras"], Json::array());
 }
 
 TEST_F(StatusTest, has_what_came_through_the_joint_socket_or_null_without_one) {
@@ -555,14 +557,14 @@ TEST_F(StatusTest, has_each_value_of_its_type_and_null_only_where_that_is_declar
     EXPECT_THAT(values_of_another_type(status()), IsEmpty());
     let_camera_contradict();
     EXPECT_THAT(values_of_another_type(status()), IsEmpty()) << "with the verdict of the camera";
-    view_.camera.reset();
+    view_.cameras.clear();
     view_.reloads.reading_since = view_.now;
     view_.maps_silent_since = view_.now;
     scene_.rig.links_with_borrowed_body = {{"bolt", "upper"}};
     EXPECT_THAT(values_of_another_type(status()), IsEmpty()) << "without a camera";
     Scene far = daemon_scene();
     far.rig.nodes[0].node_id = 44;
-    far.rig.camera.reset();
+    far.rig.cameras.clear();
     play(far, kAllWell);
     EXPECT_THAT(values_of_another_type(status()), IsEmpty()) << "of a node that nobody has heard";
     Scene silent = daemon_scene();
@@ -579,13 +581,13 @@ TEST_F(StatusTest, has_no_latency_where_no_reading_came_over_the_bus) {
 
 TEST_F(StatusTest, knows_when_each_kind_of_measurement_was_used_last) {
     play(daemon_scene(), 0.4);
-    EXPECT_FALSE(view_.used.joint_sample || view_.used.reading || view_.used.depth_frame ||
+    EXPECT_FALSE(view_.used.joint_sample || view_.used.reading || view_.used.cameras[0].frame ||
                  view_.used.time_back);
     play(daemon_scene(), 6.0);
     EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.joint_sample->ns), 5.99, 0.012);
     // The joint state behind each is certain once the next one is here, and 12.5 ms have passed.
     EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.reading->ns), 3.830, 0.012);
-    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.depth_frame->ns), 4.520, 0.012);
+    EXPECT_NEAR(1e-9 * static_cast<double>(view_.used.cameras[0].frame->ns), 4.520, 0.012);
     EXPECT_FALSE(view_.used.time_back);
     // The host begins anew: what it says and how the frames are stamped no longer fit.
     Scene anew = good_scene();

@@ -204,6 +204,29 @@ TEST(Explanation, concludes_in_one_sentence) {
               "occupied, unchanged since the beginning of the recording; the camera never saw it");
 }
 
+TEST(Explanation, tells_of_each_camera_of_several) {
+    const VoxelKey key{1, 2, 3};
+    const Evidence hit = terms_of({{key, 0.9F}});
+    const Evidence miss = terms_of({{key, -0.4F}});
+    VoxelTrace trace(key, MapConfig{}, kKept);
+    for (int i = 0; i < 3; ++i)
+        trace.on_depth({.captured = {4'100'000'000}, .depth_mm = {}, .camera = 1}, hit);
+    trace.on_depth({.captured = {4'200'000'000}, .depth_mm = {}, .camera = 0}, miss);
+    EXPECT_EQ(trace.newest().back().frame, 0U) << "each camera's frames are counted";
+    EXPECT_EQ(trace.newest()[2].frame, 2U);
+    Explanation explanation = explanation_of(trace, Occupancy::occupied);
+    explanation.cameras = {"left", "right", "rear"};
+    for (std::size_t i = 0; i < explanation.cameras.size(); ++i)
+        explanation.names[source_of_camera(i)] = "camera '" + explanation.cameras[i] + "'";
+    EXPECT_EQ(
+        conclusion_of(explanation),
+        "occupied, mainly by camera 'right' at 4.100 s, 3 hits; camera 'left' saw it free in 1 frame, and "
+        "never occupied; camera 'rear' never saw it");
+    const auto json = to_json(explanation);
+    EXPECT_EQ(json["sources"][0]["source"]["name"], "camera");
+    EXPECT_EQ(json["sources"][0]["source"]["camera"], "right");
+}
+
 TEST(Explanation, weighs_what_was_there_before_as_a_line_of_its_own_and_the_sum_agrees) {
     const VoxelKey key{1, 2, 3};
     VoxelTrace trace = cross_check_from(key, 2.0F);

@@ -32,7 +32,7 @@ Json status() {
              "age_s": 0.02, "range_m": 0.532, "device_status": 9, "rejected": null},
             {"index": 1, "name": "elbow", "state": "lost", "fault": "no_answer", "received": 7,
              "age_s": null, "rejected": "self_hit"}]}],
-        "joints_socket": null, "camera": null,
+        "joints_socket": null, "cameras": [],
         "latency": {"readings": 7, "median_ms": 0.2, "p99_ms": 0.5, "max_ms": 3.0,
                     "age_median_ms": 31.25, "age_p99_ms": 44.0, "age_max_ms": 51.5},
         "map": {"known_voxels": 1234, "resolution_m": 0.04, "memory_mib": 3.2, "memory_max_mib": 800,
@@ -253,7 +253,7 @@ TEST(Monitor, shows_each_counter_that_is_not_zero_with_its_rate_and_meaning) {
     now["can"]["not_sent"] = 5;
     now["clock"]["relocks"] = 1;
     now["joints_socket"] = {{"samples", 9}, {"time_off", 4}};
-    now["camera"] = {{"open", true}, {"frames", 60}, {"age_s", 0.1}, {"untimed", 6}};
+    now["cameras"] = {{{"open", true}, {"frames", 60}, {"age_s", 0.1}, {"untimed", 6}}};
     now["map"]["no_room"] = 7;
     now["reloads"] = {{"count", 1}, {"dropped", 8}};
     now["nodes"][0]["sensors"][0]["lost"] = 3;
@@ -266,7 +266,7 @@ TEST(Monitor, shows_each_counter_that_is_not_zero_with_its_rate_and_meaning) {
     expect_line("\n          5 not_sent                 1.5/s  ", "can", "not_sent");
     expect_line("\n          1 relocks                  0.5/s  ", "clock", "relocks");
     expect_line("          4 time_off                 2.0/s  ", "joints_socket", "time_off");
-    expect_line("          6 untimed                  3.0/s  ", "camera", "untimed");
+    expect_line("          6 untimed                  3.0/s  ", "cameras", "untimed");
     expect_line("          7 no_room                  3.5/s  ", "map", "no_room");
     expect_line("          8 dropped                  4.0/s  ", "reloads", "dropped");
     EXPECT_TRUE(has(screen, "wrist            0.532 m    0.0/s   0.02 s ago  status 9, lost on the bus: 3\n"))

@@ -23,6 +23,14 @@ using testing_support::ScratchFolder;
 using testing_support::WrittenDataSet;
 
 constexpr int kFrames = 4;
+const std::string kOneSensor = "extends: " OCTOSKIN_SOURCE_DIR "/tests/data/rigs/one-sensor.yaml\n";
+
+/// In a rig file, as wide as this.
+std::string camera_text(int width_px) {
+    return "{width_px: " + std::to_string(width_px) +
+           ", height_px: 480, fx_px: 525, fy_px: 525, cx_px: 250, cy_px: 240, rate_hz: 30, "
+           "pose: {xyz_m: [0, 0, 0], rpy_deg: [0, 0, 0]}}";
+}
 
 /// A wall 1.5 to 2.5 m away with holes, of whole millimetres: in every third pixel of every third row, 14 mm
 /// apart at most, so that no voxel of 5 cm goes without.
@@ -94,15 +102,15 @@ class DataSetPlayback : public testing::Test {
 TEST_F(DataSetPlayback, maps_each_image_from_where_the_camera_was) {
     FusedMap expected(request().mapping.map);
     HostRig rig;
-    rig.camera = HostCamera{};
-    rig.camera->intrinsics = {640, 480, 525.0, 525.0, 320.0, 240.0};
+    rig.cameras = {HostCamera{}};
+    rig.cameras.front().intrinsics = {640, 480, 525.0, 525.0, 320.0, 240.0};
     for (int i = 0; i < kFrames; ++i) {
         written_.add_pose(time_of(i), text_of(pose_of(i)));
         written_.add_image(time_of(i), wall(static_cast<unsigned>(i)));
         DepthFrame frame{HostTime{i}, 640, 480, {}};
         for (const std::uint16_t value : wall(static_cast<unsigned>(i)).values)
             frame.depth_mm.push_back(static_cast<std::uint16_t>(value / 5));
-        rig.camera->T_link_camera = pose_of(i);
+        rig.cameras.front().T_link_camera = pose_of(i);
         MappingConfig mapping = request().mapping;
         mapping.removes_robot_from_depth = false;
         expected.apply(DepthStage(rig, mapping).updates(frame, nullptr)->terms);
@@ -161,7 +169,7 @@ TEST_F(DataSetPlayback, scale_missing_value_intrinsics_and_lens_are_the_rigs) {
     without_lens.rig = scratch_.write("pinhole.yaml", rig + "}\n");
     const auto played = play_recording(with_lens);
     ASSERT_TRUE(played) << played.error().message();
-    EXPECT_EQ(played->pipeline.depth_stage()->pixels().used, 160U * 120U);
+    EXPECT_EQ(played->pipeline.builder().depth_stage(0).pixels().used, 160U * 120U);
     constexpr double kHalfDiagonalM = 0.0174;  // of a voxel of 2 cm
     EXPECT_LT(furthest_m(played->pipeline.map(MapFeed::camera), normal), kHalfDiagonalM + 0.001);
     const auto bent = play_recording(without_lens);
@@ -225,8 +233,8 @@ TEST_F(DataSetPlayback, accounts_for_every_image) {
     EXPECT_EQ(images.in, 3U);
     EXPECT_EQ(images.used, 2U);
     EXPECT_EQ(images.rejected.front().count, 1U);
-    EXPECT_EQ(played->pipeline.inputs().depth_frames.used(), 1U);
-    EXPECT_EQ(played->pipeline.inputs().depth_frames.rejected(DepthReason::out_of_order), 1U);
+    EXPECT_EQ(played->pipeline.inputs().depth_frames.front().used(), 1U);
+    EXPECT_EQ(played->pipeline.inputs().depth_frames.front().rejected(DepthReason::out_of_order), 1U);
     EXPECT_FALSE(failure_of(*played));
 }
 
@@ -330,7 +338,7 @@ TEST_F(DataSetPlayback, an_image_of_another_size_than_the_cameras_is_counted_and
     written_.add_image("100", {2, 1, {5000, 5000}});
     const auto played = play_recording(request());
     ASSERT_TRUE(played) << played.error().message();
-    EXPECT_EQ(played->pipeline.inputs().depth_frames.rejected(DepthReason::wrong_size), 1U);
+    EXPECT_EQ(played->pipeline.inputs().depth_frames.front().rejected(DepthReason::wrong_size), 1U);
     ASSERT_TRUE(failure_of(*played));
     EXPECT_EQ(failure_of(*played)->error.code, ErrorCode::no_content);
     EXPECT_THAT(failure_of(*played)->error.what, HasSubstr("wrong_size"));
@@ -344,7 +352,7 @@ TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
     EXPECT_EQ(refused(robot).code, ErrorCode::bad_argument);
     EXPECT_EQ(refused(robot).key, "--robot");
     PlaybackRequest two = request();
-    two.rig = "rig.yaml";
+    two.rig = scratch_.write("rig.yaml", kOneSensor + "camera: " + camera_text(512) + "\n");
     two.camera = "freiburg1";
     EXPECT_EQ(refused(two).code, ErrorCode::conflict);
     EXPECT_THAT(refused(two).remedy, HasSubstr("--rig or --camera"));
@@ -360,6 +368,31 @@ TEST_F(DataSetPlayback, what_a_data_set_does_not_have_is_refused) {
     EXPECT_EQ(absent.file, written_.folder() / "depth.txt");
     EXPECT_EQ(absent.line, 4);
     EXPECT_EQ(absent.key, "depth/absent.png");
+}
+
+TEST_F(DataSetPlayback, of_a_rig_with_several_cameras_the_one_that_is_named_is_used) {
+    written_.add_pose("100", "0 0 0 0 0 0 1");
+    written_.add_image("100", wall(1));
+    PlaybackRequest named = request();
+    named.rig =
+        scratch_.write("rig.yaml", kOneSensor + "cameras:\n- {name: left, " + camera_text(640).substr(1) +
+                                       "\n- {name: right, " + camera_text(512).substr(1) + "\n");
+    EXPECT_EQ(refused(named).code, ErrorCode::bad_argument);
+    EXPECT_EQ(refused(named).key, "--camera");
+    EXPECT_THAT(refused(named).what, HasSubstr("left, right"));
+    EXPECT_THAT(refused(named).remedy, HasSubstr("--camera left"));
+    named.camera = "kinect";
+    EXPECT_EQ(refused(named).code, ErrorCode::unknown_word);
+    EXPECT_EQ(refused(named).value, "'kinect'");
+    named.camera = "left";
+    const auto of_left = play_recording(named);
+    ASSERT_TRUE(of_left) << of_left.error().message();
+    EXPECT_EQ(of_left->pipeline.inputs().depth_frames.front().used(), 1U);
+    EXPECT_EQ(of_left->rig.cameras.size(), 1U);
+    named.camera = "right";
+    const auto of_right = play_recording(named);
+    ASSERT_TRUE(of_right) << of_right.error().message();
+    EXPECT_EQ(of_right->pipeline.inputs().depth_frames.front().rejected(DepthReason::wrong_size), 1U);
 }
 
 TEST_F(DataSetPlayback, a_folder_with_a_log_of_the_bus_is_a_recording) {

@@ -56,6 +56,19 @@ TEST(RigPicture, has_arm_sensors_cones_and_camera_in_three_views) {
     EXPECT_EQ(elements_of(setup_of("bench_one_board.yaml"))["path.camera"], 0U);
 }
 
+TEST(RigPicture, shows_each_of_several_cameras_with_its_name) {
+    HostSetup setup = setup_of("experiment.yaml");
+    const std::size_t titles = elements_of(setup)["title"];
+    setup.rig.cameras.push_back(setup.rig.cameras.front());
+    setup.rig.cameras[0].name = "left";
+    setup.rig.cameras[1].name = "right";
+    auto elements = elements_of(setup);
+    EXPECT_EQ(elements["path.camera"], 3U * 5 * 2);
+    EXPECT_EQ(elements["title"], titles + 3U * 2);
+    EXPECT_NE(rig_picture(setup, posture_at_rest(setup.robot)).find("camera &#39;left&#39;"),
+              std::string::npos);
+}
+
 TEST(RigPicture, shows_the_rest_posture_within_the_limits) {
     const HostSetup setup = setup_of("experiment.yaml");
     const auto posture = posture_at_rest(setup.robot);

@@ -26,8 +26,8 @@ HostRig rig() {
     rig.nodes.emplace_back();
     rig.nodes.back().node_id = 4;
     rig.nodes.back().sensors.resize(4);
-    rig.camera = HostCamera{};
-    rig.camera->intrinsics = {.width = 100, .height = 100, .fx = 50, .fy = 50, .cx = 50, .cy = 50};
+    rig.cameras = {HostCamera{}};
+    rig.cameras.front().intrinsics = {.width = 100, .height = 100, .fx = 50, .fy = 50, .cx = 50, .cy = 50};
     return rig;
 }
 
@@ -78,7 +78,7 @@ DepthImage corner() {
 /// What the camera measured is what its filter makes of it.
 SeenImages seen(const DepthImage& everything, const DepthImage& world) {
     SeenImages images{.everything = everything, .world = world, .certainty = {}};
-    CertainPixels(rig().camera->intrinsics, {}).find(everything, everything, images.certainty);
+    CertainPixels(rig().cameras.front().intrinsics, {}).find(everything, everything, images.certainty);
     return images;
 }
 
@@ -367,7 +367,7 @@ TEST_F(CrossCheckTest, looks_through_the_lens) {
     // A lens that shows the ray (0.9, 0) at 0.9 - 0.2 * 0.729 = 0.754. What is there is seen at column 87,
     // and not at 95, where a pinhole would look and see the wall.
     HostRig bent = rig();
-    bent.camera->intrinsics.lens.k1 = -0.2;
+    bent.cameras.front().intrinsics.lens.k1 = -0.2;
     CrossCheck cross_check(bent, {});
     DepthImage image = wall_at(2.0F);
     for (int v = 0; v < 100; ++v)

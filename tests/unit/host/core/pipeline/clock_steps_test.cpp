@@ -228,7 +228,7 @@ Pipeline play_in_two(const Scene& scene, const std::vector<StampedFrame>& frames
     }
     rest.insert(rest.end(), step, frames.end());
     ScriptedSource source(rest);
-    EXPECT_TRUE(replay(second, source, nullptr).is_complete());
+    EXPECT_TRUE(replay(second, source, {}).is_complete());
     EXPECT_GT(second.inputs().readings.used(), 30U) << second.inputs_text();
     return second;
 }
@@ -278,9 +278,9 @@ TEST(ClockSteps, back_leave_the_camera_its_place) {
     }
     pipeline.finish();
     EXPECT_EQ(pipeline.times_back(), 1U);
-    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::out_of_order), 0U)
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().rejected(DepthReason::out_of_order), 0U)
         << pipeline.inputs_text();
-    EXPECT_GE(pipeline.inputs().depth_frames.used(), 30U) << pipeline.inputs_text();
+    EXPECT_GE(pipeline.inputs().depth_frames.front().used(), 30U) << pipeline.inputs_text();
 }
 
 // A camera that this machine's clock dates does not jump with the bus.
@@ -299,7 +299,8 @@ TEST(ClockSteps, ahead_make_images_of_the_time_before_late_and_the_map_no_older)
     }
     pipeline.finish();
     EXPECT_EQ(pipeline.times_ahead(), 1U);
-    EXPECT_GE(pipeline.inputs().depth_frames.rejected(DepthReason::late), 10U) << pipeline.inputs_text();
+    EXPECT_GE(pipeline.inputs().depth_frames.front().rejected(DepthReason::late), 10U)
+        << pipeline.inputs_text();
     EXPECT_NEAR(age_of_oldest_s(pipeline.map()), 5.0, 1.0);
 }
 

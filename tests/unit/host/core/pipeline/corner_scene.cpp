@@ -31,7 +31,8 @@ double to_corner(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) 
 }  // namespace
 
 HostRig in_corner(HostRig rig) {
-    rig.camera->intrinsics = {.width = 100, .height = 100, .fx = 50.0, .fy = 50.0, .cx = 50.0, .cy = 50.0};
+    rig.cameras.front().intrinsics = {
+        .width = 100, .height = 100, .fx = 50.0, .fy = 50.0, .cx = 50.0, .cy = 50.0};
     auto& sensors = rig.nodes[0].sensors;
     for (const auto& [sensor, direction] : {std::pair{kSideways, Eigen::Vector3d(0.6, -0.75, 0.1)},
                                             std::pair{kUpwards, Eigen::Vector3d(0.6, 0.1, 0.75)}}) {
@@ -75,7 +76,7 @@ RangeMeasurement CornerLooks::reading(std::uint8_t sensor, double angle, double 
 }
 
 DepthFrame CornerLooks::frame() const {
-    const Eigen::Isometry3d& T_base_camera = rig_.camera->T_link_camera;
+    const Eigen::Isometry3d& T_base_camera = rig_.cameras.front().T_link_camera;
     DepthFrame frame{.captured = now_, .width = 100, .height = 100, .depth_mm = {}};
     for (int v = 0; v < 100; ++v) {
         for (int u = 0; u < 100; ++u) {

@@ -14,8 +14,8 @@ namespace {
 /// this far. What is compared is so with the next reading.
 SensorEvidence after_seven_images(const MappingConfig& mapping, std::uint16_t depth_mm, bool goes_back) {
     HostRig rig = one_joint_rig();
-    rig.camera->intrinsics.fx = 10.0;
-    rig.camera->intrinsics.fy = 10.0;
+    rig.cameras.front().intrinsics.fx = 10.0;
+    rig.cameras.front().intrinsics.fy = 10.0;
     auto builder = MapBuilder::build(rig, one_joint_robot(), mapping, {}, every_feed()).value();
     for (int i = 0; i < 7; ++i) {
         const HostTime now = host_at(1.0 + 0.1 * i);
@@ -27,7 +27,7 @@ SensorEvidence after_seven_images(const MappingConfig& mapping, std::uint16_t de
         }
         EXPECT_TRUE(builder.integrate(flat_frame(1.0 + 0.1 * i, depth_mm)));
     }
-    return builder.cross_check()->evidence(kLeft, kGood);
+    return builder.cross_checks()->of(0).evidence(kLeft, kGood);
 }
 
 TEST(VoxelTraceEntry, counts_ranges_that_end_where_the_camera_sees_through_and_names_nobody_for_one_place) {
@@ -46,15 +46,15 @@ TEST(VoxelTraceEntry,
     HostRig rig = one_joint_rig();
     MappingConfig mapping = plain_mapping();
     mapping.removes_robot_from_depth = false;
-    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), mapping, {}, every_feed()).value().cross_check(),
+    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), mapping, {}, every_feed()).value().cross_checks(),
               nullptr);
     MappingConfig silent = plain_mapping();
     silent.reports_contradicting_sensors = false;
-    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), silent, {}, every_feed()).value().cross_check(),
+    EXPECT_EQ(MapBuilder::build(rig, one_joint_robot(), silent, {}, every_feed()).value().cross_checks(),
               nullptr);
-    rig.camera.reset();
+    rig.cameras.clear();
     EXPECT_EQ(
-        MapBuilder::build(rig, one_joint_robot(), plain_mapping(), {}, every_feed()).value().cross_check(),
+        MapBuilder::build(rig, one_joint_robot(), plain_mapping(), {}, every_feed()).value().cross_checks(),
         nullptr);
 }
 
@@ -62,17 +62,18 @@ TEST(VoxelTraceEntry,
 // arm there is nothing, for the camera sees the arm behind that. In the map the arm's pixels are none.
 TEST(VoxelTraceEntry, sees_through_in_front_of_the_robot) {
     HostRig rig = one_joint_rig();
-    rig.camera->intrinsics = {.width = 20, .height = 20, .fx = 40.0, .fy = 40.0, .cx = 10.0, .cy = 10.0};
-    rig.camera->T_link_camera.translation().z() = 0.0;
+    rig.cameras.front().intrinsics = {
+        .width = 20, .height = 20, .fx = 40.0, .fy = 40.0, .cx = 10.0, .cy = 10.0};
+    rig.cameras.front().T_link_camera.translation().z() = 0.0;
     auto builder = MapBuilder::build(rig, one_joint_robot(), plain_mapping(), {}, every_feed()).value();
     const HostTime now = host_at(1.0);
     ASSERT_TRUE(builder.add({now, {0.0}}));
     ASSERT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, now, 0.5, 0.02}));
     ASSERT_TRUE(builder.integrate(DepthFrame{now, 20, 20, std::vector<std::uint16_t>(400, 1'840)}));
-    EXPECT_GT(builder.depth_stage()->robot_pixels(), 10U);
+    EXPECT_GT(builder.depth_stage(0).robot_pixels(), 10U);
     ASSERT_TRUE(builder.add({host_at(1.01), {0.0}}));
     ASSERT_TRUE(builder.integrate(RangeMeasurement{{kLeft, kGood, 0}, host_at(1.01), 0.5, 0.02}));
-    EXPECT_EQ(builder.cross_check()->evidence(kLeft, kGood).in_free_space, 1U);
+    EXPECT_EQ(builder.cross_checks()->of(0).evidence(kLeft, kGood).in_free_space, 1U);
 }
 
 /// A builder, and what it is given in the corner.
@@ -87,7 +88,7 @@ struct Corner {
         return mapping;
     }
     [[nodiscard]] const SensorEvidence& evidence() const {
-        return builder.cross_check()->evidence(kLeft, kGood);
+        return builder.cross_checks()->of(0).evidence(kLeft, kGood);
     }
 
     HostRig rig = in_corner(one_joint_rig());

@@ -106,10 +106,10 @@ TEST_P(DepthWorkerTest, loses_nothing_and_the_order_told_makes_the_same_map_howe
     OrderOf order;
     Pipeline made = make_pipeline(scene);
     made.set_listener(&order);
-    made.work_beside(&worker);
+    made.work_beside({&worker});
     // The pipeline is moved before anything is given to it.
     const Pipeline pipeline = play(scene, std::move(made), worker, GetParam());
-    const auto& frames = pipeline.inputs().depth_frames;
+    const auto& frames = pipeline.inputs().depth_frames.front();
     EXPECT_EQ(frames.used() + frames.rejected(DepthReason::queue_overflow), 6U) << pipeline.inputs_text();
     EXPECT_EQ(frames.used(), static_cast<std::uint64_t>(worker.begun));
     if (GetParam() <= 7) {
@@ -121,7 +121,7 @@ TEST_P(DepthWorkerTest, loses_nothing_and_the_order_told_makes_the_same_map_howe
 
     Pipeline replayed = make_pipeline(scene);
     ScriptedDepth depth(order.frames());
-    const OrderedOutcome outcome = replay_in_order(replayed.builder(), order, &depth);
+    const OrderedOutcome outcome = replay_in_order(replayed.builder(), order, {&depth});
     EXPECT_EQ(outcome.depth_frames.used(), frames.used());
     EXPECT_EQ(encode_ot(replayed.map()), encode_ot(pipeline.map()));
     EXPECT_EQ(encode_ot(replayed.map(MapFeed::camera)), encode_ot(pipeline.map(MapFeed::camera)));
@@ -133,7 +133,7 @@ TEST(DepthWorker, lets_readings_go_into_the_map_while_it_works) {
     const Scene scene = busy_scene();
     PatientWorker worker;
     Pipeline pipeline = make_pipeline(scene);
-    pipeline.work_beside(&worker);
+    pipeline.work_beside({&worker});
     auto depth = scene.depth.begin();
     std::uint64_t used_at_begin = 0;
     for (const StampedFrame& entry : scene.bus.frames()) {
@@ -144,18 +144,18 @@ TEST(DepthWorker, lets_readings_go_into_the_map_while_it_works) {
         if (worker.begun == 0) used_at_begin = pipeline.inputs().readings.used();
     }
     EXPECT_EQ(worker.begun, 1) << "the others wait for the first";
-    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::queue_overflow), 3U) << "but two";
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().rejected(DepthReason::queue_overflow), 3U) << "but two";
     EXPECT_GE(pipeline.inputs().readings.used(), used_at_begin + 30);
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 0U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 0U);
     pipeline.on_worker_done();
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 0U) << "it is not done";
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 0U) << "it is not done";
     EXPECT_EQ(worker.waits, 0);
     worker.end();
     pipeline.on_worker_done();
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 1U);
     EXPECT_EQ(worker.begun, 2);
     pipeline.finish();
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 2U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 2U);
     EXPECT_EQ(worker.waits, 1) << "for the one that it was at, and no other";
     EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
 }
@@ -165,10 +165,10 @@ TEST(DepthWorker, is_not_given_a_frame_that_cannot_be_placed) {
     scene.depth = {flat_frame(7.15)};  // no joints between 7.0 and 7.3 s
     PatientWorker worker;
     Pipeline made = make_pipeline(scene);
-    made.work_beside(&worker);
+    made.work_beside({&worker});
     const Pipeline pipeline = play(scene, std::move(made), worker, 1);
     EXPECT_EQ(worker.begun, 0);
-    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::joints_missing), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().rejected(DepthReason::joints_missing), 1U);
 }
 
 TEST(DepthWorker, s_frame_is_not_used_once_the_pose_that_a_replay_needs_is_forgotten) {
@@ -180,9 +180,9 @@ TEST(DepthWorker, s_frame_is_not_used_once_the_pose_that_a_replay_needs_is_forgo
         OrderOf order;
         Pipeline made = make_pipeline(scene);
         made.set_listener(&order);
-        made.work_beside(&worker);
+        made.work_beside({&worker});
         const Pipeline pipeline = play(scene, std::move(made), worker, patience);
-        const auto& frames = pipeline.inputs().depth_frames;
+        const auto& frames = pipeline.inputs().depth_frames.front();
         EXPECT_EQ(frames.used(), patience == 5 ? 1U : 0U) << pipeline.inputs_text();
         EXPECT_EQ(frames.rejected(DepthReason::late), patience == 5 ? 0U : 1U) << pipeline.inputs_text();
         EXPECT_EQ(order.frames().size(), frames.used());
@@ -195,10 +195,10 @@ TEST(DepthWorker, s_refusal_is_counted) {
     scene.depth.front().width += 1;
     PatientWorker worker;
     Pipeline made = make_pipeline(scene);
-    made.work_beside(&worker);
+    made.work_beside({&worker});
     const Pipeline pipeline = play(scene, std::move(made), worker, 3);
     EXPECT_EQ(worker.begun, 1);
-    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::wrong_size), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().rejected(DepthReason::wrong_size), 1U);
 }
 
 /// The first `refusals` pieces of work find no memory to begin with.
@@ -222,7 +222,7 @@ TEST(DepthWorker, that_finds_no_memory_costs_its_frame_and_no_other) {
     ASSERT_GT(scene.depth.size(), 3U);
     PoorWorker worker;
     Pipeline pipeline = make_pipeline(scene);
-    pipeline.work_beside(&worker);
+    pipeline.work_beside({&worker});
     std::size_t next = 0;
     for (const StampedFrame& entry : scene.bus.frames()) {
         pipeline.on_can(entry.frame, entry.stamp);
@@ -232,7 +232,7 @@ TEST(DepthWorker, that_finds_no_memory_costs_its_frame_and_no_other) {
             pipeline.on_depth(scene.depth[next]);
     }
     pipeline.finish();
-    const auto& frames = pipeline.inputs().depth_frames;
+    const auto& frames = pipeline.inputs().depth_frames.front();
     EXPECT_EQ(frames.rejected(DepthReason::no_memory), 2U) << pipeline.inputs_text();
     EXPECT_EQ(frames.used(), next - 2U) << pipeline.inputs_text();
     EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();

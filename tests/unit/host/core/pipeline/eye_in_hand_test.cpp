@@ -32,15 +32,15 @@ Eigen::Isometry3d T_arm_camera() {
 
 std::string camera_map(const Scene& scene) {
     const RunResult result = run(scene);
-    EXPECT_EQ(result.inputs.depth_frames.used(), 2U) << result.inputs_text;
+    EXPECT_EQ(result.inputs.depth_frames.front().used(), 2U) << result.inputs_text;
     return result.depth_ot;
 }
 
 // The oracle is a data set's camera, whose pose comes with each image.
 TEST(EyeInHand, makes_the_map_of_a_camera_whose_poses_are_given) {
     Scene on_arm = scene_of_images();
-    on_arm.rig.camera->link = "arm";
-    on_arm.rig.camera->T_link_camera = T_arm_camera();
+    on_arm.rig.cameras.front().link = "arm";
+    on_arm.rig.cameras.front().T_link_camera = T_arm_camera();
     Scene given = scene_of_images();
     for (DepthFrame& frame : given.depth)
         frame.T_map_camera =
@@ -48,21 +48,22 @@ TEST(EyeInHand, makes_the_map_of_a_camera_whose_poses_are_given) {
     const std::string map = camera_map(on_arm);
     EXPECT_EQ(map, camera_map(given));
     Scene rest = scene_of_images();
-    rest.rig.camera->T_link_camera = T_arm_camera();
+    rest.rig.cameras.front().T_link_camera = T_arm_camera();
     EXPECT_NE(map, camera_map(rest)) << "the arm has turned";
 }
 
 TEST(EyeInHand, does_not_see_without_joint_states) {
     Scene scene = scene_of_images();
-    scene.rig.camera->link = "arm";
+    scene.rig.cameras.front().link = "arm";
     scene.depth = {flat_frame(7.15)};  // within the gap of the joint states
     const RunResult result = run(scene);
-    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::joints_missing), 1U) << result.inputs_text;
+    EXPECT_EQ(result.inputs.depth_frames.front().rejected(DepthReason::joints_missing), 1U)
+        << result.inputs_text;
 }
 
 TEST(EyeInHand, is_refused_on_a_link_that_the_robot_does_not_have) {
     Scene scene = scene_of_images();
-    scene.rig.camera->link = "antenna";
+    scene.rig.cameras.front().link = "antenna";
     const auto pipeline = Pipeline::build(scene.rig, one_joint_robot(), scene.mapping, scene.config);
     ASSERT_FALSE(pipeline);
     EXPECT_EQ(pipeline.error().error, RobotModelError::unreachable);

@@ -117,7 +117,7 @@ TEST(LiveRelease, tells_which_readings_each_frame_put_onto_the_map_whatever_they
 TEST(LiveRelease, builds_the_map_that_the_order_of_capture_builds_where_the_order_is_the_same) {
     const Pipeline live = play(live_scene(), [](const Pipeline&) {});
     EXPECT_EQ(live.inputs().readings.used(), 10U);
-    EXPECT_EQ(live.inputs().depth_frames.used(), 6U);
+    EXPECT_EQ(live.inputs().depth_frames.front().used(), 6U);
     EXPECT_EQ(encode_ot(live.map()), run(good_scene()).fused_ot);
 }
 
@@ -168,7 +168,7 @@ TEST(LiveRelease, takes_a_depth_frame_at_once_if_the_robot_is_not_removed_from_i
     scene.mapping.removes_robot_from_depth = false;
     Pipeline pipeline = make_pipeline(scene);
     pipeline.on_depth(flat_frame(4.0));
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 1U);
 }
 
 /// The bus up to 9 s, and then silence that somebody looks at every 50 ms, with an image every 100 ms.
@@ -185,16 +185,16 @@ TEST(LiveRelease, uses_images_beside_a_silent_bus_where_the_robot_is_not_removed
     Scene scene = live_scene();
     scene.mapping.removes_robot_from_depth = false;
     Pipeline pipeline = play_into_silence(scene, 12.04);
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 30U) << pipeline.inputs_text();
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 30U) << pipeline.inputs_text();
     pipeline.on_depth(flat_frame(12.99));
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 31U) << "less than a second ahead";
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 31U) << "less than a second ahead";
     pipeline.on_depth(flat_frame(13.02));
-    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::ahead_of_time), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().rejected(DepthReason::ahead_of_time), 1U);
 }
 
 TEST(LiveRelease, gives_up_images_beside_a_silent_bus_that_alone_tells_where_the_robot_is) {
     const Pipeline pipeline = play_into_silence(live_scene(), 12.04);
-    const auto& frames = pipeline.inputs().depth_frames;
+    const auto& frames = pipeline.inputs().depth_frames.front();
     EXPECT_EQ(frames.in(), 30U);
     EXPECT_EQ(frames.used(), 0U);
     // 27 of them 250 ms old and more.
@@ -223,7 +223,7 @@ TEST(LiveRelease, takes_the_bus_s_time_again_when_it_speaks_after_a_silence) {
             pipeline.on_can(entry.frame, entry.stamp);
     }
     pipeline.on_depth(flat_frame(7.0));
-    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::ahead_of_time), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().rejected(DepthReason::ahead_of_time), 1U);
 }
 
 TEST(LiveRelease, holds_a_depth_frame_until_its_joints_are_here) {
@@ -235,12 +235,12 @@ TEST(LiveRelease, holds_a_depth_frame_until_its_joints_are_here) {
         pipeline.on_can(entry.frame, entry.stamp);
         if (!is_given && pipeline.now() && *pipeline.now() >= host_at(4.0)) {
             pipeline.on_depth(flat_frame(4.05));
-            EXPECT_EQ(pipeline.inputs().depth_frames.used(), 0U);
+            EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 0U);
             is_given = true;
         }
         if (is_given && *pipeline.now() >= host_at(4.07)) break;
     }
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 1U);
     pipeline.finish();
 }
 

@@ -67,7 +67,7 @@ HostRig one_joint_rig() {
         node(kRight, {good}), node(kThird, {good})};
     rig.nodes[1].pinned_build_id = 77;
     rig.joint_sources = {{.node_id = kJoints, .joints = {"shoulder"}, .rate_hz = 100.0}};
-    rig.camera = camera();
+    rig.cameras = {camera()};
     rig.body = {{"base", {0, 0, -0.5}, {0, 0, 0.5}, 0.05}, {"arm", {0.08, 0, 0}, {0.14, 0, 0}, 0.03}};
     rig.certain_body = rig.body;
     rig.links_ignored_by_sensors = {"arm"};
@@ -170,7 +170,7 @@ RunResult run(const Scene& scene, std::vector<StampedFrame> frames) {
     Pipeline pipeline = make_pipeline(scene);
     ScriptedSource can(std::move(frames));
     ScriptedDepth depth(scene.depth);
-    const ReplayOutcome outcome = replay(pipeline, can, &depth, [&](const ReplayProgress&) {
+    const ReplayOutcome outcome = replay(pipeline, can, {&depth}, [&](const ReplayProgress&) {
         EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     });
     EXPECT_TRUE(outcome.is_complete());

@@ -38,8 +38,8 @@ void expect_one_each(const std::vector<Case<Reason>>& cases, std::set<Reason> el
 }
 
 /// Both runs; one more in, one more rejected for this reason, everything else as before.
-template <class Reason>
-void expect_one_more(const Case<Reason>& given, InputCounters<Reason> PipelineInputs::*inputs) {
+template <class Reason, class CountersOf>
+void expect_one_more(const Case<Reason>& given, const CountersOf& counters_of) {
     Scene good = good_scene();
     if (given.prepare) {
         given.prepare(good);
@@ -48,8 +48,8 @@ void expect_one_more(const Case<Reason>& given, InputCounters<Reason> PipelineIn
     given.provoke(bad);
     const RunResult expected = run(good);
     const RunResult result = run(bad);
-    const InputCounters<Reason>& before = expected.inputs.*inputs;
-    const InputCounters<Reason>& after = result.inputs.*inputs;
+    const InputCounters<Reason>& before = counters_of(expected.inputs);
+    const InputCounters<Reason>& after = counters_of(result.inputs);
     EXPECT_EQ(after.rejected(given.reason), before.rejected(given.reason) + 1) << result.inputs_text;
     EXPECT_EQ(after.rejected(), before.rejected() + 1) << result.inputs_text;
     EXPECT_GT(after.used(), 0U);
@@ -135,7 +135,7 @@ const std::vector<Case<FrameReason>>& frame_cases() {
 
 class FrameReasons : public testing::TestWithParam<Case<FrameReason>> {};
 TEST_P(FrameReasons, are_counted_once_and_leave_the_maps_alone) {
-    expect_one_more(GetParam(), &PipelineInputs::frames);
+    expect_one_more(GetParam(), std::mem_fn(&PipelineInputs::frames));
 }
 INSTANTIATE_TEST_SUITE_P(Each, FrameReasons, testing::ValuesIn(frame_cases()), name_of_case<FrameReason>);
 TEST(FrameReasonsAll, have_a_case_each) {
@@ -202,7 +202,7 @@ TEST_P(JointReasons, are_counted_once_and_leave_the_maps_alone) {
             prepare(scene);
         }
     };
-    expect_one_more(given, &PipelineInputs::joint_samples);
+    expect_one_more(given, std::mem_fn(&PipelineInputs::joint_samples));
 }
 INSTANTIATE_TEST_SUITE_P(Each, JointReasons, testing::ValuesIn(joint_cases()), name_of_case<JointReason>);
 TEST(JointReasonsAll, have_a_case_each) {
@@ -256,7 +256,8 @@ const std::vector<Case<DepthReason>>& depth_cases() {
 
 class DepthReasons : public testing::TestWithParam<Case<DepthReason>> {};
 TEST_P(DepthReasons, are_counted_once_and_leave_the_maps_alone) {
-    expect_one_more(GetParam(), &PipelineInputs::depth_frames);
+    expect_one_more(
+        GetParam(), [](const PipelineInputs& inputs) -> auto& { return inputs.depth_frames.front(); });
 }
 INSTANTIATE_TEST_SUITE_P(Each, DepthReasons, testing::ValuesIn(depth_cases()), name_of_case<DepthReason>);
 TEST(DepthReasonsAll, have_a_case_each) {
@@ -265,16 +266,16 @@ TEST(DepthReasonsAll, have_a_case_each) {
 }
 TEST(DepthReasonsAll, reject_every_frame_without_a_camera_in_the_rig) {
     Scene scene = good_scene();
-    scene.rig.camera.reset();
+    scene.rig.cameras.clear();
     const RunResult result = run(scene);
-    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::no_camera), 6U);
+    EXPECT_EQ(result.inputs.depth_frames.front().rejected(DepthReason::no_camera), 6U);
     EXPECT_EQ(result.fused_ot, result.proximity_ot);
 }
 TEST(DepthReasonsAll, reject_every_frame_of_a_camera_outside_the_octree) {
     Scene scene = good_scene();
-    scene.rig.camera->T_link_camera.translation().x() = 2000.0;
+    scene.rig.cameras.front().T_link_camera.translation().x() = 2000.0;
     const RunResult result = run(scene);
-    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::outside_map), 6U);
+    EXPECT_EQ(result.inputs.depth_frames.front().rejected(DepthReason::outside_map), 6U);
     EXPECT_EQ(result.fused_ot, result.proximity_ot);
 }
 TEST(DepthReasonsAll, refuse_the_newest_where_too_many_wait) {
@@ -282,8 +283,8 @@ TEST(DepthReasonsAll, refuse_the_newest_where_too_many_wait) {
     scene.config.waiting_max.depth_frames = 2;
     const RunResult result = run(scene);
     // Ten a second, each waits 250 ms: no room at 4.2 and 4.5 s.
-    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::queue_overflow), 2U);
-    EXPECT_EQ(result.inputs.depth_frames.used(), 4U);
+    EXPECT_EQ(result.inputs.depth_frames.front().rejected(DepthReason::queue_overflow), 2U);
+    EXPECT_EQ(result.inputs.depth_frames.front().used(), 4U);
 }
 TEST(DepthReasonsAll, reject_a_frame_that_comes_after_the_map_has_gone_on) {
     const Scene scene = good_scene();
@@ -294,8 +295,8 @@ TEST(DepthReasonsAll, reject_a_frame_that_comes_after_the_map_has_gone_on) {
     pipeline.on_depth(flat_frame(3.6));  // the last reading in the map was captured at 3.802
     pipeline.on_depth(flat_frame(4.0));
     pipeline.finish();
-    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::late), 1U);
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().rejected(DepthReason::late), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 1U);
     EXPECT_TRUE(pipeline.is_balanced());
 }
 

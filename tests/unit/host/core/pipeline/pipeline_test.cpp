@@ -48,7 +48,7 @@ Pipeline play(const Scene& scene) {
     Pipeline pipeline = make_pipeline(scene);
     ScriptedSource can(scene.bus.frames());
     ScriptedDepth depth(scene.depth);
-    EXPECT_TRUE(replay(pipeline, can, &depth).is_complete());
+    EXPECT_TRUE(replay(pipeline, can, {&depth}).is_complete());
     EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     return pipeline;
 }
@@ -112,8 +112,9 @@ TEST(Pipeline, places_a_range_of_a_fd_frame_the_same_way) {
 TEST(Pipeline, places_a_depth_frame_and_leaves_the_robot_out) {
     Scene scene = quiet_scene();
     // One pixel, from (1.02, 0.02, 0.02) in the map along -x.
-    scene.rig.camera->intrinsics = {.width = 1, .height = 1, .fx = 1.0, .fy = 1.0, .cx = 0.5, .cy = 0.5};
-    scene.rig.camera->T_link_camera.translation() = Eigen::Vector3d(1.0, 0.0, 0.0);
+    scene.rig.cameras.front().intrinsics = {
+        .width = 1, .height = 1, .fx = 1.0, .fy = 1.0, .cx = 0.5, .cy = 0.5};
+    scene.rig.cameras.front().T_link_camera.translation() = Eigen::Vector3d(1.0, 0.0, 0.0);
     const auto pixel = [](double captured_s, std::uint16_t depth_mm) {
         return DepthFrame{.captured = host_at(captured_s), .width = 1, .height = 1, .depth_mm = {depth_mm}};
     };
@@ -128,8 +129,8 @@ TEST(Pipeline, places_a_depth_frame_and_leaves_the_robot_out) {
     expected[key(10, 0, 0)] = 0.94F;
     EXPECT_EQ(voxels(pipeline.map(MapFeed::camera)), expected);
     EXPECT_EQ(voxels(pipeline.map()), expected);
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 3U);
-    EXPECT_EQ(pipeline.depth_stage()->robot_pixels(), 2U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 3U);
+    EXPECT_EQ(pipeline.builder().depth_stage(0).robot_pixels(), 2U);
 }
 
 TEST(Pipeline, filters_a_depth_frame_if_told_so) {
@@ -165,7 +166,7 @@ TEST(Pipeline, is_not_hurried_by_a_depth_frame_that_comes_early) {
     }
     pipeline.finish();
     EXPECT_EQ(pipeline.inputs().readings.used(), 10U) << pipeline.inputs_text();
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 1U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 1U);
 }
 
 TEST(Pipeline, calls_late_only_what_the_map_itself_has_passed) {
@@ -182,7 +183,7 @@ TEST(Pipeline, calls_late_only_what_the_map_itself_has_passed) {
 TEST(Pipeline, adds_both_kinds_of_measurement_to_the_fused_map_in_the_order_of_capture) {
     const RunResult all = run(good_scene());
     EXPECT_EQ(all.inputs.readings.used(), 10U);
-    EXPECT_EQ(all.inputs.depth_frames.used(), 6U);
+    EXPECT_EQ(all.inputs.depth_frames.front().used(), 6U);
     EXPECT_NE(all.depth_ot, all.fused_ot);
     EXPECT_NE(all.proximity_ot, all.fused_ot);
     Scene no_depth = good_scene();
@@ -276,21 +277,21 @@ TEST(Pipeline, takes_no_space_for_what_waits_beyond_a_memory_that_it_is_given_me
 TEST(Pipeline, says_when_the_camera_is_stale) {
     const Scene scene = good_scene();
     Pipeline pipeline = make_pipeline(scene);
-    EXPECT_FALSE(pipeline.is_camera_stale()) << "no time yet";
+    EXPECT_FALSE(pipeline.is_camera_stale(0)) << "no time yet";
     bool has_fed = false;
     for (const StampedFrame& entry : scene.bus.frames()) {
         pipeline.on_can(entry.frame, entry.stamp);
         const auto now = pipeline.now();
         if (now && *now >= host_at(4.0) && !has_fed) {
-            EXPECT_TRUE(pipeline.is_camera_stale());
+            EXPECT_TRUE(pipeline.is_camera_stale(0));
             pipeline.on_depth(flat_frame(4.0));
             has_fed = true;
         }
         if (now && has_fed && *now < host_at(4.3)) {
-            EXPECT_FALSE(pipeline.is_camera_stale());
+            EXPECT_FALSE(pipeline.is_camera_stale(0));
         }
         if (now && *now > host_at(4.31)) {
-            EXPECT_TRUE(pipeline.is_camera_stale());
+            EXPECT_TRUE(pipeline.is_camera_stale(0));
         }
     }
     pipeline.finish();
@@ -314,7 +315,7 @@ TEST(Pipeline, maps_with_a_camera_alone_where_the_robot_need_not_be_taken_out) {
     scene.bus = ScriptedBus{};
     scene.mapping.removes_robot_from_depth = false;
     const RunResult result = run(scene);
-    EXPECT_EQ(result.inputs.depth_frames.used(), 6U);
+    EXPECT_EQ(result.inputs.depth_frames.front().used(), 6U);
 }
 
 }  // namespace

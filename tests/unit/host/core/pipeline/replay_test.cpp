@@ -47,10 +47,10 @@ TEST(Replay, gives_each_depth_frame_in_when_the_log_has_come_to_its_capture_time
     // Refused as late, or as ahead of time, if they came all at the end or all at the beginning.
     ScriptedSource can(scene.bus.frames());
     ScriptedDepth depth({flat_frame(0.2), flat_frame(4.0), flat_frame(8.9)});
-    EXPECT_TRUE(replay(pipeline, can, &depth).is_complete());
-    EXPECT_EQ(pipeline.inputs().depth_frames.rejected(DepthReason::joints_missing), 1U)
+    EXPECT_TRUE(replay(pipeline, can, {&depth}).is_complete());
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().rejected(DepthReason::joints_missing), 1U)
         << "no clock at 0.2 s";
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 2U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 2U);
     EXPECT_TRUE(pipeline.is_balanced());
 }
 
@@ -61,7 +61,7 @@ TEST(Replay, reports_its_progress_every_1000_frames_and_at_the_end) {
     ScriptedDepth depth(scene.depth);
     std::vector<std::uint64_t> frames;
     ReplayProgress last;
-    const ReplayOutcome outcome = replay(pipeline, can, &depth, [&](const ReplayProgress& progress) {
+    const ReplayOutcome outcome = replay(pipeline, can, {&depth}, [&](const ReplayProgress& progress) {
         frames.push_back(progress.can_frames);
         last = progress;
     });
@@ -78,14 +78,14 @@ TEST(Replay, uses_what_a_source_gave_before_it_failed_and_says_why_it_did) {
     Pipeline pipeline = make_pipeline(scene);
     FailingCan can(scene.bus.frames());
     FailingDepth depth(scene.depth);
-    const ReplayOutcome outcome = replay(pipeline, can, &depth);
+    const ReplayOutcome outcome = replay(pipeline, can, {&depth});
     EXPECT_FALSE(outcome.is_complete());
     EXPECT_EQ(outcome.can_error.value().code, ErrorCode::system_error);
     EXPECT_EQ(outcome.can_error.value().what, "reading failed after line 3433");
-    EXPECT_EQ(outcome.depth_error.value().code, ErrorCode::damaged);
-    EXPECT_EQ(outcome.depth_error.value().what, "ends within frame 6");
+    EXPECT_EQ(outcome.depth_errors.at(0).code, ErrorCode::damaged);
+    EXPECT_EQ(outcome.depth_errors.at(0).what, "ends within frame 6");
     EXPECT_EQ(pipeline.inputs().readings.used(), 10U);
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), 6U);
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 6U);
     EXPECT_TRUE(pipeline.is_balanced());
 }
 
@@ -93,7 +93,7 @@ TEST(Replay, needs_no_depth_source) {
     const Scene scene = good_scene();
     Pipeline pipeline = make_pipeline(scene);
     ScriptedSource can(scene.bus.frames());
-    EXPECT_TRUE(replay(pipeline, can, nullptr).is_complete());
+    EXPECT_TRUE(replay(pipeline, can, {}).is_complete());
     EXPECT_EQ(pipeline.inputs().readings.used(), 10U);
 }
 
@@ -137,12 +137,13 @@ TEST(Replay, loses_no_frame_of_a_camera_that_outlives_the_bus) {
         scene.depth.push_back(flat_frame(7.4 + k / 30.0));
     }
     const RunResult result = run(scene);
-    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::queue_overflow), 0U) << result.inputs_text;
+    EXPECT_EQ(result.inputs.depth_frames.front().rejected(DepthReason::queue_overflow), 0U)
+        << result.inputs_text;
     // Joints end at 9.0 s: 49 frames until then.
-    EXPECT_EQ(result.inputs.depth_frames.used(), 49U) << result.inputs_text;
-    EXPECT_EQ(
-        result.inputs.depth_frames.used() + result.inputs.depth_frames.rejected(DepthReason::joints_missing),
-        79U);
+    EXPECT_EQ(result.inputs.depth_frames.front().used(), 49U) << result.inputs_text;
+    EXPECT_EQ(result.inputs.depth_frames.front().used() +
+                  result.inputs.depth_frames.front().rejected(DepthReason::joints_missing),
+              79U);
 }
 
 TEST(Replay, ignores_marks_far_from_now) {
@@ -184,8 +185,8 @@ TEST(Replay, maps_from_start_to_stop_if_told_so) {
     const RunResult result = run(scene);
     EXPECT_EQ(result.inputs.readings.rejected(ReadingReason::outside_marks), 1U);
     EXPECT_EQ(result.inputs.readings.used(), 9U);
-    EXPECT_EQ(result.inputs.depth_frames.rejected(DepthReason::outside_marks), 4U);
-    EXPECT_EQ(result.inputs.depth_frames.used(), 2U);
+    EXPECT_EQ(result.inputs.depth_frames.front().rejected(DepthReason::outside_marks), 4U);
+    EXPECT_EQ(result.inputs.depth_frames.front().used(), 2U);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ Pipeline play_to_end(const Scene& scene) {
     Pipeline pipeline = pipeline_of(scene);
     ScriptedSource can(scene.bus.frames());
     ScriptedDepth depth(scene.depth);
-    EXPECT_TRUE(replay(pipeline, can, &depth).is_complete());
+    EXPECT_TRUE(replay(pipeline, can, {&depth}).is_complete());
     EXPECT_TRUE(pipeline.is_balanced());
     return pipeline;
 }
@@ -117,8 +117,8 @@ TEST(SeveralJointSources, that_are_silent_leave_the_reach_of_their_bodies_out_of
         scene.rig.body.push_back({"tip", {0, 0, 0}, {0.02, 0, 0}, 0.005});
         scene.depth = {flat_frame(4.0, 2000), flat_frame(4.2, 2000)};
         const Pipeline pipeline = play_to_end(scene);
-        EXPECT_EQ(pipeline.inputs().depth_frames.used(), 2U) << pipeline.inputs_text();
-        return pipeline.depth_stage()->robot_pixels();
+        EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), 2U) << pipeline.inputs_text();
+        return pipeline.builder().depth_stage(0).robot_pixels();
     };
     const std::uint64_t placed = robot_pixels(9.0);
     const std::uint64_t unplaced = robot_pixels(kFingerEnds_s);

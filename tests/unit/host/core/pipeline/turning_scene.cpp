@@ -45,7 +45,7 @@ Scene turning_scene(wire::NodeId node, std::uint32_t offset_us) {
 Pipeline play(const Scene& scene, const std::vector<StampedFrame>& frames) {
     Pipeline pipeline = make_pipeline(scene);
     ScriptedSource source(frames);
-    EXPECT_TRUE(replay(pipeline, source, nullptr).is_complete());
+    EXPECT_TRUE(replay(pipeline, source, {}).is_complete());
     EXPECT_TRUE(pipeline.is_balanced()) << pipeline.inputs_text();
     return pipeline;
 }

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <array>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -57,8 +56,8 @@ std::vector<std::string> sound_lines() {
             "end commits 3 lost_can 0 lost_commits 0 lost_depth 1 last 1a2b3c4d"};
 }
 
-constexpr std::array<std::size_t, 1> kTwo{2};
-constexpr std::array<std::size_t, 1> kSeven{7};
+const CommitForm kTwo{.joints = {2}};
+const CommitForm kSeven{.joints = {7}};
 
 bool is_any(std::string_view line) {
     return parse_header(line) || parse_commit(line, kTwo) || parse_trailer(line);
@@ -74,12 +73,12 @@ TEST(OrderLine, says_what_the_documentation_shows) {
     EXPECT_EQ(format_commit(RangeMeasurement{{2, 3, 0}, {71'003'000'000}, std::nullopt, 0.0}, kTwo),
               "R 2 3 0 71003000000 - 0\n");
     EXPECT_EQ(format_commit(DepthCommit{12, {71'010'000'000}}, kTwo), "D 12 71010000000\n");
-    EXPECT_EQ(format_header({0x1a2b3c4d, 1, {2}, std::nullopt}),
+    EXPECT_EQ(format_header({0x1a2b3c4d, 1, kTwo, std::nullopt}),
               "octoskin-order/1 rig 1a2b3c4d mapping 00000001 joints 2 first -\n");
-    EXPECT_EQ(format_header({0x1a2b3c4d, 1, {2}, std::nullopt, 0xAU}),
+    EXPECT_EQ(format_header({0x1a2b3c4d, 1, kTwo, std::nullopt, 0xAU}),
               "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first - state 0000000a\n");
     EXPECT_EQ(parse_header("octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 first - state 0000000a"),
-              (Header{0x1a2b3c4d, 1, {2}, std::nullopt, 0xAU}));
+              (Header{0x1a2b3c4d, 1, kTwo, std::nullopt, 0xAU}));
     EXPECT_EQ(format_commit(WaitCommit{12}, kTwo), "W 12\n");
     EXPECT_EQ(parse_commit("W 12", kTwo), Commit(WaitCommit{12}));
     EXPECT_EQ(format_trailer({3, 0, 0, 1, 0x1a2b3c4dU}),
@@ -88,7 +87,7 @@ TEST(OrderLine, says_what_the_documentation_shows) {
 }
 
 TEST(OrderLine, names_the_source_of_a_joint_sample_of_several) {
-    constexpr std::array<std::size_t, 2> kArmAndGripper{2, 1};
+    const CommitForm kArmAndGripper{.joints = {2, 1}};
     const JointMeasurement arm{.sampled = {71}, .position_rad = {0.1, -0.25}};
     const JointMeasurement gripper{.sampled = {72}, .position_rad = {0.5}, .source = 1};
     EXPECT_EQ(format_commit(arm, kArmAndGripper), "J 0 71 0.1 -0.25\n");
@@ -97,7 +96,7 @@ TEST(OrderLine, names_the_source_of_a_joint_sample_of_several) {
     EXPECT_EQ(parse_commit("J 1 72 0.5", kArmAndGripper), Commit(gripper));
     for (const char* line : {"J 2 72 0.5", "J 1 72 0.5 0.5", "J 0 72 0.5", "J 71 0.1 -0.25", "J -1 72 0.5"})
         EXPECT_FALSE(parse_commit(line, kArmAndGripper)) << line;
-    const Header header{0x1a2b3c4d, 1, {2, 1}, std::nullopt, 0xAU};
+    const Header header{0x1a2b3c4d, 1, kArmAndGripper, std::nullopt, 0xAU};
     EXPECT_EQ(format_header(header),
               "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2+1 first - state 0000000a\n");
     EXPECT_EQ(parse_header(without_feed(format_header(header))), header);
@@ -105,6 +104,28 @@ TEST(OrderLine, names_the_source_of_a_joint_sample_of_several) {
         EXPECT_FALSE(parse_header(fmt::format(
             "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints {} first - state 0000000a", joints)))
             << joints;
+}
+
+TEST(OrderLine, names_the_camera_of_a_depth_frame_of_several) {
+    const CommitForm two_cameras{.joints = {2}, .cameras = 2};
+    const DepthCommit frame{.index = 12, .captured = {71}, .camera = 1};
+    const DepthCommit unrecorded{.index = {}, .captured = {72}, .camera = 0};
+    EXPECT_EQ(format_commit(frame, two_cameras), "D 1 12 71\n");
+    EXPECT_EQ(format_commit(unrecorded, two_cameras), "D 0 - 72\n");
+    EXPECT_EQ(parse_commit("D 1 12 71", two_cameras), Commit(frame));
+    EXPECT_EQ(parse_commit("D 0 - 72", two_cameras), Commit(unrecorded));
+    for (const char* line : {"D 2 12 71", "D 12 71", "D - 71", "D -1 12 71", "D 1 12 71 0", "D - 12 71"})
+        EXPECT_FALSE(parse_commit(line, two_cameras)) << line;
+    EXPECT_FALSE(parse_commit("D 1 12 71", kTwo));
+    const Header header{0x1a2b3c4d, 1, two_cameras, std::nullopt, 0xAU};
+    EXPECT_EQ(format_header(header),
+              "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 cameras 2 first - state 0000000a\n");
+    EXPECT_EQ(parse_header(without_feed(format_header(header))), header);
+    for (const char* cameras : {"0", "9", "-1", "1.5", ""})
+        EXPECT_FALSE(parse_header(fmt::format(
+            "octoskin-order/2 rig 1a2b3c4d mapping 00000001 joints 2 cameras {} first - state 0000000a",
+            cameras)))
+            << cameras;
 }
 
 TEST(OrderLine, gives_every_double_back_bit_for_bit) {

@@ -85,8 +85,8 @@ TEST(ResumedCamera, gives_the_same_maps_from_a_snapshot_after_any_image) {
             const std::string bytes = encode(live);
             others.push_back(resumed(bytes, scene));
             MapState state = decode(bytes, scene);
-            EXPECT_EQ(state.camera.has_value(), k > 0);
-            state.camera.reset();
+            EXPECT_EQ(state.cameras.size(), k > 0 ? 1U : 0U);
+            state.cameras.clear();
             without_memory.push_back(make_builder(scene));
             EXPECT_EQ(without_memory.back().begin_with(std::move(state)), MapBuilder::LeftOut{});
             ASSERT_TRUE(live.integrate(scene.depth[static_cast<std::size_t>(k)]));
@@ -152,7 +152,7 @@ struct Recorded {
 void play(const Scene& scene, std::uint64_t begins_after, bool is_amid_work, Recorded& recorded) {
     Pipeline pipeline = make_pipeline(scene);
     PatientWorker worker;
-    pipeline.work_beside(&worker);
+    pipeline.work_beside({&worker});
     auto depth = scene.depth.begin();
     int since = 0;
     for (const StampedFrame& entry : scene.bus.frames()) {
@@ -161,7 +161,7 @@ void play(const Scene& scene, std::uint64_t begins_after, bool is_amid_work, Rec
             pipeline.on_depth(*depth++);
         since = worker.is_at_work() ? since + 1 : 0;
         const bool begins = recorded.first.empty() && worker.is_at_work() == is_amid_work &&
-                            pipeline.inputs().depth_frames.used() >= begins_after;
+                            pipeline.inputs().depth_frames.front().used() >= begins_after;
         if (begins) {
             recorded.first = encode(pipeline.builder());
             pipeline.builder().for_each_joint_sample(
@@ -173,7 +173,7 @@ void play(const Scene& scene, std::uint64_t begins_after, bool is_amid_work, Rec
         pipeline.on_worker_done();
     }
     pipeline.finish();
-    EXPECT_EQ(pipeline.inputs().depth_frames.used(), static_cast<std::uint64_t>(kFrames));
+    EXPECT_EQ(pipeline.inputs().depth_frames.front().used(), static_cast<std::uint64_t>(kFrames));
     recorded.last = encode(pipeline.builder());
 }
 
@@ -189,7 +189,7 @@ TEST(ResumedCamera, gives_the_recorded_map_where_the_recording_begins_while_an_i
             EXPECT_EQ(recorded.order.frames.size(), kFrames - begins_after);
             MapBuilder builder = resumed(recorded.first, scene);
             ScriptedDepth depth(recorded.order.frames);
-            EXPECT_TRUE(replay_in_order(builder, recorded.order, &depth).took_all());
+            EXPECT_TRUE(replay_in_order(builder, recorded.order, {&depth}).took_all());
             EXPECT_TRUE(encode(builder) == recorded.last) << begins_after << (is_amid_work ? " amid" : "");
         }
     }
@@ -203,23 +203,26 @@ TEST(ResumedCamera, of_another_size_or_pose_or_without_a_memory_is_left_out) {
         MapBuilder builder = make_builder(other);
         const MapBuilder::LeftOut left_out = builder.begin_with(live.state());
         EXPECT_EQ(left_out.zones, 0U);
-        EXPECT_EQ(builder.camera_memory().has_value(), !left_out.is_camera);
+        EXPECT_NE(builder.camera_memories().empty(), left_out.cameras.empty());
         EXPECT_EQ(encode_ot(builder.map()), encode_ot(live.map()));
-        return left_out.is_camera;
+        return left_out.cameras == std::vector<std::string>{""};
     };
     EXPECT_FALSE(is_left_out(scene));
     Scene other = scene;
-    other.rig.camera->intrinsics.width = 12;
-    other.rig.camera->intrinsics.height = 16;
+    other.rig.cameras.front().intrinsics.width = 12;
+    other.rig.cameras.front().intrinsics.height = 16;
     EXPECT_TRUE(is_left_out(other)) << "as many pixels";
     other = scene;
-    other.rig.camera->T_link_camera.translation().x() += 1e-9;
+    other.rig.cameras.front().T_link_camera.translation().x() += 1e-9;
     EXPECT_TRUE(is_left_out(other));
     other = scene;
     other.mapping.depth_update = DepthUpdate::paper;
     EXPECT_TRUE(is_left_out(other));
     other = scene;
-    other.rig.camera.reset();
+    other.rig.cameras.front().name = "left";
+    EXPECT_TRUE(is_left_out(other)) << "another camera";
+    other = scene;
+    other.rig.cameras.clear();
     EXPECT_TRUE(is_left_out(other));
 }
 
@@ -230,7 +233,7 @@ TEST(ResumedCamera, is_forgotten_where_a_builder_begins_with_a_state_without_one
     for (int k = 0; k < 3; ++k) ASSERT_TRUE(used.integrate(scene.depth[static_cast<std::size_t>(k)]));
     for (MapBuilder* builder : {&used, &fresh}) {
         EXPECT_EQ(builder->begin_with({FusedMap(scene.mapping.map), {}}), MapBuilder::LeftOut{});
-        EXPECT_FALSE(builder->camera_memory());
+        EXPECT_TRUE(builder->camera_memories().empty());
         for (int k = 3; k < kFrames; ++k)
             ASSERT_TRUE(builder->integrate(scene.depth[static_cast<std::size_t>(k)]));
     }
@@ -246,11 +249,11 @@ TEST(ResumedCamera, goes_on_from_any_memory_that_is_accepted) {
         MapBuilder live = make_builder(scene);
         ASSERT_TRUE(live.integrate(scene.depth[0]));
         MapState state = live.state();
-        const Eigen::Isometry3d T_map_camera = state.camera->T_map_camera;
-        state.camera = testing_support::random_camera(seed, 16, 12, 0.9F);
-        state.camera->T_map_camera = T_map_camera;
+        const Eigen::Isometry3d T_map_camera = state.cameras.front().T_map_camera;
+        state.cameras = {testing_support::random_camera(seed, 16, 12, 0.9F)};
+        state.cameras.front().T_map_camera = T_map_camera;
         std::string bytes = encode_snapshot(state, {.mapping_crc32 = kMapping});
-        const std::size_t from = bytes.find("CAMR") + 12 + 104;
+        const std::size_t from = bytes.find("CAMR") + 12 + 105;
         for (int change = 0; change < 3; ++change)
             bytes[from + random() % (bytes.rfind("DONE") - from)] = static_cast<char>(random());
         auto snapshot = decode_snapshot(testing_support::mended(bytes), scene.mapping, kMapping);

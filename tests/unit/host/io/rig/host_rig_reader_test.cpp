@@ -117,20 +117,41 @@ TEST(HostRigReader, counts_signal_messages_on_a_classical_bus_alone) {
 
 TEST(HostRigReader, takes_over_the_camera_or_its_absence) {
     rig::Rig rig = experiment();
-    rig.camera->lens = {.k1 = 0.1, .k2 = 0.2, .p1 = 0.003, .p2 = 0.004, .k3 = 0.5};
+    rig.cameras.front().lens = {.k1 = 0.1, .k2 = 0.2, .p1 = 0.003, .p2 = 0.004, .k3 = 0.5};
     const auto with = make_host_setup(rig);
-    ASSERT_TRUE(with->rig.camera);
-    EXPECT_EQ(with->rig.camera->intrinsics.lens, rig.camera->lens);
-    EXPECT_EQ(with->rig.camera->intrinsics.width, 512U);
-    EXPECT_EQ(with->rig.camera->intrinsics.height, 424U);
-    EXPECT_EQ(with->rig.camera->intrinsics.fx, 365.0);
-    EXPECT_EQ(with->rig.camera->intrinsics.cy, 212.0);
-    EXPECT_EQ(with->rig.camera->depth_min_m, 0.5);
-    EXPECT_EQ(with->rig.camera->depth_max_m, 4.5);
-    EXPECT_EQ(with->rig.camera->rate_hz, 10.0);
-    EXPECT_TRUE(with->rig.camera->T_link_camera.matrix() == rig.camera->T_link_camera.matrix());
-    rig.camera.reset();
-    EXPECT_FALSE(make_host_setup(rig)->rig.camera);
+    ASSERT_EQ(with->rig.cameras.size(), 1U);
+    const HostCamera& camera = with->rig.cameras.front();
+    EXPECT_EQ(camera.name, "");
+    EXPECT_EQ(camera.intrinsics.lens, rig.cameras.front().lens);
+    EXPECT_EQ(camera.intrinsics.width, 512U);
+    EXPECT_EQ(camera.intrinsics.height, 424U);
+    EXPECT_EQ(camera.intrinsics.fx, 365.0);
+    EXPECT_EQ(camera.intrinsics.cy, 212.0);
+    EXPECT_EQ(camera.depth_min_m, 0.5);
+    EXPECT_EQ(camera.depth_max_m, 4.5);
+    EXPECT_EQ(camera.rate_hz, 10.0);
+    EXPECT_TRUE(camera.T_link_camera.matrix() == rig.cameras.front().T_link_camera.matrix());
+    rig.cameras.clear();
+    EXPECT_TRUE(make_host_setup(rig)->rig.cameras.empty());
+}
+
+TEST(HostRigReader, takes_over_each_camera_with_its_name_and_noise) {
+    rig::Rig rig = experiment();
+    rig.cameras.push_back(rig.cameras.front());
+    rig.cameras[0].name = "left";
+    rig.cameras[1].name = "right";
+    rig.cameras[1].noise =
+        rig::CameraNoise{.noise_m = 0.002, .noise_per_m = 0.0015, .noise_from_m = 0.4, .bias_per_m = 0.001};
+    const auto setup = make_host_setup(rig);
+    ASSERT_TRUE(setup);
+    ASSERT_EQ(setup->rig.cameras.size(), 2U);
+    EXPECT_EQ(setup->rig.cameras[0].name, "left");
+    EXPECT_FALSE(setup->rig.cameras[0].noise);
+    EXPECT_EQ(setup->rig.cameras[1].name, "right");
+    ASSERT_TRUE(setup->rig.cameras[1].noise);
+    EXPECT_EQ(setup->rig.cameras[1].noise->constant_m, 0.002);
+    EXPECT_EQ(setup->rig.cameras[1].noise->quadratic_per_m, 0.0015);
+    EXPECT_EQ(setup->rig.cameras[1].noise->bias_per_m, 0.001);
 }
 
 TEST(HostRigReader, reads_the_body_and_the_kinematics_from_the_urdf) {

@@ -21,8 +21,12 @@ using namespace testing_support;
 
 constexpr std::uint32_t kMapping = 0x12345678;
 
-std::string encode(const std::optional<CameraMemory>& camera) {
-    return encode_snapshot({FusedMap(quickly_aging().map), {}, camera}, {.mapping_crc32 = kMapping});
+std::string encode(const std::vector<CameraMemory>& cameras) {
+    return encode_snapshot({FusedMap(quickly_aging().map), {}, cameras}, {.mapping_crc32 = kMapping});
+}
+
+std::string encode(const CameraMemory& camera) {
+    return encode(std::vector{camera});
 }
 
 Result<Snapshot, Error> decode(std::string_view bytes) {
@@ -38,6 +42,7 @@ std::array<std::uint32_t, 6> bits_of(const CameraMemory::Pixel& pixel) {
 }
 
 void expect_equal(const CameraMemory& a, const CameraMemory& b) {
+    EXPECT_EQ(a.name, b.name);
     EXPECT_EQ(a.width, b.width);
     EXPECT_EQ(a.height, b.height);
     EXPECT_EQ(a.T_map_camera.matrix(), b.T_map_camera.matrix());
@@ -59,18 +64,32 @@ TEST(CameraRecords, give_every_pixel_again_bit_by_bit) {
         const std::string bytes = encode(camera);
         const auto again = decode(bytes);
         ASSERT_TRUE(again) << again.error().message();
-        ASSERT_TRUE(again->state.camera);
-        expect_equal(*again->state.camera, camera);
-        EXPECT_TRUE(encode(again->state.camera) == bytes);
+        ASSERT_EQ(again->state.cameras.size(), 1U);
+        expect_equal(again->state.cameras.front(), camera);
+        EXPECT_TRUE(encode(again->state.cameras) == bytes);
     }
 }
 
+TEST(CameraRecords, give_each_of_several_cameras_again_in_their_order) {
+    std::vector<CameraMemory> cameras;
+    for (const char* name : {"right", "left", "a-name.of_exactly-32-characters_"}) {
+        cameras.push_back(random_camera(static_cast<unsigned>(cameras.size()) + 1, 7, 5));
+        cameras.back().name = name;
+    }
+    const std::string bytes = encode(cameras);
+    const auto again = decode(bytes);
+    ASSERT_TRUE(again) << again.error().message();
+    ASSERT_EQ(again->state.cameras.size(), cameras.size());
+    for (std::size_t i = 0; i < cameras.size(); ++i) expect_equal(again->state.cameras[i], cameras[i]);
+    EXPECT_TRUE(encode(again->state.cameras) == bytes);
+}
+
 TEST(CameraRecords, are_absent_without_a_memory) {
-    const std::string bytes = encode(std::nullopt);
+    const std::string bytes = encode(std::vector<CameraMemory>{});
     EXPECT_EQ(bytes.find("CAMR"), std::string::npos);
     const auto again = decode(bytes);
     ASSERT_TRUE(again);
-    EXPECT_FALSE(again->state.camera);
+    EXPECT_TRUE(again->state.cameras.empty());
 }
 
 TEST(CameraRecords, of_a_kinect_take_less_than_5_MB_at_most_and_nothing_for_empty_rows) {
@@ -93,7 +112,15 @@ class Payload {
         return *this;
     }
     Payload& byte(int value) { return put(static_cast<std::uint8_t>(value)); }
+    Payload& named(const std::string& name) {
+        byte(static_cast<int>(name.size()));
+        for (const char c : name) put(c);
+        return *this;
+    }
     Payload& head(std::uint32_t width, std::uint32_t height, double scale = 1.0, double x_m = 0.5) {
+        return named("").size(width, height, scale, x_m);
+    }
+    Payload& size(std::uint32_t width, std::uint32_t height, double scale = 1.0, double x_m = 0.5) {
         put(width).put(height);
         for (int i = 0; i < 9; ++i) put(i % 4 == 0 ? scale : 0.0);
         return put(x_m).put(0.0).put(-2.0);
@@ -116,7 +143,7 @@ std::string with_blocks(const std::vector<Payload>& payloads) {
         snapshot::ByteWriter(blocks).put(static_cast<std::uint32_t>(payload.bytes().size()));
         blocks += payload.bytes() + "....";
     }
-    std::string bytes = encode(std::nullopt);
+    std::string bytes = encode(std::vector<CameraMemory>{});
     return mended(bytes.insert(bytes.rfind("DONE"), blocks));
 }
 
@@ -137,7 +164,7 @@ TEST(CameraRecords, are_of_the_format_described) {
          {std::vector{whole}, std::vector{Payload().head(3, 2), Payload().byte(3), rows}}) {
         const auto read = decode(with_blocks(blocks));
         ASSERT_TRUE(read) << read.error().message();
-        expect_equal(*read->state.camera, camera);
+        expect_equal(read->state.cameras.at(0), camera);
     }
 }
 
@@ -163,6 +190,20 @@ TEST(CameraRecords, of_more_memory_than_the_map_may_take_are_refused) {
     };
     EXPECT_FALSE(fault_of_size(1024, 512));
     EXPECT_EQ(fault_of_size(1024, 513), ErrorCode::too_large);
+}
+
+TEST(CameraRecords, of_one_name_twice_or_of_more_cameras_than_a_rig_has_are_refused) {
+    const auto camera = [](const std::string& name) { return Payload().named(name).size(1, 1).byte(1); };
+    EXPECT_FALSE(fault_of({camera("left"), camera("right")}));
+    EXPECT_EQ(fault_of({camera("left"), camera("left")}), ErrorCode::damaged);
+    EXPECT_EQ(fault_of({Payload().head(1, 1).byte(1), Payload().head(1, 1).byte(1)}), ErrorCode::damaged);
+    EXPECT_EQ(fault_of({camera(std::string(33, 'x'))}), ErrorCode::damaged);
+    EXPECT_FALSE(fault_of({camera(std::string(32, 'x'))}));
+    std::vector<Payload> blocks;
+    for (const char* name : {"1", "2", "3", "4", "5", "6", "7", "8"}) blocks.push_back(camera(name));
+    EXPECT_FALSE(fault_of(blocks));
+    blocks.push_back(camera("9"));
+    EXPECT_EQ(fault_of(blocks), ErrorCode::damaged);
 }
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();

@@ -198,11 +198,11 @@ TEST(Snapshot, is_refused_with_any_byte_changed_and_at_any_length) {
 TEST(Snapshot, is_what_it_was_byte_for_byte) {
     const std::filesystem::path corpus =
         std::filesystem::path(OCTOSKIN_SOURCE_DIR) / "tests/fuzz/corpus/snapshot";
-    for (const std::string name : {"small", "camera"}) {
+    for (const std::string name : {"small", "camera", "two-cameras"}) {
         const std::string kept = ScratchFolder::read(corpus / name);
         const auto snapshot = decode(kept);
         ASSERT_TRUE(snapshot) << snapshot.error().message();
-        EXPECT_EQ(snapshot->state.camera.has_value(), name == "camera");
+        EXPECT_EQ(snapshot->state.cameras.size(), name == "two-cameras" ? 2U : name == "camera" ? 1U : 0U);
         EXPECT_TRUE(encode_snapshot(snapshot->state, snapshot->origin) == kept);
     }
 }

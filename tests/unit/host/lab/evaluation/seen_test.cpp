@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
+#include <set>
 
 #include "host/lab/evaluation/metrics.hpp"
 #include "host/lab/evaluation/truth.hpp"
@@ -47,7 +50,7 @@ sim::World plate() {
 
 SeenTruth truth_of(const sim::World& world, const rig::Camera& of_camera = camera(),
                    const Eigen::Isometry3d& T_map_base = kAtOrigin) {
-    auto truth = seen_truth(world, of_camera, config(), T_map_base);
+    auto truth = seen_truth(world, {&of_camera, 1}, config(), T_map_base);
     EXPECT_TRUE(truth) << truth.error().message();
     return std::move(*truth);
 }
@@ -110,6 +113,75 @@ TEST(SeenTruth, moves_with_the_world) {
     EXPECT_NEAR(truth.voxels.front().p_map_point.x(), 2.10, 1e-6);
 }
 
+/// In the plane of the plate's middle.
+rig::Camera camera_at(double x, double y) {
+    rig::Camera placed = camera();
+    placed.T_link_camera = T_base_camera_of({{x, y, 0.0}, {2.16, 0.0, 0.0}});
+    return placed;
+}
+
+SeenTruth truth_of_both(const rig::Camera& one, const rig::Camera& other) {
+    const std::array both{one, other};
+    auto truth = seen_truth(plate(), both, config(), kAtOrigin);
+    EXPECT_TRUE(truth) << truth.error().message();
+    return std::move(*truth);
+}
+
+std::set<VoxelKey> keys_of(const SeenTruth& truth) {
+    std::set<VoxelKey> keys;
+    for (const SeenVoxel& voxel : truth.voxels) keys.insert(voxel.key);
+    return keys;
+}
+
+void expect_equal(const SeenTruth& one, const SeenTruth& other) {
+    ASSERT_EQ(one.voxels.size(), other.voxels.size());
+    for (std::size_t i = 0; i < one.voxels.size(); ++i) {
+        EXPECT_EQ(one.voxels[i].key, other.voxels[i].key);
+        EXPECT_EQ(one.voxels[i].p_map_point, other.voxels[i].p_map_point);
+        EXPECT_EQ(one.voxels[i].outwards_map, other.voxels[i].outwards_map);
+        EXPECT_EQ(one.voxels[i].to_camera_map, other.voxels[i].to_camera_map);
+        EXPECT_EQ(one.voxels[i].is_resolved, other.voxels[i].is_resolved);
+    }
+    EXPECT_EQ(one.p_map_clear_spheres, other.p_map_clear_spheres);
+    EXPECT_EQ(one.f1_noise_free, other.f1_noise_free);
+}
+
+TEST(SeenTruth, of_two_cameras_holds_what_either_sees) {
+    const std::array cameras{camera(), camera_at(3.7, 0.0), camera_at(0.2, 1.2), camera_at(3.6, -0.8)};
+    for (const rig::Camera& one : cameras) {
+        for (const rig::Camera& other : cameras) {
+            std::set<VoxelKey> either = keys_of(truth_of(plate(), one));
+            either.merge(keys_of(truth_of(plate(), other)));
+            EXPECT_EQ(keys_of(truth_of_both(one, other)), either);
+        }
+    }
+    // The front and the back of the plate.
+    EXPECT_EQ(truth_of_both(camera(), camera_at(3.7, 0.0)).voxels.size(), 200U);
+}
+
+TEST(SeenTruth, of_a_camera_given_twice_is_that_of_the_camera) {
+    expect_equal(truth_of_both(camera(), camera()), truth_of(plate()));
+}
+
+TEST(SeenTruth, of_two_cameras_has_the_surface_and_the_camera_of_each_voxel) {
+    const SeenTruth truth = truth_of_both(camera(), camera_at(3.7, 0.0));
+    for (const SeenVoxel& voxel : truth.voxels) {
+        const double towards = voxel.key.x == key(50, 0, 0).x ? -1.0 : 1.0;
+        EXPECT_NEAR(voxel.outwards_map.x(), towards, 1e-9);
+        EXPECT_GT(towards * voxel.to_camera_map.x(), 0.9);
+    }
+}
+
+TEST(SeenTruth, of_two_cameras_has_clear_spheres_that_one_sees) {
+    const SeenTruth front = truth_of(plate());
+    const SeenTruth both = truth_of_both(camera(), camera_at(3.7, 0.0));
+    const auto is_behind = [](const Eigen::Vector3d& p_map) {
+        return p_map.x() > 2.35 && p_map.tail<2>().norm() < 0.1;
+    };
+    EXPECT_TRUE(std::ranges::none_of(front.p_map_clear_spheres, is_behind));
+    EXPECT_TRUE(std::ranges::any_of(both.p_map_clear_spheres, is_behind));
+}
+
 TEST(SeenTruth, clear_spheres_keep_their_distance) {
     const sim::World world = plate();
     const SeenTruth truth = truth_of(world);
@@ -126,12 +198,13 @@ TEST(SeenTruth, clear_spheres_keep_their_distance) {
 TEST(SeenTruth, refuses_a_region_that_cannot_be_judged) {
     TruthConfig empty = config();
     empty.region.p_map_max = empty.region.p_map_min;
-    const auto refused = seen_truth(plate(), camera(), empty, kAtOrigin);
+    const rig::Camera one = camera();
+    const auto refused = seen_truth(plate(), {&one, 1}, empty, kAtOrigin);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::no_content);
     TruthConfig slow = config();
     slow.surface_pitch_m = 1e-6;
-    const auto too_slow = seen_truth(plate(), camera(), slow, kAtOrigin);
+    const auto too_slow = seen_truth(plate(), {&one, 1}, slow, kAtOrigin);
     ASSERT_FALSE(too_slow);
     EXPECT_EQ(too_slow.error().code, ErrorCode::limit_exceeded);
 }
@@ -331,7 +404,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomMaps, ::testing::Range(0U, 4U));
 TEST_P(RandomMaps, add_up_and_agree_with_other_code) {
     const sim::World world = rod_before_wall();
     TruthConfig with_camera = config();
-    with_camera.external_camera = camera();
+    with_camera.external_cameras = {camera()};
     const auto truth = build_truth(world, {}, with_camera, kAtOrigin);
     ASSERT_TRUE(truth && truth->seen);
     const SeenTruth& seen = *truth->seen;
@@ -371,7 +444,7 @@ TEST_P(RandomMaps, add_up_and_agree_with_other_code) {
 TEST(SeenTruth, is_the_same_alone_and_as_part_of_the_truth) {
     const sim::World world = rod_before_wall();
     TruthConfig with_camera = config();
-    with_camera.external_camera = camera();
+    with_camera.external_cameras = {camera()};
     const auto truth = build_truth(world, {}, with_camera, kAtOrigin);
     ASSERT_TRUE(truth && truth->seen);
     const SeenTruth alone = truth_of(world);

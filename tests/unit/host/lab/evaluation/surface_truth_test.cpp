@@ -69,7 +69,7 @@ TEST(SurfaceTruth, flags_only_the_hidden_models) {
 
 TEST(SurfaceTruth, sees_the_face_that_looks_at_the_camera) {
     TruthConfig with_camera = config();
-    with_camera.external_camera = camera_at_positive_x();
+    with_camera.external_cameras = {camera_at_positive_x()};
     const auto truth = surface_truth(cube(), with_camera, kRegion, kAtOrigin);
     EXPECT_EQ(count(truth, [](auto voxel) { return voxel.is_seen; }), 36);
     EXPECT_TRUE(truth.at(key(5, 0, 0)).is_seen);
@@ -79,7 +79,7 @@ TEST(SurfaceTruth, sees_the_face_that_looks_at_the_camera) {
 
 TEST(SurfaceTruth, occluded_is_more_than_two_voxels_from_anything_seen) {
     TruthConfig with_camera = config();
-    with_camera.external_camera = camera_at_positive_x();
+    with_camera.external_cameras = {camera_at_positive_x()};
     const auto truth = surface_truth(cube(), with_camera, kRegion, kAtOrigin);
     // Seen: layer x = 5. Layers 3 and 4 are within two voxels; of layers 0, 1 and 2 the shell is occluded:
     // 36 + 20 + 20 voxels.
@@ -87,6 +87,27 @@ TEST(SurfaceTruth, occluded_is_more_than_two_voxels_from_anything_seen) {
     EXPECT_TRUE(truth.at(key(2, 0, 0)).is_occluded);
     EXPECT_FALSE(truth.at(key(3, 0, 0)).is_occluded);
     EXPECT_FALSE(truth.at(key(1, 2, 2)).is_occluded) << "interior, not surface";
+}
+
+TEST(SurfaceTruth, of_two_cameras_holds_what_either_sees) {
+    rig::Camera behind = camera_at_positive_x();
+    behind.T_link_camera = T_base_camera_of({{-1.5, 0.3, 0.3}, {0.0, 0.3, 0.3}});
+    const auto truth_with = [](const std::vector<rig::Camera>& cameras) {
+        TruthConfig with_cameras = config();
+        with_cameras.external_cameras = cameras;
+        return surface_truth(cube(), with_cameras, kRegion, kAtOrigin);
+    };
+    const auto first = truth_with({camera_at_positive_x()});
+    const auto second = truth_with({behind});
+    const auto both = truth_with({camera_at_positive_x(), behind});
+    EXPECT_EQ(count(both, [](auto voxel) { return voxel.is_seen; }), 72);
+    // Seen: layers 0 and 5. All others are within two voxels of them.
+    EXPECT_EQ(count(both, [](auto voxel) { return voxel.is_occluded; }), 0);
+    for (std::size_t i = 0; i < both.size(); ++i) {
+        EXPECT_EQ(both[i].is_seen, first[i].is_seen || second[i].is_seen);
+        EXPECT_LE(both[i].is_occluded, first[i].is_occluded && second[i].is_occluded);
+        EXPECT_EQ(both[i].is_surface, first[i].is_surface);
+    }
 }
 
 TEST(SurfaceTruth, without_a_camera_everything_is_occluded) {
@@ -97,7 +118,7 @@ TEST(SurfaceTruth, without_a_camera_everything_is_occluded) {
 
 TEST(SurfaceTruth, counts_what_lies_just_outside_the_region_for_the_margins) {
     TruthConfig with_camera = config();
-    with_camera.external_camera = camera_at_positive_x();
+    with_camera.external_cameras = {camera_at_positive_x()};
     // Layer 5, which the camera sees, is outside this region; layers 3 and 4 are still near it.
     const KeyBox without_seen_face{key(0, 0, 0), key(4, 5, 5)};
     const auto truth = surface_truth(cube(), with_camera, without_seen_face, kAtOrigin);
@@ -110,7 +131,7 @@ TEST(SurfaceTruth, moves_with_the_world) {
     Eigen::Isometry3d T_map_base = kAtOrigin;
     T_map_base.translation() << 0.1, -0.1, 0.2;
     TruthConfig with_camera = config();
-    with_camera.external_camera = camera_at_positive_x();
+    with_camera.external_cameras = {camera_at_positive_x()};
     const auto moved = surface_truth(cube(), with_camera, kRegion, T_map_base);
     EXPECT_EQ(count(moved, [](auto voxel) { return voxel.is_surface; }), 152);
     EXPECT_EQ(count(moved, [](auto voxel) { return voxel.is_occluded; }), 76);

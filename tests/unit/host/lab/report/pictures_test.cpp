@@ -150,9 +150,9 @@ TEST(RenderScene, never_cuts_a_camera_off) {
     SceneDressing dressing;
     dressing.size = kSmall;
     dressing.stage = Eigen::AlignedBox3d(Eigen::Vector3d(-0.5, -1.0, 0.0), Eigen::Vector3d(1.2, 1.0, 1.0));
-    dressing.camera = rig::Camera{.width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15};
+    dressing.cameras = {rig::Camera{.width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15}};
     for (const double y : {0.0, 0.3, 0.4, 0.5, 0.6, 0.9}) {
-        dressing.camera->T_link_camera.translation() << 0.6, y, 0.3;
+        dressing.cameras.front().T_link_camera.translation() << 0.6, y, 0.3;
         const ImagePair images = render_scene(world, dressing);
         for (const Image& image : {images.front, images.back}) {
             for (std::uint32_t row = 0; row < image.height; ++row) {
@@ -162,6 +162,22 @@ TEST(RenderScene, never_cuts_a_camera_off) {
             }
         }
     }
+}
+
+TEST(RenderScene, shows_every_camera) {
+    const sim::World world({box("crate", {0.4, -0.2, 0.0}, {0.8, 0.2, 0.4})});
+    SceneDressing dressing;
+    dressing.size = kSmall;
+    dressing.stage = Eigen::AlignedBox3d(Eigen::Vector3d(-0.5, -1.0, 0.0), Eigen::Vector3d(1.2, 1.0, 1.0));
+    rig::Camera camera{.width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15};
+    camera.T_link_camera.translation() << 2.0, 0.5, 1.0;
+    dressing.cameras = {camera};
+    const ImagePair with_one = render_scene(world, dressing);
+    camera.T_link_camera.translation() << 2.0, -0.5, 1.0;
+    dressing.cameras.push_back(camera);
+    const ImagePair with_two = render_scene(world, dressing);
+    EXPECT_NE(with_two.back.rgba, with_one.back.rgba);
+    EXPECT_GT(painted_share(with_two.back).x(), painted_share(with_one.back).x());
 }
 
 TEST(RenderScene, shows_world_robot_camera_and_beams) {
@@ -176,8 +192,8 @@ TEST(RenderScene, shows_world_robot_camera_and_beams) {
     dressing.robot.push_back({{0.0, 0.0, 0.1}, {0.0, 0.0, 0.6}, 0.08});
     dressing.hidden_models = {"crate"};
     dressing.beams.push_back({{0.0, 0.0, 0.5}, {9.0, 0.0, 0.5}});
-    dressing.camera = rig::Camera{.width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15};
-    dressing.camera->T_link_camera.translation() << 2.0, 0.0, 1.0;
+    dressing.cameras = {rig::Camera{.width = 40, .height = 30, .fx = 30, .fy = 30, .cx = 20, .cy = 15}};
+    dressing.cameras.front().T_link_camera.translation() << 2.0, 0.0, 1.0;
     const ImagePair dressed = render_scene(world, dressing);
     EXPECT_NE(dressed.front.rgba, plain.front.rgba);
     EXPECT_NE(dressed.back.rgba, plain.back.rgba);

@@ -311,6 +311,19 @@ TEST(Report, tabulates_free_voxels_by_evidence) {
     EXPECT_EQ(first_unbalanced_tag(html), "");
 }
 
+TEST(Report, of_a_rig_with_several_cameras_speaks_of_all) {
+    ReportInput input = two_seeds();
+    input.cameras = 2;
+    const std::string html = report_html(input);
+    EXPECT_THAT(html, HasSubstr("Of the surfaces that no external camera can see, the cameras’ own map"));
+    EXPECT_THAT(html, HasSubstr("<p class=\"soft\">2 depth cameras alone → fused, "));
+    EXPECT_THAT(html, HasSubstr("<h2>What the cameras see, by thickness</h2>"));
+    EXPECT_THAT(html, HasSubstr("<tr><th>other: 2 depth cameras only</th>"));
+    EXPECT_THAT(html, HasSubstr("; the cameras alone leave 1.40 m³."));
+    EXPECT_THAT(html, Not(HasSubstr("Depth camera only")));
+    EXPECT_EQ(first_unbalanced_tag(html), "");
+}
+
 TEST(Report, of_a_rig_without_camera_says_nothing_of_one) {
     ReportInput input = two_seeds();
     const std::vector<evaluation::Run> runs = {judged("robust", "proximity", 0, 1400, 0.10)};

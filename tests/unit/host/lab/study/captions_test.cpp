@@ -105,8 +105,11 @@ TEST(RangeCounting, is_what_the_mapping_does_with_the_optics_of_the_rig) {
 TEST(Idealisations, speak_of_a_camera_only_if_there_is_one) {
     rig::Rig rig = bench();
     EXPECT_THAT(idealisations_of(rig, kitchen()), Each(Not(HasSubstr("camera"))));
-    rig.camera = rig::Camera{};
+    rig.cameras = {rig::Camera{}};
     EXPECT_THAT(idealisations_of(rig, kitchen()), Contains(HasSubstr("camera's noise (1 cm along the ray")));
+    rig.cameras = {rig::Camera{.name = "left"}, rig::Camera{.name = "right"}};
+    EXPECT_THAT(idealisations_of(rig, kitchen()),
+                Contains(HasSubstr("The noise of each of the 2 depth cameras (1 cm along the ray")));
     sim::Scenario before_kinect = kitchen();
     before_kinect.depth_noise = {sim::KinectNoise{}};
     EXPECT_THAT(idealisations_of(rig, before_kinect),
@@ -118,10 +121,15 @@ TEST(SceneCaption, names_only_what_is_in_the_picture) {
     sim::Scenario scenario = kitchen();
     EXPECT_EQ(scene_caption(rig, scenario, 0), "The arm.");
     EXPECT_EQ(scene_caption(rig, scenario, 2), "The arm with beams of 2 of its 3 range sensors (red).");
-    rig.camera = rig::Camera{};
+    rig.cameras = {rig::Camera{}};
     scenario.hidden_models = {"mug", "bowl"};
     EXPECT_EQ(scene_caption(rig, scenario, 0),
               "The arm and the external camera. Yellow: what the scenario names as hidden (mug, bowl).");
+    rig.cameras = {rig::Camera{.name = "left"}, rig::Camera{.name = "right"}};
+    EXPECT_EQ(scene_caption(rig, kitchen(), 2),
+              "The arm with beams of 2 of its 3 range sensors (red), and the 2 external cameras.");
+    for (rig::Camera& camera : rig.cameras) camera.link = "hand";
+    EXPECT_EQ(scene_caption(rig, kitchen(), 0), "The arm.");
 }
 
 TEST(Command, is_what_a_shell_would_run_again) {

@@ -1,0 +1,108 @@
+#include "host/apps/daemon/camera_inputs.hpp"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "host/apps/daemon/clocks.hpp"
+
+namespace octoskin {
+namespace {
+
+constexpr std::chrono::milliseconds kSilenceMax{2'000};
+
+}  // namespace
+
+std::vector<CameraInputs::Wanted> CameraInputs::wanted_of(const std::vector<HostCamera>& cameras) {
+    std::vector<Wanted> wanted;
+    for (const HostCamera& camera : cameras)
+        wanted.push_back({camera.name,
+                          camera.device,
+                          {camera.intrinsics.width, camera.intrinsics.height, camera.rate_hz}});
+    return wanted;
+}
+
+void CameraInputs::want(const std::vector<HostCamera>& cameras) {
+    std::vector<std::unique_ptr<Camera>> next;
+    for (Wanted& wanted : wanted_of(cameras)) {
+        const auto same = std::ranges::find_if(
+            cameras_, [&wanted](const auto& camera) { return camera && camera->wanted == wanted; });
+        next.push_back(same != cameras_.end()
+                           ? std::move(*same)
+                           : std::make_unique<Camera>(Camera{.wanted = std::move(wanted)}));
+    }
+    cameras_ = std::move(next);
+    attend();
+}
+
+void CameraInputs::release_others(const std::vector<HostCamera>& cameras) {
+    const std::vector<Wanted> wanted = wanted_of(cameras);
+    for (const auto& camera : cameras_)
+        if (std::ranges::find(wanted, camera->wanted) == wanted.end()) release(*camera);
+}
+
+void CameraInputs::release(Camera& camera) {
+    if (!camera.feed) return;
+    camera.ready = EventSource();
+    camera.feed->end();
+    while (auto frame = camera.feed->take()) {  // at most those that wait
+        frame->camera = index_of(camera);
+        (void)take_(std::move(*frame));
+    }
+    leaving_.push_back({camera.wanted.device, std::move(camera.feed)});
+}
+
+bool CameraInputs::is_held(const std::string& device) const {
+    return std::ranges::any_of(leaving_, [&device](const Leaving& leaving) {
+        return device.empty() || leaving.device.empty() || leaving.device == device;
+    });
+}
+
+void CameraInputs::attend() {
+    std::erase_if(leaving_, [](const Leaving& leaving) { return leaving.feed->has_ended(); });
+    const HostTime now = monotonic_now();
+    for (const auto& camera : cameras_) {
+        const bool is_soon = camera->tried && now - *camera->tried < CameraFeed::kRetry;
+        if (!camera->feed && !is_soon) open(*camera, now);
+    }
+}
+
+void CameraInputs::open(Camera& camera, HostTime now) {
+    if (!camera.tried && camera.missing.why.empty()) camera.missing.begun = now;
+    if (is_held(camera.wanted.device)) {
+        camera.missing.why = "it is being released, to be opened in another mode";
+        return;
+    }
+    camera.tried = now;
+    try {
+        camera.feed =
+            std::make_unique<CameraFeed>(camera.wanted.device, kSilenceMax, std::nullopt, camera.wanted.mode);
+        camera.ready = loop_.on_readable(camera.feed->descriptor(), [this, &camera] { take_from(camera); });
+    } catch (const std::system_error& error) {
+        camera.feed.reset();
+        camera.missing.why = std::string("no thread left for it: ") + error.what();
+    }
+}
+
+std::uint8_t CameraInputs::index_of(const Camera& camera) const {
+    const auto found = std::ranges::find(cameras_, &camera, &std::unique_ptr<Camera>::get);
+    return static_cast<std::uint8_t>(found - cameras_.begin());
+}
+
+void CameraInputs::take_from(Camera& camera) {
+    auto frame = camera.feed->take();
+    if (!frame) return;
+    frame->camera = index_of(camera);
+    camera.refused += take_(std::move(*frame)) ? 0U : 1U;
+}
+
+std::vector<CameraRecord> CameraInputs::records() const {
+    std::vector<CameraRecord> records;
+    for (const auto& camera : cameras_) {
+        records.push_back(camera->feed ? camera->feed->record() : camera->missing);
+        records.back().untimed += camera->refused;
+    }
+    return records;
+}
+
+}  // namespace octoskin
