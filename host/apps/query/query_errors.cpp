@@ -42,6 +42,7 @@ Error error_of(const PostureFault& fault, const HostRig& rig, const RobotModel& 
                      .value = fmt::format("{:.6g}", position[fault.joint]),
                      .key = of + ": " + rig.joint_names().at(fault.joint)};
     };
+    Error error;
     switch (fault.error) {
         case PostureError::wrong_count:
             return {.code = ErrorCode::mismatch,
@@ -55,12 +56,19 @@ Error error_of(const PostureFault& fault, const HostRig& rig, const RobotModel& 
             return of_joint(ErrorCode::out_of_range,
                             fmt::format("expected a value within the joint's limits, {:.6g} to {:.6g}",
                                         robot.limits()[fault.joint].min, robot.limits()[fault.joint].max));
+        case PostureError::ambiguous_turn:
+            error =
+                of_joint(ErrorCode::out_of_range,
+                         "expected at most half a turn of a continuous joint, because the way of a longer "
+                         "one is not known");
+            error.remedy = "give a posture on the way";
+            return error;
         case PostureError::too_far:
             return {.code = ErrorCode::out_of_range,
                     .what = "the robot would be further than 1000 km from the map's origin",
                     .key = of};
     }
-    return {};
+    return error;
 }
 
 }  // namespace octoskin

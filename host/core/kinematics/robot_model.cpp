@@ -104,6 +104,21 @@ Fault find_joint_fault(const std::string& base_link, std::span<const JointDescri
     return std::nullopt;
 }
 
+/// A continuous joint's position is known up to full turns: its sender may wrap it. So must be the position
+/// of what moves with it.
+Fault find_mimic_of_turns(std::span<const JointDescription> joints) {
+    std::set<std::string_view> turning;
+    for (const JointDescription& joint : joints)
+        if (joint.kind == JointKind::continuous) turning.insert(joint.name);
+    for (const JointDescription& joint : joints) {
+        if (!joint.mimic || !turning.contains(joint.mimic->joint)) continue;
+        const bool is_same_after_turn = joint.kind != JointKind::prismatic &&
+                                        std::trunc(joint.mimic->multiplier) == joint.mimic->multiplier;
+        if (!is_same_after_turn) return RobotModelFault{RobotModelError::mimic_of_turns, joint.name};
+    }
+    return std::nullopt;
+}
+
 /// Faults in the list of moved joints compared with the joints of the description.
 Fault find_moved_fault(std::span<const JointDescription> joints, std::span<const std::string> moved) {
     std::set<std::string_view> movable;
@@ -114,6 +129,7 @@ Fault find_moved_fault(std::span<const JointDescription> joints, std::span<const
         if (joint.mimic && !movable.contains(joint.mimic->joint))
             return RobotModelFault{RobotModelError::bad_mimic, joint.name};
     }
+    if (auto fault = find_mimic_of_turns(joints)) return fault;
     std::set<std::string_view> seen;
     for (const std::string& name : moved) {
         if (!movable.contains(name)) return RobotModelFault{RobotModelError::unknown_joint, name};
@@ -131,6 +147,7 @@ struct RobotModel::Impl {
     std::vector<std::string> names;
     std::vector<Link> links;  ///< link 0, the base, has no joint above it and is not evaluated
     std::vector<JointLimits> limits;
+    std::vector<double> movements;  ///< of all joints, for one unit of each moved one
 
     void add(const JointDescription& description, std::size_t parent, std::span<const std::string> moved) {
         const std::string& name = description.mimic ? description.mimic->joint : description.name;
@@ -139,7 +156,9 @@ struct RobotModel::Impl {
         names.push_back(description.child_link);
         links.push_back(make_link(description, parent, joint));
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
-        if (description.kind == JointKind::fixed || description.mimic) return;
+        if (description.kind == JointKind::fixed) return;
+        movements[joint] += std::abs(links.back().multiplier);
+        if (description.mimic) return;
         limits[joint] = description.limits;
         if (description.kind == JointKind::continuous) {
             limits[joint].min = -kInfinity;
@@ -162,6 +181,7 @@ Result<RobotModel, RobotModelFault> RobotModel::build(const std::string& base_li
     impl->names.push_back(base_link);
     impl->links.emplace_back();
     impl->limits.resize(moved.size());
+    impl->movements.resize(moved.size(), 0.0);
     // Breadth first from the base: each link has one parent and is visited once, so the loop ends.
     for (std::size_t parent = 0; parent < impl->names.size(); ++parent) {
         for (const JointDescription& joint : joints) {
@@ -197,6 +217,9 @@ std::span<const std::string> RobotModel::link_names() const noexcept {
 }
 std::span<const JointLimits> RobotModel::limits() const noexcept {
     return impl_->limits;
+}
+std::span<const double> RobotModel::movements() const noexcept {
+    return impl_->movements;
 }
 
 std::optional<LinkId> RobotModel::find_link(std::string_view name) const noexcept {
@@ -302,6 +325,10 @@ const char* describe(RobotModelError error) noexcept {
             return "has a number that is not finite, an invalid rotation, or limits the wrong way round";
         case RobotModelError::bad_mimic:
             return "expected a <mimic> of a joint that moves by itself, below the base link";
+        case RobotModelError::mimic_of_turns:
+            return "expected a <mimic> of a continuous joint that turns, by a whole multiple: else its "
+                   "position "
+                   "depends on how often that joint has turned";
         case RobotModelError::too_large:
             return "expected at most 1000 links";
     }

@@ -67,6 +67,7 @@ enum class RobotModelError : std::uint8_t {
     non_unit_axis,
     invalid_number,  ///< NaN, infinity, an invalid rotation, or reversed limits
     bad_mimic,       ///< a joint moves with one that is not in the list of moved joints
+    mimic_of_turns,  ///< a joint moves with a continuous one, and a full turn of that one moves it elsewhere
     too_large,       ///< more than 1000 links
 };
 struct RobotModelFault {
@@ -109,6 +110,10 @@ class RobotModel {
     /// result of forward(); `twists`: at least joint_count() long. About 20 ns per joint.
     void twists(LinkId link, std::span<const Eigen::Isometry3d> T_base_link,
                 std::span<JointTwist> twists) const noexcept;
+
+    /// How much all joints move if one moved joint does: for each moved joint, 1 and the absolute multipliers
+    /// of those that mimic it.
+    [[nodiscard]] std::span<const double> movements() const noexcept;
 
     /// The moved joints on the way from the base to a link, of those that mimic one the one.
     [[nodiscard]] JointSet joints_above(LinkId link) const noexcept;

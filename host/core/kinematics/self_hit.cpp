@@ -27,10 +27,17 @@ void RobotBody::pose(std::span<const Eigen::Isometry3d> T_base_link, std::vector
 void RobotBody::pose(const RobotModel& model, std::span<const Eigen::Isometry3d> T_base_link,
                      JointSet unknown, std::vector<PosedCapsule>& posed) const {
     pose(T_base_link, posed);
+    std::optional<LinkId> looked_up;  // capsules of a link follow each other
+    bool is_unknown = false;
+    RobotModel::Whereabouts link;
     for (std::size_t i = 0; i < capsules_.size(); ++i) {
         const PosedCapsule& capsule = capsules_[i];
-        if ((model.joints_above(capsule.link) & unknown) == 0) continue;
-        const RobotModel::Whereabouts link = model.whereabouts(capsule.link, T_base_link, unknown);
+        if (looked_up != capsule.link) {
+            looked_up = capsule.link;
+            is_unknown = (model.joints_above(capsule.link) & unknown) != 0;
+            if (is_unknown) link = model.whereabouts(capsule.link, T_base_link, unknown);
+        }
+        if (!is_unknown) continue;
         const double reach_m = std::max(capsule.p_a.norm(), capsule.p_b.norm()) + capsule.radius_m;
         posed[i] = {link.centre, link.centre, link.radius_m + reach_m, capsule.link};
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace octoskin {
@@ -17,10 +18,23 @@ double longest_of(std::span<const double> from, std::span<const double> to) {
     return longest;
 }
 
-double sum_of(std::span<const double> from, std::span<const double> to) {
+/// Of all joints, also of those that mimic others.
+double movement_of(const RobotQuery& robot, std::span<const double> from, std::span<const double> to) {
+    const std::span<const double> movements = robot.robot().movements();
     double sum = 0.0;
-    for (std::size_t i = 0; i < from.size(); ++i) sum += std::abs(to[i] - from[i]);
+    for (std::size_t i = 0; i < from.size(); ++i) sum += movements[i] * std::abs(to[i] - from[i]);
     return sum;
+}
+
+/// The first continuous joint for which two ways lead from one position to the other: planners wrap it, and
+/// the shorter way is taken elsewhere.
+std::optional<PostureFault> ambiguous_turn_of(const RobotQuery& robot, std::span<const double> from,
+                                              std::span<const double> to) {
+    const std::span<const JointLimits> limits = robot.robot().limits();
+    for (std::size_t i = 0; i < from.size(); ++i)
+        if (std::isinf(limits[i].min) && std::abs(to[i] - from[i]) > std::numbers::pi)
+            return PostureFault{PostureError::ambiguous_turn, i};
+    return std::nullopt;
 }
 
 /// Interpolates from `from`, at share 0, to `to`.
@@ -35,13 +49,14 @@ double farther_of(const PosedCapsule& a, const PosedCapsule& b) {
 
 /// Upper bound of the acceleration of any point of a capsule's axis, in m per way squared, for a way
 /// travelled at constant joint speed. Joint i turns the velocity that a joint j further out gives a point.
-/// That velocity is at most |dq_j| times the lever, and the lever is at most lever_m(); for a prismatic joint
+/// That velocity is at most |dq_j| times the lever (dq_j of a follower: its multiplier times that of its
+/// joint), and the lever is at most lever_m(); for a prismatic joint
 /// it is |dq_j|, lever 1. The sum over all pairs of joints is the square of the total joint movement, times
 /// the longer lever.
 double acceleration_of(const RobotQuery& robot, std::span<const double> from, std::span<const double> to) {
     std::vector<double> farthest(from.size());
     for (std::size_t i = 0; i < from.size(); ++i) farthest[i] = std::max(std::abs(from[i]), std::abs(to[i]));
-    const double moved = sum_of(from, to);
+    const double moved = movement_of(robot, from, to);
     return moved * moved * std::max(robot.lever_m(farthest), 1.0);
 }
 
@@ -52,7 +67,7 @@ std::vector<double> speeds_of(const RobotQuery& robot, std::span<const double> f
                               std::span<const double> to) {
     constexpr double kLook = 0.05;  // of all joints together: costs less than a tenth of the speed of an arm
     constexpr double kLooksMax = 500.0;
-    const double looks = std::clamp(std::ceil(sum_of(from, to) / kLook), 1.0, kLooksMax);
+    const double looks = std::clamp(std::ceil(movement_of(robot, from, to) / kLook), 1.0, kLooksMax);
     std::vector<double> speeds(robot.capsule_count(), 0.0);
     std::vector<double> position(from.begin(), from.end());
     auto before = robot.posed(position);
@@ -106,10 +121,13 @@ bool take_posture(const RobotQuery& robot, const FusedMap& map, std::span<const 
 
 Leg::Leg(const RobotQuery& robot, const FusedMap& map, std::span<const double> from,
          std::span<const double> to, double step)
-    : from_(from.begin(), from.end()), to_(to.begin(), to.end()), margins_m_(robot.capsule_count(), 0.0) {
+    : from_(from.begin(), from.end()),
+      to_(to.begin(), to.end()),
+      fault_(ambiguous_turn_of(robot, from, to)),
+      margins_m_(robot.capsule_count(), 0.0) {
     assert(from.size() == robot.robot().joint_count() && to.size() == from.size() && step > 0.0);
     const double longest = longest_of(from, to);
-    if (!(longest > 0.0)) return;
+    if (!(longest > 0.0) || fault_) return;
     margins_m_ = speeds_of(robot, from, to);
     // A robot whose moving links are all unknown has no capsule.
     const double fastest = margins_m_.empty() ? 0.0 : std::ranges::max(margins_m_);
@@ -124,6 +142,7 @@ void Leg::position(std::size_t index, std::span<double> position) const noexcept
 
 Result<std::vector<PosedCapsule>, PostureFault> Leg::pose(const RobotQuery& robot, std::size_t index) const {
     assert(robot.capsule_count() == margins_m_.size());
+    if (fault_) return unexpected(*fault_);
     std::vector<double> at(to_.size());
     position(index, at);
     auto capsules = robot.pose(at);

@@ -43,13 +43,15 @@ class Leg {
         return index < parts_ ? (static_cast<double>(index) + 0.5) / static_cast<double>(parts_) : 1.0;
     }
     void position(std::size_t index, std::span<double> position) const noexcept;
-    /// The enlarged capsules of a posture. `robot`: the robot that the leg was built with.
+    /// The enlarged capsules of a posture. `robot`: the robot that the leg was built with. Errors: those of
+    /// RobotQuery::pose, and ambiguous_turn.
     [[nodiscard]] Result<std::vector<PosedCapsule>, PostureFault> pose(const RobotQuery& robot,
                                                                        std::size_t index) const;
 
   private:
     std::vector<double> from_;
     std::vector<double> to_;
+    std::optional<PostureFault> fault_;
     std::size_t parts_ = 0;
     std::vector<double> margins_m_;  ///< enlargement of each capsule in the middle of a part
 };

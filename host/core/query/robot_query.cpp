@@ -11,24 +11,28 @@ namespace {
 constexpr double kPaddingMax_m = 1.0;
 constexpr double kLimitTolerance = 0.005;
 
-/// True for each capsule that some joint position moves. A capsule about the axis of the only joint that
-/// turns it does not move.
+/// True if a joint moves the point: with its followers, in a posture.
+bool is_moved(const Eigen::Vector3d& p_base, std::span<const JointTwist> twists) {
+    constexpr double kStill_m = 1e-9;  // per unit of the joint
+    return std::ranges::any_of(twists, [&p_base](const JointTwist& twist) {
+        return (twist.turn.cross(p_base) + twist.shift).norm() > kStill_m;
+    });
+}
+
+/// True for each capsule that a joint moves. A capsule about the axis of the only joint that turns it does
+/// not move. In a posture in which no joint is at a special position.
 std::vector<bool> moved_by_joints(const RobotModel& robot, const RobotBody& body) {
-    constexpr double kAlike_m = 1e-9;
     std::vector<double> position(robot.joint_count(), 0.0);
-    std::vector<Eigen::Isometry3d> T_base_link(robot.link_count());
-    std::vector<PosedCapsule> at_zero;
-    std::vector<PosedCapsule> elsewhere;
-    robot.forward(position, T_base_link);
-    body.pose(T_base_link, at_zero);
-    // Each joint moves by a different amount, so that no joint cancels another.
     for (std::size_t i = 0; i < position.size(); ++i) position[i] = 0.1 + 0.07 * static_cast<double>(i);
+    std::vector<Eigen::Isometry3d> T_base_link(robot.link_count());
     robot.forward(position, T_base_link);
-    body.pose(T_base_link, elsewhere);
+    std::vector<PosedCapsule> posed;
+    body.pose(T_base_link, posed);
+    std::vector<JointTwist> twists(robot.joint_count());
     std::vector<bool> moved;
-    for (std::size_t i = 0; i < at_zero.size(); ++i) {
-        moved.push_back((at_zero[i].p_a - elsewhere[i].p_a).norm() > kAlike_m ||
-                        (at_zero[i].p_b - elsewhere[i].p_b).norm() > kAlike_m);
+    for (const PosedCapsule& capsule : posed) {
+        robot.twists(capsule.link, T_base_link, twists);
+        moved.push_back(is_moved(capsule.p_a, twists) || is_moved(capsule.p_b, twists));
     }
     return moved;
 }

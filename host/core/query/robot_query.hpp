@@ -76,6 +76,7 @@ enum class PostureError : std::uint8_t {
     not_finite,
     outside_limits,  ///< beyond a joint's limits by more than 0.005 (rad or m), the tolerance of joint
                      ///< samples
+    ambiguous_turn,  ///< a leg turns a continuous joint by over half a turn
     too_far,         ///< a capsule is further than 1000 km from the map's origin
 };
 struct PostureFault {

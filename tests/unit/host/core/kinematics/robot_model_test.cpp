@@ -115,7 +115,7 @@ std::vector<JointDescription> tree_with_mimics() {
                             placed({0, 1, 0}, 0.2, {0.1, 0, 0}),
                             Vector3d(2, 1, -2) / 3.0,
                             {}};
-    follow.mimic = {"spin", -0.5, 0.2};
+    follow.mimic = {"spin", -2.0, 0.2};
     JointDescription jaw{
         "jaw",     "hand", "jaw", JointKind::prismatic, placed({1, 0, 1}, -0.3, {0, 0, 0.05}),
         {0, 0, 1}, {-2, 2}};
@@ -138,14 +138,38 @@ TEST(RobotModel, a_joint_that_mimics_another_moves_with_it) {
         model.forward(std::array{slide, uniform(engine), spin}, T_base_link);
         const auto of = [&](const char* link) { return T_base_link[model.find_link(link).value()]; };
         const Isometry3d leaf =
-            of("side") * joints[0].T_parent_joint * Eigen::AngleAxisd(-0.5 * spin + 0.2, joints[0].axis);
+            of("side") * joints[0].T_parent_joint * Eigen::AngleAxisd(-2.0 * spin + 0.2, joints[0].axis);
         const Isometry3d jaw = of("hand") * joints[1].T_parent_joint *
                                Eigen::Translation3d((2.0 * slide - 0.1) * joints[1].axis);
         EXPECT_LE((of("leaf").matrix() - leaf.matrix()).cwiseAbs().maxCoeff(), 1e-14);
         EXPECT_LE((of("jaw").matrix() - jaw.matrix()).cwiseAbs().maxCoeff(), 1e-14);
     }
+    EXPECT_EQ(model.movements()[0], 1.0 + 2.0);  // slide and jaw
+    EXPECT_EQ(model.movements()[1], 1.0);
+    EXPECT_EQ(model.movements()[2], 1.0 + 2.0);  // spin and follow
     const auto levers_m = model.levers_m(std::array{0.4, 2.0, 3.0});
     EXPECT_NEAR(levers_m.at(*model.find_link("jaw")), 0.2 + 0.4 + 0.05 + 2.0 * 0.4 + 0.1, 1e-12);
+}
+
+// Its sender may wrap a continuous joint: what moves with it must be at the same place then.
+TEST(RobotModel, refuses_a_follower_that_a_full_turn_moves_elsewhere) {
+    const auto fault_with = [](JointKind kind, double multiplier) {
+        auto joints = tree_with_mimics();
+        joints[0].kind = kind;
+        joints[0].limits = {-1.0, 1.0};
+        joints[0].mimic->multiplier = multiplier;
+        const auto model = RobotModel::build("base", joints, kMoved);
+        return model ? std::nullopt : std::optional(model.error().error);
+    };
+    for (const double whole : {-3.0, -1.0, 0.0, 1.0, 2.0}) {
+        EXPECT_EQ(fault_with(JointKind::continuous, whole), std::nullopt) << whole;
+        EXPECT_EQ(fault_with(JointKind::revolute, whole), std::nullopt) << whole;
+    }
+    for (const double part : {0.5, -0.5, 1.001}) {
+        EXPECT_EQ(fault_with(JointKind::continuous, part), RobotModelError::mimic_of_turns) << part;
+        EXPECT_EQ(fault_with(JointKind::revolute, part), RobotModelError::mimic_of_turns) << part;
+    }
+    EXPECT_EQ(fault_with(JointKind::prismatic, 1.0), RobotModelError::mimic_of_turns);
 }
 
 // Oracle: where a point of the link goes with a little of the joint.
@@ -214,7 +238,7 @@ TEST(RobotModel, each_error_has_words_of_its_own) {
     for (int error = 0; error <= static_cast<int>(RobotModelError::too_large); ++error) {
         words.insert(describe(static_cast<RobotModelError>(error)));
     }
-    EXPECT_EQ(words.size(), 9U);
+    EXPECT_EQ(words.size(), static_cast<std::size_t>(RobotModelError::too_large) + 1U);
     EXPECT_FALSE(words.contains("unknown error"));
 }
 

@@ -365,5 +365,71 @@ TEST(OwnSpace, leaves_occupied_what_is_outside_the_arm) {
     EXPECT_EQ(worst_of(query, map, *capsules)->state, PostureState::occupied);
 }
 
+/// A rack, `slide`, that turns an arm of 0.6 m about z: `multiplier` radians a metre.
+struct RackArm {
+    explicit RackArm(double multiplier) : robot(model(multiplier)) {
+        rig.joint_sources = {{.joints = {"slide"}}};
+        rig.body = {{"bar", {0, 0, -0.3}, {0, 0, -0.3}, 0.02}, {"arm", {0.2, 0, 0}, {0.6, 0, 0}, 0.02}};
+    }
+    static RobotModel model(double multiplier) {
+        std::array<JointDescription, 2> joints;
+        joints[0] = {"slide",   "base",    "bar", JointKind::prismatic, Eigen::Isometry3d::Identity(),
+                     {0, 0, 1}, {0.0, 0.1}};
+        joints[1] = {"turn",    "base",         "arm", JointKind::revolute, Eigen::Isometry3d::Identity(),
+                     {0, 0, 1}, {-100.0, 100.0}};
+        joints[1].mimic = JointMimic{"slide", multiplier, 0.0};
+        return RobotModel::build("base", joints, std::array<std::string, 1>{"slide"}).value();
+    }
+    HostRig rig;
+    RobotModel robot;
+};
+
+// What a joint moves is asked about, however far its follower turns meanwhile.
+TEST(RobotQuery, asks_about_a_follower_that_turns_fast) {
+    for (const double turns_per_m : {0.1, 10.0, 20.0, 33.3, 100.0, 1000.0}) {
+        const RackArm arm(2.0 * M_PI * turns_per_m);
+        const auto query = RobotQuery::build(arm.rig, arm.robot, {});
+        ASSERT_TRUE(query);
+        EXPECT_EQ(query->capsule_count(), 2U) << turns_per_m;
+    }
+}
+
+TEST(PathQuery, meets_what_a_follower_sweeps_on_a_short_way_of_its_joint) {
+    FusedMap map = free_about_origin();
+    mark(map, {-0.5, 0.0, 0.0});
+    for (const double multiplier : {10.0, 40.0, 209.4395102393195, 418.879020478639}) {
+        const RackArm arm(multiplier);
+        const RobotQuery query = RobotQuery::build(arm.rig, arm.robot, {}).value();
+        // A turn or several; at both ends the arm is away from it.
+        const double to = std::min(0.1, 4.0 * M_PI / multiplier);
+        const Leg leg(query, map, std::array{0.0}, std::array{to});
+        const auto answer = ask(query, map, leg, {});
+        ASSERT_TRUE(answer);
+        const bool sweeps_it = to * multiplier > M_PI;
+        EXPECT_EQ(answer->worst.state, sweeps_it ? PostureState::occupied : PostureState::free) << multiplier;
+    }
+}
+
+TEST(PathQuery, refuses_a_leg_of_over_half_a_turn_of_a_continuous_joint) {
+    std::array<JointDescription, 1> joint;
+    joint[0] = {"spin", "base", "arm", JointKind::continuous, Eigen::Isometry3d::Identity(), {0, 0, 1}, {}};
+    const auto robot = RobotModel::build("base", joint, std::array<std::string, 1>{"spin"}).value();
+    HostRig rig;
+    rig.joint_sources = {{.joints = {"spin"}}};
+    rig.body = {{"arm", {0.2, 0, 0}, {0.6, 0, 0}, 0.02}};
+    const RobotQuery query = RobotQuery::build(rig, robot, {}).value();
+    const FusedMap map = free_about_origin();
+    const auto ask_from = [&](double from, double to) {
+        return ask(query, map, Leg(query, map, std::array{from}, std::array{to}), {});
+    };
+    EXPECT_TRUE(ask_from(0.0, 3.14));
+    EXPECT_TRUE(ask_from(10.0, 13.1));
+    for (const auto& [from, to] : {std::pair{2.6, -2.6}, std::pair{0.0, 3.15}, std::pair{-4.0, 0.0}}) {
+        const auto refused = ask_from(from, to);
+        ASSERT_FALSE(refused) << from << ' ' << to;
+        EXPECT_EQ(refused.error().error, PostureError::ambiguous_turn);
+    }
+}
+
 }  // namespace
 }  // namespace octoskin
