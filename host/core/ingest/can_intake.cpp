@@ -1,6 +1,7 @@
 #include "host/core/ingest/can_intake.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 #include <variant>
 
@@ -8,6 +9,16 @@
 #include "host/core/ingest/rejecting.hpp"
 
 namespace octoskin {
+namespace {
+
+/// Positions beyond the source's joints are zero on the wire. Another value is that of a joint which the rig
+/// does not have, so that the joints before it may be other ones, too.
+bool has_joint_beyond(const JointReading& reading, std::size_t joint_count) {
+    const auto rest = reading.position_rad | std::views::drop(joint_count);
+    return std::ranges::any_of(rest, [](double position) { return position != 0.0; });
+}
+
+}  // namespace
 
 CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
     : config_(config),
@@ -15,7 +26,7 @@ CanIntake::CanIntake(const HostRig& rig, const IntakeConfig& config)
       nodes_(rig),
       ranges_(rig, config.uses_no_return, Nanoseconds{config.clock.now_slack}) {
     for (const HostJointSource& source : rig.joint_sources) {
-        joint_sources_.push_back({source.node_id, JointAssembler(source.rate_hz),
+        joint_sources_.push_back({source.node_id, source.joints.size(), JointAssembler(source.rate_hz),
                                   JointSenderCheck(source.rate_hz, !source.is_local)});
     }
     for (const auto& [node, record] : nodes_.records()) {
@@ -397,6 +408,9 @@ Result<JointMeasurement, JointReason> CanIntake::place(std::size_t source, const
     if (may_be_mixed) return unexpected(JointReason::contradictory);
     if (now - sampled->time > config_.joint_age_max) {
         return unexpected(JointReason::too_old);
+    }
+    if (has_joint_beyond(reading, of.joint_count)) {
+        return unexpected(JointReason::wrong_count);
     }
     if (!reading.has_pace) {  // checked last: a source's first samples precede its clock's first exchange
         return unexpected(JointReason::too_frequent);

@@ -143,6 +143,7 @@ class CanIntake {
                                                                   const wire::RangeReading& reading);
     struct JointIntake {
         wire::NodeId node = 0;
+        std::size_t joint_count = 0;  ///< in the rig
         JointAssembler assembler;
         JointSenderCheck senders;
     };

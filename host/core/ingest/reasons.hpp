@@ -155,11 +155,12 @@ enum class JointReason : std::uint8_t {
     too_frequent,   ///< the source is faster than the rig's rate, so that samples cannot be distinguished
     second_sender,  ///< two senders use the joint node, and the true one is unknown
     joint_jump,     ///< further from the sample before it than the arm can move in that time
+    wrong_count,    ///< it has a joint beyond those that the source has in the rig
 };
-[[nodiscard]] constexpr std::array<const char*, 12> names_of(JointReason) {
-    return {"incomplete",     "contradictory", "clock_not_ready", "clock_in_doubt",
-            "clock_silent",   "too_old",       "out_of_limits",   "out_of_order",
-            "queue_overflow", "too_frequent",  "second_sender",   "joint_jump"};
+[[nodiscard]] constexpr std::array<const char*, 13> names_of(JointReason) {
+    return {"incomplete",    "contradictory", "clock_not_ready", "clock_in_doubt", "clock_silent",
+            "too_old",       "out_of_limits", "out_of_order",    "queue_overflow", "too_frequent",
+            "second_sender", "joint_jump",    "wrong_count"};
 }
 
 enum class DepthReason : std::uint8_t {

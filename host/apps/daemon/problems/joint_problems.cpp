@@ -63,6 +63,18 @@ Problem no_joints(const DaemonView& view) {
     return problem;
 }
 
+Problem stopped_joints(const InputCounters<JointReason>& joints) {
+    Problem problem{.code = ProblemCode::joints_stopped,
+                    .what = "joint states have stopped, and readings have no pose",
+                    .subject = "joints"};
+    const std::uint64_t refused = joints.rejected(JointReason::wrong_count);
+    if (refused == 0) return problem;
+    problem.what +=
+        fmt::format("; refused because they have more joints than the rig (wrong_count, {})", refused);
+    problem.key = "wrong_count";
+    return problem;
+}
+
 /// "process 4711 (python3, user 1000) and process 4712 (octoskin, user 1000)".
 std::string names_of_senders(const std::vector<JointSenders::Heard>& senders) {
     std::string text;
@@ -263,9 +275,7 @@ void add_joints(const DaemonView& view, Problems& problems) {
                             .what = "no joint state could be used: " + see_counters("joint samples", joints),
                             .subject = "joints"});
     } else if (has_stopped(view.used.joint_sample, view.now)) {
-        problems.push_back({.code = ProblemCode::joints_stopped,
-                            .what = "joint states have stopped, and readings have no pose",
-                            .subject = "joints"});
+        problems.push_back(stopped_joints(joints));
     } else {
         add_silent_sources(view, problems);
     }

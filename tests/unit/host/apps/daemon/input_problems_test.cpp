@@ -103,6 +103,21 @@ TEST_F(JointProblemsTest, have_joint_states_that_stopped_eight_tenths_of_a_secon
     EXPECT_EQ(reported(ProblemCode::joints_unused), std::nullopt);
 }
 
+TEST_F(JointProblemsTest, have_joint_states_of_more_joints_than_the_rig_has) {
+    play_changed(
+        [](Scene& scene) {
+            for (int k = 0; k < 150; ++k) {
+                scene.bus.joints(9.02 + 0.01 * k, kJoints, std::array{angle_at(9.0), 0.1});
+                scene.bus.heartbeat(9.02 + 0.01 * k, scene.rig.nodes.front());
+            }
+            scene.bus.exchange(9.1, {kLeft, kRight, kJoints});
+            scene.bus.exchange(10.1, {kLeft, kRight, kJoints});
+        },
+        10.5);
+    EXPECT_THAT(reported(ProblemCode::joints_stopped),
+                Optional(AllOf(key_is("wrong_count"), what_matches(".*\\(wrong_count, [0-9]+\\)"))));
+}
+
 TEST_F(JointProblemsTest, have_joint_states_that_are_too_slow_but_no_single_gap_between_them) {
     MapBuilder& builder = pipeline_->builder();
     const auto add = [&](double at_s) { EXPECT_TRUE(builder.add({host_at(at_s), {M_PI / 2.0}})); };

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -385,6 +386,29 @@ TEST(CanIntake, takes_no_joints_of_a_source_twice_as_quick_as_the_rig_says) {
             EXPECT_EQ(too_frequent, 5) << rate_hz;
         }
         EXPECT_EQ(taken, is_refused ? 0 : 95) << rate_hz;
+    }
+}
+
+TEST(CanIntake, takes_no_sample_with_a_position_beyond_the_joints_of_its_source) {
+    for (std::size_t beyond = 1; beyond < wire::kJointsPerSample; ++beyond) {
+        ScriptedBus other_arm = bus();
+        std::array<double, wire::kJointsPerSample> position{0.5};
+        for (int i = 0; i < 20; ++i) {
+            position.at(beyond) = i < 10 ? 0.0 : -1e-6;
+            other_arm.joints(2.5 + 0.01 * i, kJointNode, position);
+        }
+        std::map<JointReason, int> rejected;
+        int taken = 0;
+        (void)take(other_arm, [&](const FrameOutcome& outcome, HostTime) {
+            for (const auto& sample : outcome.joint_samples) {
+                taken += sample ? 1 : 0;
+                if (!sample) ++rejected[sample.error()];
+            }
+        });
+        EXPECT_EQ(taken, 5) << beyond;
+        EXPECT_EQ(rejected, (std::map<JointReason, int>{{JointReason::too_frequent, 5},
+                                                        {JointReason::wrong_count, 10}}))
+            << beyond;
     }
 }
 

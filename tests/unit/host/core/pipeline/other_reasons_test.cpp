@@ -1,6 +1,7 @@
 // Every reason to reject a frame, a joint sample or a depth frame, provoked once beside a good stream.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <set>
 #include <string>
@@ -186,6 +187,10 @@ const std::vector<Case<JointReason>>& joint_cases() {
          [](Scene& s) {
              const double position = 0.0;
              s.bus.joints(9.2, kJoints, {&position, 1});
+         }},
+        {R::wrong_count,
+         [](Scene& s) {
+             s.bus.joints(9.2, kJoints, std::array{0.0, 0.1});
          }},
     };
     return all;
