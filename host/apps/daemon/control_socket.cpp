@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "host/apps/daemon/clocks.hpp"
-#include "host/apps/daemon/unix_socket.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"
 
 namespace octoskin {
@@ -69,16 +68,16 @@ std::size_t ControlSocket::clients_of_each_kind(std::uint64_t descriptors) noexc
 Result<std::unique_ptr<ControlSocket>, AppError> ControlSocket::open(const std::filesystem::path& file,
                                                                      EventLoop& loop, Answer answer,
                                                                      std::chrono::milliseconds idle_max) {
-    const auto descriptor = bind_unix_socket(file, SOCK_STREAM);
-    if (!descriptor) return unexpected(descriptor.error());
+    auto bound = bind_unix_socket(file, SOCK_STREAM);
+    if (!bound) return unexpected(bound.error());
     return std::unique_ptr<ControlSocket>(
-        new ControlSocket(file, *descriptor, loop, std::move(answer), idle_max));
+        new ControlSocket(*std::move(bound), loop, std::move(answer), idle_max));
 }
 
-ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
+ControlSocket::ControlSocket(BoundSocket bound, EventLoop& loop, Answer answer,
                              std::chrono::milliseconds idle_max)
-    : file_(std::move(file)),
-      descriptor_(descriptor),
+    : file_(std::move(bound.file)),
+      descriptor_(bound.descriptor),
       loop_(loop),
       answer_(std::move(answer)),
       idle_max_(idle_max),
@@ -89,7 +88,7 @@ ControlSocket::ControlSocket(std::filesystem::path file, int descriptor, EventLo
 
 ControlSocket::~ControlSocket() {
     close_clients();
-    ::unlink(file_.c_str());  // while it still answers, so that no other process has the name yet
+    file_.remove();  // while it still answers, so that no other process has the name yet
     socketcan::close_socket(descriptor_);  // drops what clients sent that were not accepted
 }
 
@@ -111,7 +110,8 @@ void ControlSocket::accept() {
         // A client that cannot be accepted keeps the descriptor readable, which would keep the loop busy.
         is_resting_ = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
         if (!is_resting_) return;
-        spdlog::warn("{}: {}: no new client is accepted for a while", file_.string(), std::strerror(errno));
+        spdlog::warn("{}: {}: no new client is accepted for a while", file_.path().string(),
+                     std::strerror(errno));
         acceptable_ = EventSource();
         return;
     }

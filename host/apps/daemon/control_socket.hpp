@@ -14,6 +14,7 @@
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/recording/app_error.hpp"
 
 namespace octoskin {
@@ -96,8 +97,7 @@ class ControlSocket {
         bool is_refused = false;   ///< it got the refusal: its further input is read and dropped
         EventSource readable;
     };
-    ControlSocket(std::filesystem::path file, int descriptor, EventLoop& loop, Answer answer,
-                  std::chrono::milliseconds idle_max);
+    ControlSocket(BoundSocket bound, EventLoop& loop, Answer answer, std::chrono::milliseconds idle_max);
     void watch();
     void accept();
     /// False if the client is to be dropped.
@@ -117,7 +117,7 @@ class ControlSocket {
     /// would show it, and no other client is to be refused in its place.
     void drop_gone();
 
-    std::filesystem::path file_;
+    SocketFile file_;
     int descriptor_;
     EventLoop& loop_;
     Answer answer_;

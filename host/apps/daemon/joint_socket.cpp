@@ -1,7 +1,6 @@
 #include "host/apps/daemon/joint_socket.hpp"
 
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -9,7 +8,6 @@
 #include <system_error>
 #include <utility>
 
-#include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/recording/shortage.hpp"
 #include "host/io/socketcan/passed_descriptors.hpp"
 #include "host/io/socketcan/stamped_datagram.hpp"
@@ -17,16 +15,17 @@
 namespace octoskin {
 
 Result<JointSocket, AppError> JointSocket::open(const std::filesystem::path& file, LineJoints joints) {
-    const auto descriptor = bind_unix_socket(file, SOCK_DGRAM, "--joints");
-    if (!descriptor) return unexpected(descriptor.error());
+    const auto bound = bind_unix_socket(file, SOCK_DGRAM, "--joints");
+    if (!bound) return unexpected(bound.error());
+    const int descriptor = bound->descriptor;
     try {
-        if (!socketcan::want_stamps(*descriptor) || !socketcan::want_senders(*descriptor))
+        if (!socketcan::want_stamps(descriptor) || !socketcan::want_senders(descriptor))
             throw std::system_error(errno, std::generic_category(), "cannot enable time stamps and senders");
-        return JointSocket(file, std::make_unique<DatagramFeed>(*descriptor, kJointTextMax + 1),
+        return JointSocket(bound->file, std::make_unique<DatagramFeed>(descriptor, kJointTextMax + 1),
                            std::move(joints));
     } catch (const std::system_error& error) {
-        socketcan::close_socket(*descriptor);
-        ::unlink(file.c_str());
+        bound->file.remove();
+        socketcan::close_socket(descriptor);
         AppError why = shortage_in(error).value_or(
             AppError{ExitCode::unavailable, {ErrorCode::system_error, error.what()}});
         return fail(why.exit, in_file(std::move(why.error), file));
@@ -47,7 +46,7 @@ JointSocket& JointSocket::operator=(JointSocket&& other) noexcept {
 
 JointSocket::~JointSocket() {
     if (!feed_) return;
-    ::unlink(file_.c_str());  // while it still answers, so that no other process has the name yet
+    file_.remove();  // while it still answers, so that no other process has the name yet
 }
 
 void JointSocket::expect(LineJoints joints) {

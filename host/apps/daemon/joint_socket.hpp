@@ -16,6 +16,7 @@
 #include "host/apps/daemon/datagram_feed.hpp"
 #include "host/apps/daemon/joint_line.hpp"
 #include "host/apps/daemon/joint_senders.hpp"
+#include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/recording/app_error.hpp"
 
 namespace octoskin {
@@ -67,14 +68,14 @@ class JointSocket {
         double rate_hz = 0.0;              ///< of the second before
         void count(HostTime at);
     };
-    JointSocket(std::filesystem::path file, std::unique_ptr<DatagramFeed> feed, LineJoints joints)
+    JointSocket(SocketFile file, std::unique_ptr<DatagramFeed> feed, LineJoints joints)
         : file_(std::move(file)),
           feed_(std::move(feed)),
           joints_(std::move(joints)),
           records_(joints_.sources.size()) {}
     void take(const Datagram& datagram);
 
-    std::filesystem::path file_;
+    SocketFile file_;
     std::unique_ptr<DatagramFeed> feed_;
     LineJoints joints_;
     std::vector<Record> records_;              ///< by source

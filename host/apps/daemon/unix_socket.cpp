@@ -149,8 +149,20 @@ class StartLock {
 
 }  // namespace
 
-Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int type,
-                                       const std::string& option) {
+SocketFile::SocketFile(std::filesystem::path path) : path_(std::move(path)), bound_(found()) {}
+
+void SocketFile::remove() const {
+    if (bound_ && found() == bound_) ::unlink(path_.c_str());
+}
+
+std::optional<SocketFile::Identity> SocketFile::found() const {
+    struct stat status {};
+    if (::lstat(path_.c_str(), &status) != 0) return std::nullopt;
+    return Identity{status.st_dev, status.st_ino};
+}
+
+Result<BoundSocket, AppError> bind_unix_socket(const std::filesystem::path& file, int type,
+                                               const std::string& option) {
     const auto address = address_of(file);
     if (!address) return wrong_length(file);
     const StartLock lock(file);
@@ -186,7 +198,7 @@ Result<int, AppError> bind_unix_socket(const std::filesystem::path& file, int ty
         ::close(descriptor);
         return cannot_listen(file, option, why);
     }
-    return descriptor;
+    return BoundSocket{descriptor, SocketFile(file)};  // while the lock keeps other daemons from the name
 }
 
 Result<int, AppError> connect_unix_socket(const std::filesystem::path& file, int type,

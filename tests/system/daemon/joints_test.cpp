@@ -30,7 +30,7 @@ using namespace std::chrono_literals;
 class Taker {
   public:
     explicit Taker(const std::filesystem::path& file)
-        : file_(file), descriptor_(*bind_unix_socket(file, SOCK_DGRAM)) {}
+        : file_(file), descriptor_(bind_unix_socket(file, SOCK_DGRAM)->descriptor) {}
     ~Taker() {
         ::close(descriptor_);
         ::unlink(file_.c_str());

@@ -255,7 +255,7 @@ TEST_F(DaemonTest, refuses_a_reload_with_another_resolution_and_keeps_the_map) {
 class ServiceManager {
   public:
     explicit ServiceManager(const std::filesystem::path& file)
-        : socket_(*bind_unix_socket(file, SOCK_DGRAM)) {
+        : socket_(bind_unix_socket(file, SOCK_DGRAM)->descriptor) {
         ::setenv("NOTIFY_SOCKET", file.c_str(), 1);
         ::setenv("WATCHDOG_USEC", "400000", 1);
     }

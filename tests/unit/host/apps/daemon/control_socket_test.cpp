@@ -575,8 +575,20 @@ TEST_F(ControlSocketTest, is_one_at_a_place_and_takes_over_from_the_dead) {
     // As a killed one leaves it: a name, and nobody behind.
     const auto dead = bind_unix_socket(file(), SOCK_STREAM);
     ASSERT_TRUE(dead);
-    ::close(*dead);
+    ::close(dead->descriptor);
     EXPECT_TRUE(ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); }));
+}
+
+TEST_F(ControlSocketTest, takes_away_no_file_but_its_own) {
+    std::filesystem::remove(file());
+    auto second = ControlSocket::open(file(), loop_, [](const std::string&) { return std::string(); });
+    ASSERT_TRUE(second) << second.error().message();
+    socket_.reset();
+    EXPECT_TRUE(connect_unix_socket(file(), SOCK_STREAM)) << "the name is the second's";
+    std::filesystem::remove(file());
+    folder_.write("control", "precious");
+    second->reset();
+    EXPECT_EQ(testing_support::ScratchFolder::read(file()), "precious");
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ class DatagramFeedTest : public testing::Test {
 
     testing_support::ScratchFolder folder_;
     std::filesystem::path file_ = folder_ / "feed";
-    int socket_ = bind_unix_socket(file_, SOCK_DGRAM).value();
+    int socket_ = bind_unix_socket(file_, SOCK_DGRAM).value().descriptor;
     int sender_;
 };
 
@@ -422,6 +422,18 @@ TEST_F(JointSocketTest, is_one_to_a_file_and_takes_its_file_away) {
         EXPECT_TRUE(std::filesystem::exists(file_));
     }
     EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST_F(JointSocketTest, takes_away_no_file_but_its_own) {
+    std::filesystem::remove(file_);
+    auto second = JointSocket::open(file_, testing_support::one_source(3));
+    ASSERT_TRUE(second) << second.error().message();
+    { const JointSocket moved = std::move(socket_); }
+    EXPECT_TRUE(connect_unix_socket(file_, SOCK_DGRAM)) << "the name is the second's";
+    std::filesystem::remove(file_);
+    folder_.write(file_.filename().string(), "precious");
+    { const JointSocket moved = *std::move(second); }
+    EXPECT_EQ(testing_support::ScratchFolder::read(file_), "precious");
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace octoskin::testing_support {
 class StoppedListener {
   public:
     explicit StoppedListener(const std::filesystem::path& file)
-        : descriptor_(bind_unix_socket(file, SOCK_STREAM).value()), file_(file) {}
+        : descriptor_(bind_unix_socket(file, SOCK_STREAM).value().descriptor), file_(file) {}
     ~StoppedListener() {
         for (const int waiting : waiting_) ::close(waiting);
         ::close(descriptor_);

@@ -31,7 +31,7 @@ TEST(UnixSocket, is_given_to_one_of_many_that_begin_at_once) {
             const auto dead =
                 bind_unix_socket(file, type);  // a name, and nobody behind: each wants to replace it
             ASSERT_TRUE(dead);
-            ::close(*dead);
+            ::close(dead->descriptor);
             std::atomic<int> waiting = 4;
             std::array<int, 4> got{-1, -1, -1, -1};
             std::vector<std::thread> threads;
@@ -39,7 +39,7 @@ TEST(UnixSocket, is_given_to_one_of_many_that_begin_at_once) {
                 threads.emplace_back([&] {
                     --waiting;
                     while (waiting > 0) std::this_thread::yield();
-                    if (const auto bound = bind_unix_socket(file, type)) mine = *bound;
+                    if (const auto bound = bind_unix_socket(file, type)) mine = bound->descriptor;
                 });
             }
             for (std::thread& thread : threads) thread.join();
@@ -60,7 +60,7 @@ TEST(UnixSocket, is_given_in_a_folder_that_another_has_locked_and_leaves_nothing
     const auto bound = bind_unix_socket(folder / "control", SOCK_STREAM);
     EXPECT_TRUE(bound);
     ::close(others);
-    ::close(bound.value());
+    ::close(bound.value().descriptor);
     ::unlink((folder / "control").c_str());
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
@@ -76,7 +76,7 @@ TEST(UnixSocket, for_datagrams_is_refused_without_the_others_process) {
     EXPECT_EQ(second.error().error.file, folder / "joints");
     EXPECT_EQ(second.error().error.what, "another octoskin has this socket");
     EXPECT_NE(second.error().error.remedy.find("--joints"), std::string::npos) << second.error().message();
-    ::close(*first);
+    ::close(first->descriptor);
 }
 
 TEST(UnixSocket, is_never_made_over_something_else) {
@@ -94,6 +94,27 @@ TEST(UnixSocket, is_never_made_over_something_else) {
     ASSERT_FALSE(too_long);
     EXPECT_EQ(too_long.error().error.code, ErrorCode::bad_name);
     EXPECT_EQ(too_long.error().error.value, std::to_string(folder.path().string().size() + 201) + " bytes");
+}
+
+/// By somebody who removed it.
+TEST(UnixSocket, is_removed_only_while_its_name_is_its_own) {
+    const testing_support::ScratchFolder folder;
+    const auto file = folder / "control";
+    const auto first = bind_unix_socket(file, SOCK_STREAM);
+    ASSERT_TRUE(first);
+    std::filesystem::remove(file);
+    first->file.remove();  // nothing is there
+    folder.write("control", "precious");
+    first->file.remove();
+    EXPECT_EQ(testing_support::ScratchFolder::read(file), "precious");
+    std::filesystem::remove(file);
+    const auto second = bind_unix_socket(file, SOCK_STREAM);
+    ASSERT_TRUE(second);
+    first->file.remove();
+    EXPECT_TRUE(connect_unix_socket(file, SOCK_STREAM));
+    second->file.remove();
+    EXPECT_FALSE(std::filesystem::exists(file));
+    for (const int descriptor : {first->descriptor, second->descriptor}) ::close(descriptor);
 }
 
 TEST(UnixSocket, refuses_at_once_the_place_of_one_that_lets_nobody_in) {
