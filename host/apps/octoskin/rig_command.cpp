@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "common/config/node_config.hpp"
 #include "common/wire/bus_load.hpp"
@@ -95,6 +96,15 @@ void describe(const rig::Rig& rig, const HostSetup& host) {
           100.0 * rig::can_load(rig), 100.0 * wire::kBusLoadLimit);
 }
 
+/// The files of a rig are its only source, and not written by anything else.
+void refuse_output_over_rig(const rig::Rig& rig, const RigOptions& options) {
+    std::vector<std::filesystem::path> files{options.rig, rig.urdf.shown()};
+    for (const FilePlace& extended : rig.extended_files) files.push_back(extended.shown());
+    const auto& output = options.block.empty() ? options.picture : options.block;
+    if (const auto checked = check_replaces_none(output, files); !checked)
+        throw CommandFailure(checked.error());
+}
+
 /// The same bytes that `octoskin flash` writes to a microcontroller's page.
 void write_block(const rig::Rig& rig, const RigOptions& options) {
     const auto node = flashing::choose_node(rig, options.node);
@@ -165,6 +175,7 @@ void run(const RigOptions& options) {
                                                .remedy = "see octoskin rig --help"});
     const rig::Rig rig =
         value_or_fail(read_rig_with_body(options.rig, options.robot, BodyFitting::if_needed));
+    refuse_output_over_rig(rig, options);
     const auto host = make_host_setup(rig);
     if (!host) throw CommandFailure(reading_error(ExitCode::bad_config, host.error()));
     for (const std::string& warning : host->warnings) spdlog::warn("{}", warning);

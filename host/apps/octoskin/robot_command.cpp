@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -40,21 +39,11 @@ void write(const std::filesystem::path& file, const std::string& text) {
 void refuse_outputs_over_inputs(const RobotOptions& options, const RobotFit& robot) {
     std::vector<std::filesystem::path> taken{options.urdf};
     for (const LinkBody& link : robot.links) taken.insert(taken.end(), link.files.begin(), link.files.end());
+    if (const auto checked = check_replaces_none(options.out, taken); !checked)
+        throw CommandFailure(checked.error());
     if (!options.out.empty()) taken.push_back(options.out);
-    const auto check = [](const std::filesystem::path& output, std::span<const std::filesystem::path> files) {
-        for (const std::filesystem::path& file : files) {
-            std::error_code ignored;
-            const bool is_same = output.lexically_normal() == file.lexically_normal() ||
-                                 std::filesystem::equivalent(output, file, ignored);
-            if (output.empty() || !is_same) continue;
-            throw CommandFailure(ExitCode::usage, {.code = ErrorCode::conflict,
-                                                   .what = "an output would replace this file",
-                                                   .remedy = "give another name",
-                                                   .file = file});
-        }
-    };
-    check(options.picture, taken);
-    check(options.out, std::span(taken).first(taken.size() - (options.out.empty() ? 0 : 1)));
+    if (const auto checked = check_replaces_none(options.picture, taken); !checked)
+        throw CommandFailure(checked.error());
 }
 
 void run(const RobotOptions& options) {

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -82,6 +83,12 @@ Unexpected<AppError> cannot_write(const FilePlace& file, const FolderError& erro
                         is_in_the_way ? ErrorCode::wrong_kind_of_file : code_of(error.fault));
 }
 
+bool is_same(const std::filesystem::path& one, const std::filesystem::path& other) {
+    std::error_code ignored;  // of a file that is not there yet
+    return one.lexically_normal() == other.lexically_normal() ||
+           std::filesystem::equivalent(one, other, ignored);
+}
+
 }  // namespace
 
 std::string remedy_of(const std::error_code& error) {
@@ -127,6 +134,17 @@ Status<AppError> check_text_place(const FilePlace& file) {
     if (takes_what_is_written(file)) return Done{};
     if (const auto checked = ReplacingFile::check(file); !checked) return cannot_write(file, checked.error());
     return Done{};
+}
+
+Status<AppError> check_replaces_none(const std::filesystem::path& output,
+                                     std::span<const std::filesystem::path> files) {
+    if (output.empty()) return Done{};
+    const auto taken = std::ranges::find_if(files, [&](const auto& file) { return is_same(output, file); });
+    if (taken == files.end()) return Done{};
+    return fail(ExitCode::usage, {.code = ErrorCode::conflict,
+                                  .what = "an output would replace this file",
+                                  .remedy = "give another name",
+                                  .file = *taken});
 }
 
 Status<AppError> copy_file(const FilePlace& from, const FilePlace& to) {

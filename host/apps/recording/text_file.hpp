@@ -1,6 +1,8 @@
 // Writes a whole file at once, with the cause and remedy of an error.
 #pragma once
 
+#include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -23,6 +25,10 @@ namespace octoskin {
 
 /// Checks without writing, as far as possible, that write_text() would succeed: for long work before a write.
 [[nodiscard]] Status<AppError> check_text_place(const FilePlace& file);
+
+/// Error, `usage`: `output`, unless it is empty, is one of these files, by its name or through a link.
+[[nodiscard]] Status<AppError> check_replaces_none(const std::filesystem::path& output,
+                                                   std::span<const std::filesystem::path> files);
 
 /// A copy of `from`, written as by write_text(). Error, `cannot_create`.
 [[nodiscard]] Status<AppError> copy_file(const FilePlace& from, const FilePlace& to);

@@ -95,6 +95,22 @@ TEST_F(Overwrite, maps_that_cannot_all_be_written_leave_those_before_as_they_wer
               "proximity.ply\n");
 }
 
+TEST_F(Overwrite, a_rig_and_its_files_are_not_replaced_by_what_is_made_of_them) {
+    std::filesystem::copy_file(source("hw/robots/panda.urdf"), path("panda.urdf"));
+    write(path("base.yaml"), "extends: " + source("hw/rigs/bench_one_board.yaml"));
+    write(path("rig.yaml"), "extends: base.yaml\nrobot: {urdf: panda.urdf}\n");
+    ASSERT_EQ(octoskin("rig " + path("rig.yaml") + " --picture " + path("rig.svg")).exit_code, 0);
+    for (const std::string option : {"--picture ", "--block "}) {
+        for (const std::string file : {"rig.yaml", "base.yaml", "panda.urdf"}) {
+            const std::string before = content(path(file));
+            EXPECT_THAT(failure_of("rig " + path("rig.yaml") + " " + option + path(file)),
+                        fails_with(64, code_is(ErrorCode::conflict), path_is(path(file)),
+                                   remedy_is(HasSubstr("another name"))));
+            EXPECT_EQ(content(path(file)), before) << option << file;
+        }
+    }
+}
+
 TEST_F(Overwrite, no_map_of_a_camera_that_is_not_there) {
     const Said made = octoskin("simulate " + path("rec") + " --rig " + source("tests/data/gantry/rig.yaml") +
                                " --scenario " + source("tests/data/gantry/scenario.yaml"));

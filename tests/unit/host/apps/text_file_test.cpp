@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <filesystem>
+#include <vector>
+
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -120,6 +123,22 @@ TEST(TextFile, has_a_place_that_can_be_checked_before_the_work) {
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
     EXPECT_FALSE(check_text_place({NamedFolder(folder.path()), "pipe"})) << "it was not typed itself";
     EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(TextFile, is_known_as_an_input_by_each_of_its_names) {
+    const ScratchFolder folder;
+    const std::vector<std::filesystem::path> inputs{folder.write("rig", "a"), folder.write("base", "b")};
+    std::filesystem::create_symlink("base", folder / "link");
+    std::filesystem::create_hard_link(folder / "base", folder / "hard_link");
+    for (const char* const name : {"base", "./base", "link", "hard_link"}) {
+        const auto refused = check_replaces_none(folder.path() / name, inputs);
+        ASSERT_FALSE(refused) << name;
+        EXPECT_EQ(refused.error().exit, ExitCode::usage);
+        EXPECT_EQ(refused.error().error.code, ErrorCode::conflict);
+        EXPECT_EQ(refused.error().error.file, inputs[1]);
+    }
+    EXPECT_TRUE(check_replaces_none(folder / "new", inputs));
+    EXPECT_TRUE(check_replaces_none({}, inputs));
 }
 
 TEST(TextFile, below_a_named_folder_replaces_a_link_and_follows_none) {
