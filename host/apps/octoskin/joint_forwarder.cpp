@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -42,8 +43,8 @@ std::optional<Error> RigJoints::fault_of(const JointLine& line) const {
 }
 
 JointForwarder::JointForwarder(JointOutput& output, std::optional<RigJoints> joints,
-                               std::optional<JointBurst> burst)
-    : output_(output), joints_(std::move(joints)), burst_(burst) {}
+                               std::vector<JointBurst> bursts)
+    : output_(output), joints_(std::move(joints)), bursts_(std::move(bursts)) {}
 
 void JointForwarder::begin_block() {
     now_ = monotonic_now();
@@ -65,7 +66,7 @@ void JointForwarder::put(const std::string& line) {
         fault->others = "The line is " + shown(line);
         return refuse("out_of_limits", std::move(*fault));
     }
-    if (!burst_) return send(line, *parsed);
+    if (bursts_.empty()) return send(line, *parsed);
     parsed->came = came_;
     waiting_.push_back(std::move(*parsed));
 }
@@ -75,37 +76,73 @@ void JointForwarder::send_due() {
 }
 
 void JointForwarder::send_until(WallTime now) {
-    while (!waiting_.empty()) {
-        const JointBurst::Turn turn = burst_->turn_of_oldest(waiting_, now);
-        if (turn == JointBurst::Turn::wait) return;
-        JointLine oldest = std::move(waiting_.front());
+    while (!waiting_.empty() && thin_oldest(now)) {
+        const JointLine oldest = std::move(waiting_.front());
         waiting_.pop_front();
-        if (turn == JointBurst::Turn::use) {
-            send({}, std::move(oldest));
+        if (oldest.samples.empty()) {
+            ++thinned_;
         } else {
-            ++left_out_;
+            send({}, oldest);
         }
     }
 }
 
+/// Takes the samples out of the oldest line that a newer one of the same source replaces. False: the line
+/// waits.
+bool JointForwarder::thin_oldest(WallTime now) {
+    bool is_due = true;
+    std::erase_if(waiting_.front().samples, [&](const JointSample& sample) {
+        const JointBurst::Turn turn = turn_in_oldest(sample.source, now);
+        is_due = is_due && turn != JointBurst::Turn::wait;
+        return turn == JointBurst::Turn::drop;
+    });
+    return is_due;
+}
+
+JointBurst::Turn JointForwarder::turn_in_oldest(std::size_t source, WallTime now) {
+    const JointLine& oldest = waiting_.front();
+    JointBurst& burst = bursts_.at(source);
+    return oldest.has_own_time ? burst.use(oldest.came)
+                               : burst.turn_of(oldest.came, next_after_oldest(source), now);
+}
+
+/// When the next line with a sample of this source came.
+std::optional<WallTime> JointForwarder::next_after_oldest(std::size_t source) const {
+    const auto has_source = [source](const JointLine& line) {
+        return std::ranges::find(line.samples, source, &JointSample::source) != line.samples.end();
+    };
+    const auto next = std::find_if(waiting_.begin() + 1, waiting_.end(), has_source);
+    return next == waiting_.end() ? std::nullopt : std::optional(next->came);
+}
+
 void JointForwarder::send(const std::string& line, const std::optional<JointLine>& parsed) {
-    const std::uint64_t count = 1 + std::exchange(left_out_, 0);
-    if (!output_.put(line, parsed)) return lose(count);
+    switch (output_.put(line, parsed)) {
+        case JointOutput::Fate::sent:
+            return note_sent();
+        case JointOutput::Fate::lost:
+            return lose();
+        case JointOutput::Fate::thinned:
+            ++thinned_;
+    }
+}
+
+void JointForwarder::note_sent() {
     if (!losses_reported_.empty()) spdlog::info("samples are sent again; so far lost: {}", lines(lost_));
     losses_reported_.clear();
     refusals_reported_.clear();
-    sent_ += count;
+    ++sent_;
 }
 
 void JointForwarder::finish() {
     send_until(WallTime{std::numeric_limits<std::int64_t>::max()});
     const auto level = lost_ + refused_ > 0 ? spdlog::level::warn : spdlog::level::info;
-    spdlog::log(level, "{} sent, {} lost, {} refused", lines(sent_), lost_, refused_);
+    const std::string thinned = thinned_ > 0 ? fmt::format(", {} thinned to the rig's rate", thinned_) : "";
+    spdlog::log(level, "{} sent, {} lost, {} refused{}", lines(sent_), lost_, refused_, thinned);
     if (sent_ == 0 && lost_ + refused_ > 0) throw CommandFailure(ExitCode::unavailable, why_);
 }
 
-void JointForwarder::lose(std::uint64_t count) {
-    lost_ += count;
+void JointForwarder::lose() {
+    ++lost_;
     why_ = output_.why().value_or(Error{.code = ErrorCode::no_data});
     const std::string why = why_.message();
     if (why.empty() || losses_reported_.size() >= kLossesTold || !losses_reported_.insert(why).second) return;

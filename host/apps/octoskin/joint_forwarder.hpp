@@ -20,9 +20,13 @@ namespace octoskin::app {
 class JointOutput {
   public:
     virtual ~JointOutput() = default;
-    /// `parsed`: the line; empty without a rig, because the joints are then not known. False if it could not
-    /// be sent now; it is not sent later.
-    [[nodiscard]] virtual bool put(const std::string& line, const std::optional<JointLine>& parsed) = 0;
+    enum class Fate : std::uint8_t {
+        sent,
+        lost,     ///< it could not be sent now; it is not sent later
+        thinned,  ///< it came sooner after the one before than the rig's rate
+    };
+    /// `parsed`: the line; empty without a rig, because the joints are then not known.
+    [[nodiscard]] virtual Fate put(const std::string& line, const std::optional<JointLine>& parsed) = 0;
     /// Handles other requests of the target; called often.
     virtual void attend() = 0;
     /// -1, or a descriptor for which `attend` is called when it is readable.
@@ -45,13 +49,14 @@ struct RigJoints {
 /// again.
 class JointForwarder {
   public:
-    /// `joints`: of the rig, if there is one to check lines against. `burst`: of the lines without a time
-    /// that came in one block, only the newest is sent; empty: the other end detects that. It needs `joints`.
-    JointForwarder(JointOutput& output, std::optional<RigJoints> joints, std::optional<JointBurst> burst);
+    /// `joints`: of the rig, if there is one to check lines against. `bursts`: one for each of its sources,
+    /// whose lines without a time may come at once, and of which then only the newest is sent; empty: the
+    /// other end detects that.
+    JointForwarder(JointOutput& output, std::optional<RigJoints> joints, std::vector<JointBurst> bursts);
 
     /// Starts a block: its lines get the same time.
     void begin_block();
-    /// A line of the block. With a `burst` it waits for `send_due`.
+    /// A line of the block. With `bursts` it waits for `send_due`.
     void put(const std::string& line);
     /// Sends the waiting lines, except those that a newer one may still replace. Call it after each block,
     /// and soon again.
@@ -64,20 +69,24 @@ class JointForwarder {
     static constexpr std::size_t kLossesTold = 8;
 
     void send_until(WallTime now);
+    [[nodiscard]] bool thin_oldest(WallTime now);
+    [[nodiscard]] JointBurst::Turn turn_in_oldest(std::size_t source, WallTime now);
+    [[nodiscard]] std::optional<WallTime> next_after_oldest(std::size_t source) const;
     void send(const std::string& line, const std::optional<JointLine>& parsed);
-    void lose(std::uint64_t count);
+    void note_sent();
+    void lose();
     void refuse(const char* reason, Error why);
 
     JointOutput& output_;
     std::optional<RigJoints> joints_;
-    std::optional<JointBurst> burst_;
-    HostTime now_;                   ///< arrival of the block
-    WallTime came_;                  ///< the same
-    std::deque<JointLine> waiting_;  ///< for the end of a burst
-    std::uint64_t left_out_ = 0;     ///< of the burst: they count like its newest line
+    std::vector<JointBurst> bursts_;  ///< by source
+    HostTime now_;                    ///< arrival of the block
+    WallTime came_;                   ///< the same
+    std::deque<JointLine> waiting_;   ///< for the end of a burst
     std::uint64_t sent_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t refused_ = 0;
+    std::uint64_t thinned_ = 0;                ///< lines with no sample that was due
     std::set<std::string> losses_reported_;    ///< each reason once since the last line that was sent
     std::set<std::string> refusals_reported_;  ///< likewise
     Error why_;                                ///< of the newest line that was not sent

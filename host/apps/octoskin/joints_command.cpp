@@ -52,23 +52,23 @@ class SocketOutput final : public JointOutput {
     ~SocketOutput() override { close(); }
     SocketOutput(const SocketOutput&) = delete;
     SocketOutput& operator=(const SocketOutput&) = delete;
-    bool put(const std::string& line, const std::optional<JointLine>& /*parsed*/) override {
+    Fate put(const std::string& line, const std::optional<JointLine>& /*parsed*/) override {
         attend();
-        if (descriptor_ < 0) return false;
+        if (descriptor_ < 0) return Fate::lost;
         // The kernel keeps ten datagrams. If more come at once, there is room again soon, unless the daemon
         // is stuck. Lines do not wait for a stuck daemon, because that would block their writer.
         pollfd room{descriptor_, POLLOUT, 0};
         const bool is_through = is_sent(line) || (errno == EAGAIN && !is_stuck_ &&
                                                   ::poll(&room, 1, kPatienceMs) == 1 && is_sent(line));
         is_stuck_ = !is_through && errno == EAGAIN;
-        if (is_through) return true;
+        if (is_through) return Fate::sent;
         if (is_stuck_) {
             why_ = in_file({ErrorCode::no_answer, "the daemon accepts no samples"}, file_);
         } else {
             close();
             why_ = in_file({ErrorCode::no_listener, "the daemon is gone"}, file_);
         }
-        return false;
+        return Fate::lost;
     }
     void attend() override {
         const HostTime now = monotonic_now();
@@ -110,7 +110,7 @@ class CanOutput final : public JointOutput {
             sources_.push_back({LocalJoints(source.node_id, source.joints.size(), source.rate_hz)});
     }
     /// There is a rig, so `parsed` is not empty.
-    bool put(const std::string& /*line*/, const std::optional<JointLine>& parsed) override {
+    Fate put(const std::string& /*line*/, const std::optional<JointLine>& parsed) override {
         bool is_any_due = false;
         bool are_through = true;
         for (const JointSample& sample : parsed->samples) {
@@ -120,8 +120,8 @@ class CanOutput final : public JointOutput {
             is_any_due = source.has_sent = true;
             for (const wire::CanFrame& frame : *frames) are_through = link_.send(frame) && are_through;
         }
-        if (is_any_due) is_through_ = are_through;  // else it counts like the line before
-        return is_through_;
+        if (!is_any_due) return Fate::thinned;
+        return are_through ? Fate::sent : Fate::lost;
     }
     void attend() override {
         (void)link_.attend(monotonic_now());
@@ -162,7 +162,6 @@ class CanOutput final : public JointOutput {
     };
     std::vector<Source> sources_;  ///< in the rig's order
     CanLink link_;
-    bool is_through_ = true;  ///< the newest sample that was due
 };
 
 std::optional<rig::Rig> rig_of(const JointsOptions& options) {
@@ -194,10 +193,13 @@ std::optional<RigJoints> joints_of(const JointsOptions& options, const std::opti
     return joints;
 }
 
+/// One for each source: several may send at different rates, and lines of one at once with those of another.
 /// For lines to the daemon's socket the daemon does this.
-std::optional<JointBurst> burst_of(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
-    if (options.interface.empty()) return std::nullopt;
-    return JointBurst(std::ranges::max(rig->joint_sources, {}, &rig::JointSource::rate_hz).rate_hz);
+std::vector<JointBurst> bursts_of(const JointsOptions& options, const std::optional<RigJoints>& joints) {
+    std::vector<JointBurst> bursts;
+    if (options.interface.empty()) return bursts;
+    for (const LineJoints::Source& source : joints->joints.sources) bursts.emplace_back(source.rate_hz);
+    return bursts;
 }
 
 std::unique_ptr<JointOutput> make_output(const JointsOptions& options, const std::optional<rig::Rig>& rig) {
@@ -233,7 +235,9 @@ void forward(const JointsOptions& options) {
     constexpr int kBurstMs = 2;  // no line marks the end of a burst
     const auto rig = rig_of(options);
     const auto output = make_output(options, rig);
-    JointForwarder forwarder(*output, joints_of(options, rig), burst_of(options, rig));
+    auto joints = joints_of(options, rig);
+    auto bursts = bursts_of(options, joints);
+    JointForwarder forwarder(*output, std::move(joints), std::move(bursts));
     const EndSignals signals;
     std::string pending;
     while (true) {  // until standard input ends, or a signal
@@ -292,8 +296,8 @@ void add_joints_command(CLI::App& app) {
         "limits, is refused here; without it\nthe daemon checks the lines, and `octoskin monitor` counts "
         "those "
         "that it refuses.\nAt the end of the input, and on SIGINT or SIGTERM, it prints how many lines were "
-        "sent, "
-        "lost and refused.\nExit codes: 0 lines were sent; 64 command line; 65 a line without end; 66 no "
+        "sent, lost and refused,\nand with --can thinned: newer ones of the same joints came at once, or the "
+        "rig's rate is lower.\nExit codes: 0 lines were sent; 64 command line; 65 a line without end; 66 no "
         "such rig file;\n69 no line was sent; 74 standard input cannot be read; 78 the rig is not valid.");
     command->callback([options] { forward(*options); });
 }

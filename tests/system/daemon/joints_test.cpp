@@ -157,13 +157,13 @@ TEST(JointsCommand, says_at_the_end_that_there_was_no_bus_whatever_the_rate_of_t
 /// `octoskin joints --can`, whose input the test writes while it reads what the command sends.
 class ForwardedJoints {
   public:
-    ForwardedJoints() {
+    explicit ForwardedJoints(const std::string& rig = OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml") {
         std::array<int, 2> ends{};
         EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends.data()), 0);
         command_end_ = ends[1];
         bus_.emplace("bus", ends[0]);
         const std::string command = OCTOSKIN_PROGRAM " joints --can fd:" + std::to_string(command_end_) +
-                                    " --rig " OCTOSKIN_SOURCE_DIR "/hw/rigs/experiment.yaml 2> /dev/null";
+                                    " --rig " + rig + " 2> " + (folder_ / "log").string();
         input_ = ::popen(command.c_str(), "w");
     }
     ~ForwardedJoints() {
@@ -180,6 +180,12 @@ class ForwardedJoints {
     }
     /// The first joint, in microradians, of the next sample; none after `patience`.
     [[nodiscard]] std::optional<std::int32_t> next(std::chrono::milliseconds patience) {
+        const auto sample = next_of_all(patience);
+        return sample ? std::optional(sample->second) : std::nullopt;
+    }
+    /// The same, and the node of its source.
+    [[nodiscard]] std::optional<std::pair<wire::NodeId, std::int32_t>> next_of_all(
+        std::chrono::milliseconds patience) {
         const auto end = std::chrono::steady_clock::now() + patience;
         while (true) {
             const auto received = bus_->receive();
@@ -189,7 +195,7 @@ class ForwardedJoints {
                 const auto* const state =
                     decoded ? std::get_if<wire::JointState>(&decoded->message) : nullptr;
                 const auto* const pair = state != nullptr ? std::get_if<wire::JointPair>(state) : nullptr;
-                if (pair != nullptr && pair->index == 0) return pair->position_urad[0];
+                if (pair != nullptr && pair->index == 0) return {{decoded->node_id, pair->position_urad[0]}};
                 continue;
             }
             const auto left =
@@ -198,10 +204,12 @@ class ForwardedJoints {
             if (left <= 0ms || ::poll(&readable, 1, static_cast<int>(left.count())) <= 0) return std::nullopt;
         }
     }
+    [[nodiscard]] std::string log() const { return testing_support::ScratchFolder::read(folder_ / "log"); }
     /// Ends the input. The command's exit code.
     int end() { return input_ == nullptr ? -1 : WEXITSTATUS(::pclose(std::exchange(input_, nullptr))); }
 
   private:
+    testing_support::ScratchFolder folder_;
     int command_end_ = -1;
     std::optional<socketcan::CanSocket> bus_;
     std::FILE* input_ = nullptr;
@@ -210,6 +218,14 @@ class ForwardedJoints {
 std::string joint_line(double first) {
     return std::to_string(first) + " 0 0 -1 0 1 0\n";
 }
+
+constexpr const char* kThreeSources =
+    "extends: " OCTOSKIN_SOURCE_DIR
+    "/hw/rigs/experiment.yaml\n"
+    "joints:\n"
+    "  - {node_id: 40, rate_hz: 100, names: [panda_joint1, panda_joint2, panda_joint3, panda_joint4]}\n"
+    "  - {node_id: 41, rate_hz: 15, names: [panda_joint5, panda_joint6]}\n"
+    "  - {node_id: 42, rate_hz: 15, names: [panda_joint7]}\n";
 
 /// Of lines that were held up the oldest is where the arm was. The gap before a block begins when the sample
 /// before it is on the bus, so that a slow command does not shorten it.
@@ -224,6 +240,26 @@ TEST(JointsCommand, sends_of_a_block_of_lines_without_a_time_the_newest_alone) {
     }
     EXPECT_EQ(joints.end(), 0);
     EXPECT_EQ(joints.next(0ms), std::nullopt);
+    EXPECT_NE(joints.log().find("3 lines sent, 0 lost, 0 refused, 4 thinned"), std::string::npos)
+        << joints.log();
+}
+
+/// Lines of several sources that come at once are no burst of any of them.
+TEST(JointsCommand, sends_the_lines_of_each_source_that_come_with_those_of_another) {
+    const testing_support::ScratchFolder folder;
+    ForwardedJoints joints(folder.write("rig.yaml", kThreeSources).string());
+    for (int pair = 0; pair < 3; ++pair) {
+        joints.write("panda_joint5=0.1 panda_joint6=1.5\npanda_joint7=0.2\n");
+        EXPECT_EQ(joints.next_of_all(20s), std::pair(wire::NodeId{41}, 100'000)) << pair;
+        EXPECT_EQ(joints.next_of_all(20s), std::pair(wire::NodeId{42}, 200'000)) << pair;
+        std::this_thread::sleep_for(300ms);
+    }
+    joints.write("panda_joint5=0.3 panda_joint6=1.5\npanda_joint7=0.4\npanda_joint5=0.5 panda_joint6=1.5\n");
+    EXPECT_EQ(joints.next_of_all(20s), std::pair(wire::NodeId{42}, 400'000));
+    EXPECT_EQ(joints.next_of_all(20s), std::pair(wire::NodeId{41}, 500'000)) << "the newest of its burst";
+    EXPECT_EQ(joints.end(), 0);
+    EXPECT_NE(joints.log().find("8 lines sent, 0 lost, 0 refused, 1 thinned"), std::string::npos)
+        << joints.log();
 }
 
 /// The command runs when the times are read: they may be at most a second old.
