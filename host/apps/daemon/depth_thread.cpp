@@ -39,6 +39,7 @@ void DepthThread::finish() {
 }
 
 void DepthThread::run() {
+    yield_to_the_loop();
     std::unique_lock lock(mutex_);
     while (true) {  // ends with the object
         changed_.wait(lock, [this] { return work_ || is_ending_; });

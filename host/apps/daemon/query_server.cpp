@@ -89,6 +89,7 @@ QueryServer::Answers QueryServer::serve(const Pipeline& pipeline, const Now& now
 }
 
 void QueryServer::run() {
+    yield_to_the_loop();
     std::unique_lock lock(mutex_);
     while (true) {  // ends with the object
         wait_for_questions(lock);
