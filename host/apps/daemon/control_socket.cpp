@@ -224,6 +224,10 @@ void ControlSocket::refuse(Client& client, ExitCode exit, const Error& error) {
 }
 
 bool ControlSocket::answer(Client& client, const std::string& request) {
+    if (hand_over_ && hand_over_(request, client.descriptor)) {
+        client.descriptor = -1;
+        return false;
+    }
     if (!later_ || !later_(request, tickets_ + 1, client.user)) return send(client, answer_(request));
     ++tickets_;
     const auto waiting = std::ranges::count_if(clients_, [](const Client& one) { return one.ticket != 0; });
@@ -264,7 +268,7 @@ void ControlSocket::drop(int descriptor) {
     if (client == clients_.end()) return;
     if (client->ticket != 0) gone_(client->ticket);
     clients_.erase(client);  // with its event source, which may call this now
-    socketcan::close_socket(descriptor);
+    if (descriptor >= 0) socketcan::close_socket(descriptor);
 }
 
 void ControlSocket::drop_gone() {

@@ -78,6 +78,11 @@ class ControlSocket {
         later_ = std::move(later);
         gone_ = std::move(gone);
     }
+    /// Takes over the connection of a client, with its request; false: it stays here, and `answer` gets the
+    /// request.
+    using HandOver = std::function<bool(const std::string& request, int connection)>;
+    /// From now on called before all others.
+    void hand_over(HandOver hand_over) { hand_over_ = std::move(hand_over); }
     /// Sends the answer, without a line feed, to an accepted request. Does nothing if the client has gone.
     void reply(std::uint64_t ticket, const std::string& line);
 
@@ -87,7 +92,7 @@ class ControlSocket {
 
   private:
     struct Client {
-        int descriptor = -1;
+        int descriptor = -1;       ///< -1: it is handed over
         int process = 0;           ///< 0: not visible, as one of another container
         uid_t user = 0;            ///< the overflow user if it is not visible
         std::string request;       ///< the part received so far
@@ -123,6 +128,7 @@ class ControlSocket {
     Answer answer_;
     Later later_;
     Gone gone_;
+    HandOver hand_over_;
     std::uint64_t tickets_ = 0;
     std::chrono::milliseconds idle_max_;
     std::size_t clients_max_;  ///< of each kind: served, waiting and refused

@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kAttendPeriod{50};
 constexpr std::chrono::milliseconds kHomePeriod{500};
+constexpr std::chrono::milliseconds kWatchPeriod{100};
 
 }  // namespace
 
@@ -56,6 +57,7 @@ ExitCode Daemon::run() {
     parts_->stop_recording();
     const HostTime end = monotonic_now() + patience;
     parts_->control->close_clients();
+    parts_->watchers.end();
     const std::string error = parts_->save_last_map(end);
     parts_->recordings.finish(end - monotonic_now());
     if (!error.empty()) {
@@ -91,7 +93,34 @@ Status<AppError> Daemon::Parts::take_sockets() {
     control->answer_later([this](const std::string& line, std::uint64_t ticket,
                                  uid_t user) { return queries.take(line, ticket, user); },
                           [this](std::uint64_t ticket) { queries.forget(ticket); });
+    control->hand_over(
+        [this](const std::string& line, int connection) { return take_watcher(line, connection); });
     return inputs.take_sockets(settings.host.rig);
+}
+
+bool Daemon::Parts::take_watcher(const std::string& line, int connection) {
+    if (!WatchServer::is_request(line)) return false;
+    const auto wants = WatchServer::parse(line);
+    return wants && watchers.take(connection, *wants);
+}
+
+/// A copy takes no time; what is written afterwards is copied once more.
+void Daemon::Parts::give_map_to_watchers() {
+    if (!watchers.wants(watch::FrameKind::map)) return;
+    watchers.give_map(pipeline.map().copy(), inputs.bus_now(monotonic_now()).value_or(HostTime{0}));
+}
+
+void Daemon::Parts::give_status_to_watchers(const DaemonView& now, const std::vector<Problem>& problems) {
+    constexpr Nanoseconds kPeriod{1'000'000'000};
+    if (!watchers.wants(watch::FrameKind::status)) return;
+    std::vector<std::string> names;
+    for (const Problem& problem : problems)
+        names.push_back(std::string(name_of(problem.code)).append(" ").append(problem.on));
+    if (names == problems_given && now.now - status_given < kPeriod) return;
+    watchers.give_status(
+        status_json(now).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    problems_given = std::move(names);
+    status_given = now.now;
 }
 
 void Daemon::Parts::watch() {
@@ -106,6 +135,8 @@ void Daemon::Parts::watch() {
     sources.push_back(loop.on_readable(reading.descriptor(), [this] { end_reload(); }));
     depth_threads.grow_to(settings.host.rig.cameras.size());
     pipeline.work_beside(depth_threads.workers());
+    pipeline.observe(&watchers);
+    sources.push_back(loop.every(kWatchPeriod, [this] { give_map_to_watchers(); }));
     sources.push_back(loop.on_readable(queries.descriptor(), [this] {
         const HostTime now = monotonic_now();
         const QueryServer::Now of_map{inputs.bus_now(now), inputs.reckoned_bus_now(now), wall_now()};
@@ -133,7 +164,9 @@ void Daemon::Parts::attend() {
 
 void Daemon::Parts::report_problems() {
     const DaemonView now = view();
-    problem_log.update(problems(now), now.now, now.is_settling());
+    const std::vector<Problem> found = problems(now);
+    give_status_to_watchers(now, found);
+    problem_log.update(found, now.now, now.is_settling());
 }
 
 DaemonView Daemon::Parts::view() const {
@@ -158,7 +191,8 @@ DaemonView Daemon::Parts::view() const {
             .recording_refusal = recordings.refusal(),
             .reload_error = reload_error,
             .reloads = {reloads.count, reloads.unchanged, reloads.dropped, reading.begun()},
-            .reloaded = reloaded};
+            .reloaded = reloaded,
+            .watch = watchers.record()};
 }
 
 std::string Daemon::Parts::answer(const std::string& line) {
@@ -174,12 +208,26 @@ std::string Daemon::Parts::answer(const std::string& line) {
         return status_json(view()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     }
     if (line == "hello") return R"({"ok":true})";
+    if (WatchServer::is_request(line)) {
+        const bool is_known = WatchServer::parse(line).has_value();
+        return query_refused(is_known
+                                 ? AppError{ExitCode::unavailable,
+                                            {.code = ErrorCode::limit_exceeded,
+                                             .what = fmt::format("too many watchers: {} are served at once",
+                                                                 WatchServer::kWatchersMax),
+                                             .remedy = "end one of them"}}
+                                 : AppError{ExitCode::usage,
+                                            {.code = ErrorCode::bad_argument,
+                                             .what = "unknown kind of frames to watch",
+                                             .remedy = "there are: map, ranges, joints, status"}})
+            .dump();
+    }
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
     return query_refused({ExitCode::usage,
                           {.code = ErrorCode::bad_argument,
                            .what = "unknown request",
-                           .remedy = "there are: hello, status, record, query"}})
+                           .remedy = "there are: hello, status, record, query, watch"}})
         .dump();
 }
 

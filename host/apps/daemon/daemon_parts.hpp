@@ -29,6 +29,7 @@
 #include "host/apps/daemon/side_task.hpp"
 #include "host/apps/daemon/status.hpp"
 #include "host/apps/daemon/thread_faults.hpp"
+#include "host/apps/daemon/watch_server.hpp"
 
 namespace octoskin {
 
@@ -52,6 +53,10 @@ struct Daemon::Parts {
     void watch();
     void attend();
     void report_problems();
+    void give_map_to_watchers();
+    /// Once a second, and when a problem appears or goes.
+    void give_status_to_watchers(const DaemonView& now, const std::vector<Problem>& problems);
+    [[nodiscard]] bool take_watcher(const std::string& request, int connection);
     void go_where_home_is(std::optional<OpenFolder> next);
     [[nodiscard]] std::optional<HostTime> maps_silent_since(HostTime now) const;
     void resume_with(KeptMap kept);
@@ -85,6 +90,9 @@ struct Daemon::Parts {
     AddressReserve reserve;  ///< for the last save
     DepthThreads depth_threads{loop,
                                [this] { pipeline.on_worker_done(); }};  ///< destroyed before the pipeline
+    WatchServer watchers{settings.host.rig};  ///< destroyed before the pipeline that it observes
+    HostTime status_given;                    ///< to the watchers
+    std::vector<std::string> problems_given;
     RecordRequests recordings;  ///< releases the pipeline before it is destroyed
     Inputs inputs;
     std::optional<HomeWatch> home;

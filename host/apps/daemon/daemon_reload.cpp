@@ -75,6 +75,8 @@ bool Daemon::Parts::resume_with(Next& next) {
     settings = std::move(next.settings);
     pipeline = std::move(next.pipeline);
     pipeline.work_beside(depth_threads.workers());
+    pipeline.observe(&watchers);
+    watchers.change_rig(settings.host.rig);
     inputs.change_rig(settings.host.rig);
     queries.change_robot(settings.host, miss_units(settings.mapping));
     reload_error.clear();

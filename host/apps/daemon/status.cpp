@@ -414,6 +414,8 @@ Json status_json(const DaemonView& view) {
               {"unchanged", view.reloads.unchanged},
               {"dropped", view.reloads.dropped},
               {"reading_s", age_s(view.reloads.reading_since, view.now)}}},
+            {"watch",
+             {{"watchers", view.watch.watchers}, {"stalled", view.watch.stalled}, {"lost", view.watch.lost}}},
             {"log",
              {{"dropped", view.log.dropped},
               {"waiting", view.log.waiting},

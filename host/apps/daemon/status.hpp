@@ -15,6 +15,7 @@
 #include "host/apps/daemon/map_saver.hpp"
 #include "host/apps/daemon/problem_log.hpp"
 #include "host/apps/daemon/recorder.hpp"
+#include "host/apps/daemon/watch_server.hpp"
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/core/rig/host_rig.hpp"
 
@@ -81,6 +82,7 @@ struct DaemonView {
     std::string reload_error;            ///< of the newest SIGHUP; empty if it succeeded
     ReloadCounts reloads;
     std::optional<HostTime> reloaded;  ///< when SIGHUP last changed something
+    WatchServer::Record watch = {};
 
     /// The time, the nodes and their reports are being collected again: whether one is missing cannot be
     /// decided yet. The period covers two exchanges of SYNC a second apart, the readings after them, and the

@@ -56,6 +56,7 @@ constexpr std::array kStatusMeanings = {
             "below"},
     Meaning{"", "map", kTable, "", "the fused map, below"},
     Meaning{"", "reloads", kTable, "", "re-reads of rig, robot and mapping, below"},
+    Meaning{"", "watch", kTable, "", "the clients of [`watch`](reference/watch.md), below"},
     Meaning{"", "log", kTable, "", "the daemon's log on its way to standard error, below"},
     Meaning{"", "inputs", kTable, "",
             "the input counters: one table for each of \"CAN frames\", \"readings\", \"joint samples\" and "
@@ -367,6 +368,11 @@ constexpr std::array kStatusMeanings = {
             "or the true depth divided by the depth of its image; null: it is not off"},
     Meaning{"cameras", "explains_sensors", kCount, "", "sensors whose contradictions this explains"},
     Meaning{"cameras", "age_s", kNumberOrNull, "s", "since its newest frame arrived; null: none yet"},
+    Meaning{"watch", "watchers", kCount, "", "clients of `watch`, at most 8"},
+    Meaning{"watch", "stalled", kCount, "", "how many were dropped because they read nothing for 30 s"},
+    Meaning{"watch", "lost", kCount, "",
+            "ranges, joint samples and status that no watcher got, because too many waited or there was no "
+            "memory"},
     Meaning{"latency", "readings", kCount, "", "readings that the figures cover"},
     Meaning{"latency", "median_ms", kNumber, "ms",
             "from the kernel's time stamp of the frame that completed a reading (its own, the joint state "

@@ -177,6 +177,7 @@ Status<JointReason> MapBuilder::add(const JointMeasurement& joints) {
     if (added && listener_ != nullptr) {
         listener_->on_joints(joints);
     }
+    if (added && observer_ != nullptr) observer_->on_sample(joints);
     return added;
 }
 
@@ -203,6 +204,7 @@ Status<ReadingReason> MapBuilder::integrate(const RangeMeasurement& measurement)
     const bool is_out = is_refused(source.node_id, source.sensor);
     const Status<ReadingReason> added = is_out ? unexpected(ReadingReason::contradicts_camera)
                                                : watched([&] { return add_range(measurement, *beam); });
+    if (added && observer_ != nullptr) observer_->on_beam(*beam);
     if (cross_checks_ && (added || is_out)) compare(measurement, *beam, *robot);
     return added;
 }

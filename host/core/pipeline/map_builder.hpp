@@ -25,6 +25,7 @@
 #include "host/core/pipeline/depth_stage.hpp"
 #include "host/core/pipeline/fed_map.hpp"
 #include "host/core/pipeline/map_feeder.hpp"
+#include "host/core/pipeline/measurement_observer.hpp"
 #include "host/core/pipeline/robot_tracker.hpp"
 #include "host/core/rig/host_rig.hpp"
 
@@ -76,6 +77,8 @@ class MapBuilder {
     [[nodiscard]] FusedMap take_map() { return std::move(own_map()); }
     /// `listener` is notified of each later input; null: none.
     void set_listener(CommitListener* listener) noexcept { listener_ = listener; }
+    /// `observer` sees each later measurement; null: none.
+    void observe(MeasurementObserver* observer) noexcept { observer_ = observer; }
 
     /// From now on, readings of a sensor that contradicts the camera also go into the map. For a replay of a
     /// map's inputs, from which refused readings are already missing.
@@ -172,6 +175,7 @@ class MapBuilder {
     SeenImages seen_;  ///< memory swapped with the depth stages
     std::vector<FedMap> maps_;
     CommitListener* listener_ = nullptr;
+    MeasurementObserver* observer_ = nullptr;
 };
 
 }  // namespace octoskin

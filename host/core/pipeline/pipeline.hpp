@@ -93,6 +93,9 @@ class Pipeline {
     /// `listener` is notified of each later input of the maps; null: none.
     void set_listener(CommitListener* listener) noexcept { builder_.set_listener(listener); }
 
+    /// `observer` sees each later measurement of the maps; null: none.
+    void observe(MeasurementObserver* observer) noexcept { builder_.observe(observer); }
+
     /// Takes frames in order of arrival. `stamp`: time of reception; it does not place measurements.
     void on_can(const wire::CanFrame& frame, WallTime stamp);
     /// Takes the depth frames of a camera in the order of capture, at about the time of their arrival among

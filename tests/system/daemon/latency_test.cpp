@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "host/apps/daemon/daemon_client.hpp"
+#include "host/apps/daemon/unix_socket.hpp"
 #include "host/apps/query/query_request.hpp"
 #include "host/io/openni2/oni_writer.hpp"
 #include "tests/system/daemon/daemon_fixture.hpp"
@@ -92,9 +93,38 @@ class Clients {
     std::vector<std::thread> threads_;
 };
 
+/// Programs that watch all that there is, and read it.
+class Watchers {
+  public:
+    Watchers(const std::filesystem::path& socket, int count) {
+        for (int i = 0; i < count; ++i) {
+            const int connection = connect_unix_socket(socket, SOCK_STREAM).value();
+            EXPECT_EQ(::send(connection, "watch\n", 6, MSG_NOSIGNAL), 6);
+            connections_.push_back(connection);
+            threads_.emplace_back([this, connection] {
+                std::vector<char> bytes(1U << 16U);
+                for (ssize_t got = 1; got > 0; read_ += got)
+                    got = std::max<ssize_t>(::recv(connection, bytes.data(), bytes.size(), 0), 0);
+            });
+        }
+    }
+    /// How many bytes they have read.
+    std::int64_t end() {
+        for (const int connection : connections_) ::shutdown(connection, SHUT_RDWR);
+        for (std::thread& thread : threads_) thread.join();
+        for (const int connection : connections_) ::close(connection);
+        return read_;
+    }
+
+  private:
+    std::vector<int> connections_;
+    std::vector<std::thread> threads_;
+    std::atomic<std::int64_t> read_ = 0;
+};
+
 /// Of a daemon that lives for some seconds on a bus that is alive, while so many clients ask.
 Latency measure(const testing_support::ScratchFolder& folder, const std::vector<std::string>& arguments,
-                int clients = 0, const std::filesystem::path& rig = kExperiment) {
+                int clients = 0, const std::filesystem::path& rig = kExperiment, int watchers = 0) {
     std::array<int, 2> ends{};
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
     const RunningDaemon daemon(folder, ends[0], arguments, rig);
@@ -102,6 +132,7 @@ Latency measure(const testing_support::ScratchFolder& folder, const std::vector<
     const auto has_some = [](const nlohmann::json& status) { return used(status, "readings") > 100; };
     EXPECT_TRUE(daemon.wait_until(has_some, 15s)) << daemon.log();
     Clients asking(folder / "control", clients);
+    Watchers watching(folder / "control", watchers);
     const auto before = daemon.status();
     double rss = 0.0;
     for (int i = 0; i < 80; ++i) {
@@ -110,6 +141,7 @@ Latency measure(const testing_support::ScratchFolder& folder, const std::vector<
     }
     const auto after = daemon.status();
     EXPECT_EQ(asking.end() > 0, clients > 0);
+    EXPECT_EQ(watching.end() > 0, watchers > 0);
     const auto latency = after["latency"];
     return {.readings = latency["readings"].get<int>(),
             .median_ms = latency["median_ms"].get<double>(),
@@ -211,6 +243,24 @@ TEST(DaemonLatency, and_memory_are_with_fifteen_clients_within_a_fifth_of_those_
             fifteen.rss_mib <= 1.2 * one.rss_mib && fifteen.p99_ms <= std::max(1.2 * one.p99_ms, kP99MaxMs);
         std::printf("1 client: %.1f MiB, %.2f ms 99 %%; 15 clients: %.1f MiB, %.2f ms 99 %%\n", one.rss_mib,
                     one.p99_ms, fifteen.rss_mib, fifteen.p99_ms);
+    }
+    EXPECT_TRUE(is_fine);
+}
+
+TEST(DaemonLatency, is_with_eight_watchers_within_a_fifth_of_that_without) {
+    const testing_support::ScratchFolder folder;
+    const auto mapping = folder / "fine.yaml";
+    std::ofstream(mapping) << "base: denoised\nmap:\n  resolution_m: 0.02\n";
+    const auto wall = record_noisy_wall(folder);
+    const std::vector<std::string> arguments{"--configuration", mapping.string(), "--camera", wall.string()};
+    bool is_fine = false;
+    for (int i = 0; i < 3 && !is_fine; ++i) {
+        const Latency without = measure(folder, arguments);
+        const Latency with = measure(folder, arguments, 0, kExperiment, 8);
+        // What is within the promise is no loss, however quick it was without.
+        is_fine = with.p99_ms <= std::max(1.2 * without.p99_ms, kP99MaxMs);
+        std::printf("no watcher: %.2f ms median, %.2f ms 99 %%; 8 watchers: %.2f ms median, %.2f ms 99 %%\n",
+                    without.median_ms, without.p99_ms, with.median_ms, with.p99_ms);
     }
     EXPECT_TRUE(is_fine);
 }

@@ -1,0 +1,83 @@
+#include "host/io/watch/map_changes.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "host/io/snapshot/brick_records.hpp"
+#include "host/io/watch/brick_form.hpp"
+
+namespace octoskin::watch {
+namespace {
+
+using snapshot::ByteWriter;
+
+/// Two sorted lists as one, each brick once.
+BrickCodes merged(const BrickCodes& a, const BrickCodes& b) {
+    BrickCodes all;
+    all.reserve(a.size() + b.size());
+    std::ranges::set_union(a, b, std::back_inserter(all));
+    return all;
+}
+
+void put_head(ByteWriter& writer, const FusedMap& map) {
+    const VoxelAges::Clock& clock = map.layers().ages.clock();
+    writer.put(map.resolution_m());
+    writer.put(static_cast<float>(map.config().log_odds_occupied));
+    writer.put_flag(clock.has_begun);
+    writer.put(clock.now);
+    writer.put(map.stale_stamp());
+}
+
+template <class Value>
+void put_layer(ByteWriter& writer, const BrickViewOf<Value>& view) {
+    if (view.is_unknown()) return writer.put(static_cast<std::uint8_t>(BrickForm::unknown));
+    const bool is_dense = view.values != nullptr;
+    writer.put(static_cast<std::uint8_t>(is_dense ? BrickForm::runs : BrickForm::alike));
+    is_dense ? snapshot::put_values(writer, *view.values) : writer.put(view.value);
+}
+
+void put_brick(ByteWriter& writer, const FusedMap& map, MortonCode brick) {
+    writer.put_count(brick / kBrickVoxels);
+    put_layer(writer, map.layers().log_odds.find(brick));
+    put_layer(writer, map.layers().ages.find(brick));
+}
+
+}  // namespace
+
+BrickCodes bricks_of(const FusedMap& map) {
+    BrickCodes known;
+    BrickCodes dated;
+    map.layers().log_odds.for_each([&](MortonCode brick, const BrickView&) { known.push_back(brick); });
+    map.layers().ages.stamps().for_each([&](MortonCode brick, const StampView&) { dated.push_back(brick); });
+    return merged(known, dated);
+}
+
+BrickCodes changed_bricks(const FusedMap& now, const FusedMap& before) {
+    BrickCodes written;
+    BrickCodes dated;
+    now.layers().log_odds.for_each_difference(before.layers().log_odds,
+                                              [&](MortonCode brick) { written.push_back(brick); });
+    now.layers().ages.stamps().for_each_difference(before.layers().ages.stamps(),
+                                                   [&](MortonCode brick) { dated.push_back(brick); });
+    return merged(written, dated);
+}
+
+void MissingBricks::add(const BrickCodes& bricks) {
+    codes_ = merged(codes_, bricks);
+}
+
+std::string MissingBricks::take(const FusedMap& map, std::size_t bytes_max) {
+    std::string payload;
+    ByteWriter writer(payload);
+    put_head(writer, map);
+    auto first = std::ranges::lower_bound(codes_, next_);
+    if (first == codes_.end()) first = codes_.begin();
+    auto last = first;
+    for (; last != codes_.end() && (last == first || payload.size() < bytes_max); ++last)
+        put_brick(writer, map, *last);
+    next_ = last == codes_.end() ? 0 : *last;
+    codes_.erase(first, last);
+    return payload;
+}
+
+}  // namespace octoskin::watch

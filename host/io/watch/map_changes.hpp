@@ -1,0 +1,46 @@
+// The bricks of a map that a reader lacks, as payloads of `watch`:
+//
+//     resolution, metres (double); log-odds from which a voxel is occupied (float)
+//     the clock of the ages: a flag (has begun) and its reading (32 bits); time stamp below which a known
+//     voxel is stale (16 bits)
+//     bricks until the end: a count, its number in Morton order (code / 512), then its log-odds and its time
+//     stamps, each as a byte and what follows it: 0 nothing is known; 1 one value for all voxels; 2 runs
+//     (host/io/snapshot/brick_records.hpp)
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "host/core/mapping/fused_map.hpp"
+
+namespace octoskin::watch {
+
+/// Bricks by the code of their first voxel, sorted, each once.
+using BrickCodes = std::vector<MortonCode>;
+
+/// Every brick of a map, with log-odds or time stamps.
+[[nodiscard]] BrickCodes bricks_of(const FusedMap& map);
+/// The bricks in which the log-odds or the time stamps of two copies of one map may differ. O(bricks written
+/// between them).
+[[nodiscard]] BrickCodes changed_bricks(const FusedMap& now, const FusedMap& before);
+
+/// The bricks that one reader lacks. They go out in turn, beginning behind the one that went out last: with a
+/// slow reader, bricks that change all the time do not keep the others from it.
+class MissingBricks {
+  public:
+    /// Throws std::bad_alloc; nothing is changed then. O(both).
+    void add(const BrickCodes& bricks);
+    [[nodiscard]] bool empty() const noexcept { return codes_.empty(); }
+    [[nodiscard]] std::size_t size() const noexcept { return codes_.size(); }
+    /// The payload with the next bricks as they are in `map`, of about `bytes_max`, and at least one brick;
+    /// these are no longer missing. Without any brick the payload has the beginning only. Throws
+    /// std::bad_alloc.
+    [[nodiscard]] std::string take(const FusedMap& map, std::size_t bytes_max);
+
+  private:
+    BrickCodes codes_;
+    MortonCode next_ = 0;
+};
+
+}  // namespace octoskin::watch

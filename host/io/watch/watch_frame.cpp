@@ -1,0 +1,120 @@
+#include "host/io/watch/watch_frame.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "host/io/snapshot/bytes.hpp"
+
+namespace octoskin::watch {
+namespace {
+
+using snapshot::ByteReader;
+using snapshot::ByteWriter;
+
+bool has_flags(FrameKind kind, std::uint8_t flags) {
+    const std::uint8_t possible = kind == FrameKind::map ? kBegins | kComplete : 0;
+    return (flags & ~possible) == 0;
+}
+
+bool is_kind(std::uint8_t kind) {
+    return kind >= static_cast<std::uint8_t>(FrameKind::map) &&
+           kind <= static_cast<std::uint8_t>(FrameKind::status);
+}
+
+void put(ByteWriter& writer, const Eigen::Vector3d& vector) {
+    for (const double value : vector) writer.put(value);
+}
+
+Eigen::Vector3d get_vector(ByteReader& reader) {
+    Eigen::Vector3d vector;
+    for (double& value : vector) {
+        value = reader.get<double>();
+        if (!std::isfinite(value)) reader.fail();
+    }
+    return vector;
+}
+
+}  // namespace
+
+void put_header(std::string& bytes, const FrameHeader& header) {
+    ByteWriter writer(bytes);
+    writer.put(header.bytes);
+    writer.put(kVersion);
+    writer.put(static_cast<std::uint8_t>(header.kind));
+    writer.put(header.flags);
+    writer.put(header.number);
+    writer.put(header.time.ns);
+    writer.put(header.lost);
+}
+
+std::optional<FrameHeader> parse_header(std::string_view bytes) {
+    ByteReader reader(bytes.substr(0, kHeaderBytes));
+    FrameHeader header;
+    header.bytes = reader.get<std::uint32_t>();
+    const auto version = reader.get<std::uint16_t>();
+    const auto kind = reader.get<std::uint8_t>();
+    header.flags = reader.get<std::uint8_t>();
+    header.number = reader.get<std::uint64_t>();
+    header.time.ns = reader.get<std::int64_t>();
+    header.lost = reader.get<std::uint64_t>();
+    if (!reader.is_sound() || version != kVersion || !is_kind(kind) || header.bytes > kPayloadMax)
+        return std::nullopt;
+    header.kind = static_cast<FrameKind>(kind);
+    return has_flags(header.kind, header.flags) ? std::optional(header) : std::nullopt;
+}
+
+std::string range_payload(const Beam& beam) {
+    std::string bytes;
+    ByteWriter writer(bytes);
+    writer.put(beam.source.node_id);
+    writer.put(beam.source.sensor);
+    writer.put(beam.source.zone);
+    writer.put_flag(beam.range_m.has_value());
+    writer.put(beam.range_m.value_or(0.0));
+    writer.put(beam.sigma_m);
+    put(writer, beam.p_map_sensor);
+    put(writer, beam.direction_map);
+    return bytes;
+}
+
+std::optional<WatchedRange> parse_range(std::string_view payload) {
+    ByteReader reader(payload);
+    WatchedRange range;
+    range.source.node_id = reader.get<std::uint8_t>();
+    range.source.sensor = reader.get<std::uint8_t>();
+    range.source.zone = reader.get<std::uint8_t>();
+    const bool has_target = reader.get_flag();
+    const auto range_m = reader.get<double>();
+    if (has_target) range.range_m = range_m;
+    range.sigma_m = reader.get<double>();
+    range.p_map_sensor = get_vector(reader);
+    range.direction_map = get_vector(reader);
+    const bool is_sound =
+        reader.is_sound() && reader.is_over() && std::isfinite(range_m) && std::isfinite(range.sigma_m);
+    return is_sound ? std::optional(range) : std::nullopt;
+}
+
+std::string joints_payload(const JointMeasurement& joints, std::size_t count) {
+    assert(count <= joints.position_rad.size());
+    std::string bytes;
+    ByteWriter writer(bytes);
+    writer.put(joints.source);
+    writer.put(static_cast<std::uint8_t>(count));
+    for (std::size_t i = 0; i < count; ++i) writer.put(joints.position_rad[i]);
+    return bytes;
+}
+
+std::optional<WatchedJoints> parse_joints(std::string_view payload) {
+    ByteReader reader(payload);
+    WatchedJoints joints;
+    joints.source = reader.get<std::uint8_t>();
+    const auto count = reader.get<std::uint8_t>();
+    for (std::size_t i = 0; i < count && reader.is_sound(); ++i) {
+        joints.position.push_back(reader.get<double>());
+        if (!std::isfinite(joints.position.back())) reader.fail();
+    }
+    return reader.is_sound() && reader.is_over() ? std::optional(joints) : std::nullopt;
+}
+
+}  // namespace octoskin::watch

@@ -1,0 +1,109 @@
+#include "host/io/watch/watched_map.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "host/io/snapshot/brick_records.hpp"
+#include "host/io/watch/brick_form.hpp"
+
+namespace octoskin::watch {
+namespace {
+
+using snapshot::ByteReader;
+
+constexpr std::uint64_t kBricks = (std::uint64_t{1} << 48U) / kBrickVoxels;
+
+bool is_value(float value) {
+    return std::isfinite(value) ||
+           std::bit_cast<std::uint32_t>(value) == std::bit_cast<std::uint32_t>(kUnknownLogOdds);
+}
+bool is_value(std::uint16_t) {
+    return true;
+}
+
+template <class Value>
+bool take_layer(ByteReader& reader, BrickTreeOf<Value>& tree, MortonCode brick) {
+    const auto form = reader.get<std::uint8_t>();
+    if (form == static_cast<std::uint8_t>(BrickForm::unknown)) {
+        tree.forget(brick);
+    } else if (form == static_cast<std::uint8_t>(BrickForm::alike)) {
+        const auto value = reader.get<Value>();
+        if (!reader.is_sound() || UnknownValue<Value>::is(value) || !is_value(value)) return false;
+        tree.set_all(brick, value);
+    } else if (form == static_cast<std::uint8_t>(BrickForm::runs)) {
+        BrickValuesOf<Value> values;
+        snapshot::get_values(reader, values);
+        if (!reader.is_sound() || !std::ranges::all_of(values, [](Value one) { return is_value(one); }))
+            return false;
+        tree.open(brick) = values;
+    } else {
+        return false;
+    }
+    return reader.is_sound();
+}
+
+}  // namespace
+
+WatchedMap::Taken WatchedMap::take(const FrameHeader& header, std::string_view payload) {
+    const bool begins = (header.flags & kBegins) != 0;
+    if (begins) *this = WatchedMap(bytes_max_);
+    is_complete_ = false;
+    ByteReader reader(payload);
+    if (!take_head(reader, begins)) return Taken::malformed;
+    while (!reader.is_over()) {
+        if (!take_brick(reader)) return Taken::malformed;
+        if (bytes() > bytes_max_) return Taken::no_room;
+    }
+    time_ = header.time;
+    is_complete_ = (header.flags & kComplete) != 0;
+    is_whole_ = is_whole_ || is_complete_;
+    return Taken::all;
+}
+
+bool WatchedMap::take_head(ByteReader& reader, bool begins) {
+    Head head;
+    head.resolution_m = reader.get<double>();
+    head.occupied_from = reader.get<float>();
+    head.has_begun = reader.get_flag();
+    head.clock = reader.get<std::uint32_t>();
+    head.stale_stamp = reader.get<std::uint16_t>();
+    const bool is_sound = reader.is_sound() && std::isfinite(head.resolution_m) && head.resolution_m > 0.0 &&
+                          std::isfinite(head.occupied_from);
+    const bool continues = has_begun_ && head.resolution_m == head_.resolution_m;
+    if (!is_sound || (!begins && !continues)) return false;
+    has_begun_ = true;
+    head_ = head;
+    return true;
+}
+
+bool WatchedMap::take_brick(ByteReader& reader) {
+    const std::uint64_t number = reader.get_count();
+    if (!reader.is_sound() || number >= kBricks) return false;
+    const MortonCode brick = number * kBrickVoxels;
+    return take_layer(reader, log_odds_, brick) && take_layer(reader, stamps_, brick);
+}
+
+std::size_t WatchedMap::bytes() const noexcept {
+    return log_odds_.nodes() * BrickTree::kNodeBytes + log_odds_.bricks() * BrickTree::kBrickBytes +
+           stamps_.nodes() * StampTree::kNodeBytes + stamps_.bricks() * StampTree::kBrickBytes;
+}
+
+Occupancy WatchedMap::occupancy(VoxelKey key) const noexcept {
+    const float log_odds = log_odds_.find(brick_of(key)).at(cell_of(key));
+    if (std::isnan(log_odds)) return Occupancy::unknown;
+    return log_odds >= head_.occupied_from ? Occupancy::occupied : Occupancy::free;
+}
+
+std::optional<Confirmation> WatchedMap::confirmation(VoxelKey key) const noexcept {
+    if (occupancy(key) == Occupancy::unknown) return std::nullopt;
+    const VoxelAges ages({.has_begun = head_.has_begun, .now = head_.clock}, {});
+    return ages.confirmation_of(stamps_.find(brick_of(key)).at(cell_of(key)));
+}
+
+bool WatchedMap::is_stale(VoxelKey key) const noexcept {
+    return occupancy(key) != Occupancy::unknown &&
+           stamps_.find(brick_of(key)).at(cell_of(key)) < head_.stale_stamp;
+}
+
+}  // namespace octoskin::watch
