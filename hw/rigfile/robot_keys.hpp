@@ -124,7 +124,9 @@ inline constexpr NumbersKey kLookingAt{
     .unit = "m",
     .range = {-kRoomReach_m, kRoomReach_m},
     .fallback = {.text = "one of these four"},
-    .meaning = "cameras only: a point on the optical axis; the picture is upright (base +z is up)"};
+    .meaning =
+        "cameras only: a point on the optical axis; the picture is upright (+z of the base, or of its link, "
+        "is up)"};
 }  // namespace pose
 
 }  // namespace octoskin::rig::keys

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "host/apps/profile/named_mapping.hpp"
@@ -18,6 +20,8 @@
 namespace octoskin {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 std::vector<std::string> texts_of(const rig::Rig& rig, std::string rig::Camera::*text) {
     std::vector<std::string> texts;
@@ -81,6 +85,10 @@ Status<AppError> give_device(rig::Rig& rig, const std::string& given, const Daem
         named->device = given.substr(end + 1);
         return Done{};
     }
+    const bool has_name = end != std::string::npos && given.find('/') > end && !fs::exists(given);
+    if (rig.cameras.size() == 1 && rig.cameras.front().name.empty() && has_name)
+        return camera_fault(request, ErrorCode::unknown_name, "the rig's only camera has no name",
+                            "give --camera " + given.substr(end + 1), "'" + given + "'");
     if (rig.cameras.empty())
         return camera_fault(request, ErrorCode::conflict, "the rig has no camera for " + given,
                             "add one with its pose and its mode to the rig, or leave --camera out");
@@ -92,6 +100,26 @@ Status<AppError> give_device(rig::Rig& rig, const std::string& given, const Daem
     return Done{};
 }
 
+/// Each camera once.
+Status<AppError> give_devices(rig::Rig& rig, const DaemonRequest& request) {
+    std::vector<std::string> named;
+    for (const std::string& given : request.cameras) {
+        const std::string name = rig.cameras.size() > 1 ? given.substr(0, given.find('=')) : "";
+        if (auto taken = give_device(rig, given, request); !taken) return taken;
+        if (std::ranges::find(named, name) != named.end())
+            return camera_fault(request, ErrorCode::duplicate, camera_text(name) + " is given twice",
+                                "give each camera one device", "'" + given + "'");
+        named.push_back(name);
+    }
+    return Done{};
+}
+
+/// Whether two devices are one: the same text, or names of one file.
+bool is_same_device(const std::string& a, const std::string& b) {
+    std::error_code error;
+    return a == b || fs::equivalent(a, b, error);
+}
+
 /// Each of several cameras needs a device of its own: "the first" would be one of them twice.
 Status<AppError> check_devices(const rig::Rig& rig, const DaemonRequest& request) {
     for (auto camera = rig.cameras.begin(); rig.cameras.size() > 1 && camera != rig.cameras.end(); ++camera) {
@@ -100,8 +128,9 @@ Status<AppError> check_devices(const rig::Rig& rig, const DaemonRequest& request
                                 camera_text(camera->name) + " has no device, and the rig has several cameras",
                                 "give its `device` in the rig, or --camera " + camera->name +
                                     "=DEVICE (`octoskin cameras` lists them)");
-        const auto other =
-            std::ranges::find(rig.cameras.begin(), camera, camera->device, &rig::Camera::device);
+        const auto other = std::ranges::find_if(rig.cameras.begin(), camera, [&](const rig::Camera& before) {
+            return is_same_device(before.device, camera->device);
+        });
         if (other != camera)
             return camera_fault(
                 request, ErrorCode::duplicate,
@@ -113,8 +142,7 @@ Status<AppError> check_devices(const rig::Rig& rig, const DaemonRequest& request
 
 Status<AppError> choose_devices(rig::Rig& rig, const DaemonRequest& request) {
     if (!request.has_camera) return Done{};
-    for (const std::string& given : request.cameras)
-        if (auto taken = give_device(rig, given, request); !taken) return taken;
+    if (auto given = give_devices(rig, request); !given) return given;
     return check_devices(rig, request);
 }
 

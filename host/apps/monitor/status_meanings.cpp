@@ -60,7 +60,8 @@ constexpr std::array kStatusMeanings = {
     Meaning{"", "log", kTable, "", "the daemon's log on its way to standard error, below"},
     Meaning{"", "inputs", kTable, "",
             "the input counters: one table for each of \"CAN frames\", \"readings\", \"joint samples\" and "
-            "\"depth frames\", below; they count since the newest reload"},
+            "\"depth frames\" (of several cameras \"depth frames of NAME\"), below; they count since the "
+            "newest reload"},
     Meaning{"problems", "code", kWord, "", "the kind of problem, for programs to compare"},
     Meaning{"problems", "text", kText, "", "a sentence for people; it may change"},
     Meaning{"problems", "on", kText, "",

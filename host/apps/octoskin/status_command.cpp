@@ -9,6 +9,7 @@
 #include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/octoskin/commands.hpp"
+#include "host/core/rig/camera_text.hpp"
 
 namespace octoskin::app {
 namespace {
@@ -25,6 +26,12 @@ void print_for_people(const nlohmann::ordered_json& status) {
     for (const auto& node : status.at("nodes")) {
         print("node {:>2} {:<16} {}\n", node.at("id").get<int>(), node.at("name").get<std::string>(),
               node.at("verdict").get<std::string>());
+    }
+    for (const auto& camera : status.at("cameras")) {
+        const auto& age = camera.at("age_s");
+        print("{:<24} {}{}\n", camera_text(camera.at("name").get<std::string>()),
+              camera.at("open").get<bool>() ? "open" : "closed: " + camera.at("why").get<std::string>(),
+              age.is_null() ? std::string() : fmt::format(", newest image {:.1f} s old", age.get<double>()));
     }
     print("map: {} known voxels\n", status.at("map").at("known_voxels").get<std::uint64_t>());
     if (const auto socket = status.find("joints_socket");

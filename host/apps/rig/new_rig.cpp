@@ -173,7 +173,9 @@ std::string text_of(const NewRig& request, const rig::Rig& rig, const std::vecto
         "#   cx_px: 320\n"
         "#   cy_px: 240\n"
         "#   rate_hz: 30\n"
-        "#   pose: {{xyz_m: [1.5, 0, 1.2], looking_at_m: [0, 0, 0.4]}}\n",
+        "#   pose: {{xyz_m: [1.5, 0, 1.2], looking_at_m: [0, 0, 0.4]}}\n"
+        "# Several are a list, `cameras:`, each with a `name` and a `device`; one on the robot has a "
+        "`link`.\n",
         request.rings.empty() ? "The poses of the sensors are yours to measure."
                               : "The poses of the sensors lie on the links' bodies: check them on the robot.",
         name_of(request.robot.urdf),

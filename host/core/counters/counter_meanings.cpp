@@ -1,4 +1,5 @@
 #include "host/core/counters/counter_meanings.hpp"
+#include "host/core/counters/input_counters.hpp"
 
 #include <algorithm>
 #include <array>
@@ -303,6 +304,7 @@ std::span<const CounterMeaning> counter_meanings() noexcept {
 }
 
 const CounterMeaning* find_counter(std::string_view unit, std::string_view name) noexcept {
+    unit = unit.substr(0, unit.find(CounterTable::kOf));
     const auto* const found = std::ranges::find_if(
         kCounterMeanings, [&](const CounterMeaning& one) { return one.unit == unit && one.name == name; });
     return found == kCounterMeanings.end() ? nullptr : &*found;

@@ -27,7 +27,7 @@ struct CounterMeaning {
 /// the same table.
 [[nodiscard]] std::span<const CounterMeaning> counter_meanings() noexcept;
 
-/// Returns null if there is no such counter. O(counters).
+/// `unit`: of a CounterTable, or its title. Returns null if there is no such counter. O(counters).
 [[nodiscard]] const CounterMeaning* find_counter(std::string_view unit, std::string_view name) noexcept;
 
 }  // namespace octoskin

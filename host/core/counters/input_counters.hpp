@@ -85,7 +85,8 @@ struct CounterTable {
     bool is_balanced = false;
 
     /// "depth frames", "depth frames of left".
-    [[nodiscard]] std::string title() const { return of.empty() ? unit : unit + " of " + of; }
+    [[nodiscard]] std::string title() const { return of.empty() ? unit : unit + std::string(kOf) + of; }
+    static constexpr std::string_view kOf = " of ";
 };
 
 template <class Reject>

@@ -109,9 +109,11 @@ std::string describe(const PoseFault& fault, std::span<const std::string> joints
     const std::string explains =
         ": that explains the contradictions of " + std::to_string(fault.explained) + " sensors (estimate: ";
     const std::string see = " (docs/concepts/cross-check.md)";
+    const std::string exchanged =
+        camera.empty() ? "" : ", unless its device is that of another camera of the rig";
     if (!fault.joint)
         return named + ": its pose in the rig or its depth scale is wrong" + explains +
-               describe_error(*fault.camera) + "): measure the camera's pose again" + see;
+               describe_error(*fault.camera) + "): measure the camera's pose again" + exchanged + see;
     const std::string joint = "joint " + joints[fault.joint->joint];
     if (!fault.camera)
         return joint + ": its position differs from its joint states" + explains +
@@ -121,7 +123,7 @@ std::string describe(const PoseFault& fault, std::span<const std::string> joints
            describe_error(*fault.joint) + ", or the camera " + describe_error(*fault.camera) +
            "). Compare the arm's posture with its joint states first; otherwise measure the camera's pose "
            "again" +
-           see;
+           exchanged + see;
 }
 
 }  // namespace octoskin

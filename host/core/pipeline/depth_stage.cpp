@@ -154,7 +154,6 @@ Result<DepthUpdates, DepthReason> DepthStage::updates(const DepthFrame& frame, c
         to_depth_image(frame, {camera_.depth_min_m, camera_.depth_max_m});
     if (!converted || converted->width != camera_.intrinsics.width ||
         converted->height != camera_.intrinsics.height) {
-        wrong_size_ = {wrong_size_.frames + 1, frame.width, frame.height};
         return unexpected(DepthReason::wrong_size);
     }
     DepthImage image = std::move(converted).value();

@@ -68,6 +68,10 @@ class DepthStage {
         std::uint32_t height = 0;
     };
     [[nodiscard]] const WrongSize& wrong_size() const noexcept { return wrong_size_; }
+    /// `updates` has refused this frame as `wrong_size`. Not part of it: another thread may be in `updates`.
+    void note_wrong_size(const DepthFrame& frame) noexcept {
+        wrong_size_ = {wrong_size_.frames + 1, frame.width, frame.height};
+    }
 
     /// Pixels removed because they show the robot, over all frames that went into the map.
     [[nodiscard]] std::uint64_t robot_pixels() const noexcept { return robot_pixels_; }

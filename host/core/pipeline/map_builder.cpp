@@ -280,6 +280,8 @@ void MapBuilder::work(DepthWork& depth) {
 
 Status<DepthReason> MapBuilder::finish(const DepthWork& depth) {
     if (!depth.updates) {
+        if (depth.updates.error() == DepthReason::wrong_size)
+            cameras_[depth.frame.camera].stage.note_wrong_size(depth.frame);
         return unexpected(depth.updates.error());
     }
     // A replay of the order that the listener gets computes the pose now: it must be the one that was used.

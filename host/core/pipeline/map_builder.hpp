@@ -91,8 +91,8 @@ class MapBuilder {
 
     /// The same in three steps, so that another thread can run the second, which takes most of the time. One
     /// frame of each camera at a time. Between the first and the last step, readings, joint samples and
-    /// frames of other cameras may be added, and `depth_stage` of the camera may be used for its camera and
-    /// its memory only.
+    /// frames of other cameras may be added, and `depth_stage` of the camera may be used for its camera, its
+    /// memory and its wrong sizes only.
     struct DepthWork {
         DepthFrame frame;
         std::optional<RobotPose> robot;  ///< at the frame's time, if the frame requires it

@@ -28,8 +28,9 @@ Status<Error> write_epoch(const FilePlace& file, const DepthEpoch& epoch) {
     const auto created = file.create_anew();
     if (!created) return unexpected(to_error(created.error()));
     std::ofstream out(created->path_for_libraries());
-    out << "# depth.oni counts its time from its first frame; this is when that was, on the host's monotonic "
-           "clock.\n"
+    out << "# The .oni beside this counts its time from its first frame; this is when that was, on the "
+           "host's "
+           "monotonic clock.\n"
         << "schema: " << kSchema << '\n'
         << "first_frame_us: " << epoch.first_frame.ns / 1000 << '\n'
         << "frames: " << epoch.frames << '\n';

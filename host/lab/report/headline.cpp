@@ -85,9 +85,10 @@ std::string lead_sentence(const Contest& contest, const ReportInput& input) {
                                    percent_text(*contest.depth.at("occluded_recall").mean),
                                    percent_text(*contest.fused.at("occluded_recall").mean));
     if (contest.has("object_recall")) {
-        text += fmt::format(" Of the objects that the scenario names as hidden ({}): {} and {}.",
-                            hidden_objects_text(input), percent_text(*contest.depth.at("object_recall").mean),
-                            percent_text(*contest.fused.at("object_recall").mean));
+        text += fmt::format(
+            " Of what it cannot see of the objects that the scenario names as hidden ({}): {} and {}.",
+            hidden_objects_text(input), percent_text(*contest.depth.at("object_recall").mean),
+            percent_text(*contest.fused.at("object_recall").mean));
     }
     if (contest.has("precision")) {
         text += fmt::format(" Of all that the fused map calls occupied, {} truly is.",

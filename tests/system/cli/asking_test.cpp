@@ -66,7 +66,7 @@ TEST_F(AskingTest, a_reader_that_goes_away_is_no_failure) {
     const std::string answer =
         R"({"octoskin": ")" + std::string(200'000, 'x') +
         R"(", "rig": "a", "can": {"interface": "can0", "state": "up"}, "uptime_s": 1,)"
-        R"("nodes": [], "map": {"known_voxels": 1}, "problems": [{"code": "a", "text": "b"}]})";
+        R"("nodes": [], "cameras": [], "map": {"known_voxels": 1}, "problems": [{"code": "a", "text": "b"}]})";
     const auto said =
         ask(answer, {"status", "status --json", "monitor --once"}, [](const std::string& arguments) {
             return run("( ( sleep 0.3; " + typed(arguments) + "; echo code $? >&2 ) | true )");

@@ -90,10 +90,11 @@ struct Looked {
     const CameraRecord& record;
     const InputCounters<DepthReason>& frames;
     CameraUse use;
+    DepthStage::WrongSize wrong_size;
 };
 
 std::optional<Problem> unused_frames(const DaemonView& view, const Looked& camera) {
-    const auto& [of_rig, record, frames, use] = camera;
+    const auto& [of_rig, record, frames, use, wrong_size] = camera;
     const Nanoseconds patience = std::max(kUnusedPatience, Nanoseconds{std::llround(3e9 / of_rig.rate_hz)});
     const bool is_used = use.frame && !has_stopped(use.frame, view.now, patience);
     CounterTable table = tabulate("depth frames", frames);
@@ -113,24 +114,27 @@ std::optional<Problem> unused_frames(const DaemonView& view, const Looked& camer
                            "its frames have no time: the clock of the host that sends SYNC is not "
                            "known, or in doubt (three FOLLOW_UPs must agree)"};
     }
-    if (frames.in() > 0 && frames.rejected(DepthReason::wrong_size) == frames.in()) {
+    if (wrong_size.frames > 0 && !use.frame) {
         const CameraIntrinsics& wanted = of_rig.intrinsics;
         return Problem{
             .code = ProblemCode::camera_size,
             .on = camera_text(of_rig.name),
-            .what = fmt::format("none of its images is {} x {}, the size in the rig (wrong_size)",
-                                wanted.width, wanted.height),
+            .what =
+                fmt::format("its images are {} x {}, and none is {} x {}, the size in the rig (wrong_size)",
+                            wrong_size.width, wrong_size.height, wanted.width, wanted.height),
             .remedy =
-                "set camera.width_px and camera.height_px of the rig to those of one of the camera's "
-                "modes (`octoskin cameras` lists them)",
+                "set its width_px and height_px in the rig to the size of its images, with intrinsics for "
+                "that size (`octoskin cameras` lists the modes of a device)",
             .key = "wrong_size"};
     }
     if (frames.in() > 0 && !use.frame) {
         return Problem{.code = ProblemCode::depth_unused,
+                       .on = of_rig.name.empty() ? "" : camera_text(of_rig.name),
                        .what = "no depth frame could be used yet: " + see_counters(table)};
     }
     if (has_stopped(use.frame, view.now, patience)) {
         return Problem{.code = ProblemCode::depth_stopped,
+                       .on = of_rig.name.empty() ? "" : camera_text(of_rig.name),
                        .what = table.title() + " no longer reach the map: " + see_counters(table)};
     }
     return std::nullopt;
@@ -183,9 +187,10 @@ void add_cameras(const DaemonView& view, Problems& problems) {
     add_pose_faults(view, problems);
     for (std::size_t i = 0; i < std::min(view.cameras.size(), view.rig->cameras.size()); ++i) {
         const CameraUse use = i < view.used.cameras.size() ? view.used.cameras[i] : CameraUse{};
-        add_camera(
-            view, {view.rig->cameras.at(i), view.cameras[i], view.pipeline->inputs().depth_frames.at(i), use},
-            problems);
+        add_camera(view,
+                   {view.rig->cameras.at(i), view.cameras[i], view.pipeline->inputs().depth_frames.at(i), use,
+                    view.pipeline->builder().depth_stage(i).wrong_size()},
+                   problems);
     }
 }
 

@@ -261,7 +261,7 @@ TEST_F(CameraProblemsTest, have_a_camera_whose_frames_are_of_no_use_or_stopped) 
         reported(ProblemCode::camera_size, "camera"),
         Optional(AllOf(key_is("wrong_size"),
                        what_has("17 x " + std::to_string(scene_.rig.cameras.front().intrinsics.height)),
-                       remedy_has("camera.width_px"), remedy_has("camera.height_px"),
+                       what_has("are 16 x 12"), remedy_has("width_px"), remedy_has("height_px"),
                        remedy_has("`octoskin cameras`"))));
     EXPECT_EQ(reported(ProblemCode::depth_unused), std::nullopt);
 }
