@@ -167,6 +167,16 @@ void refuse_shared_device(const Table& table, const Camera& camera, const std::v
                 fmt::format("camera '{}' has it", other->name)});
 }
 
+void refuse_too_many_pixels(const Table& table, const std::vector<Camera>& cameras) {
+    std::uint64_t pixels = 0;
+    for (const Camera& camera : cameras) pixels += std::uint64_t{camera.width} * camera.height;
+    if (pixels > kCameraPixelsMax)
+        table.fail(keys::camera::kWidth,
+                   {ErrorCode::limit_exceeded,
+                    fmt::format("expected at most {} pixels of all cameras together", kCameraPixelsMax),
+                    fmt::format("{}", pixels), "use modes with fewer pixels"});
+}
+
 std::vector<Camera> read_list_of_cameras(const Value& value, const Body& body) {
     const std::string path(name_of(keys::kCameras));
     const std::vector<Value>& items = read_list(value, path);
@@ -182,6 +192,7 @@ std::vector<Camera> read_list_of_cameras(const Value& value, const Body& body) {
         camera.name = std::move(name);
         refuse_shared_device(table, camera, cameras);
         cameras.push_back(std::move(camera));
+        refuse_too_many_pixels(table, cameras);
     }
     return cameras;
 }

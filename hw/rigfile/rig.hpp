@@ -70,6 +70,8 @@ struct JointSource {
 };
 
 inline constexpr std::size_t kCamerasMax = 8;
+/// Of all cameras together: each pixel takes memory for its history.
+inline constexpr std::uint64_t kCameraPixelsMax = std::uint64_t{4096} * 4096;
 /// Depth images are in millimetres of 16 bits.
 inline constexpr double kDepthLargest_m = 65.5;
 inline constexpr double kDepthMinDefault_m = 0.5;

@@ -1,6 +1,7 @@
 #include "host/apps/daemon/camera_inputs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -9,7 +10,11 @@
 namespace octoskin {
 namespace {
 
-constexpr std::chrono::milliseconds kSilenceMax{2'000};
+/// Three periods of a slow camera.
+std::chrono::milliseconds silence_max(double rate_hz) {
+    constexpr std::chrono::milliseconds kUsual{2'000};
+    return std::max(kUsual, std::chrono::milliseconds(std::llround(3e3 / rate_hz)));
+}
 
 }  // namespace
 
@@ -75,8 +80,8 @@ void CameraInputs::open(Camera& camera, HostTime now) {
     }
     camera.tried = now;
     try {
-        camera.feed =
-            std::make_unique<CameraFeed>(camera.wanted.device, kSilenceMax, std::nullopt, camera.wanted.mode);
+        camera.feed = std::make_unique<CameraFeed>(
+            camera.wanted.device, silence_max(camera.wanted.mode.rate_hz), std::nullopt, camera.wanted.mode);
         camera.ready = loop_.on_readable(camera.feed->descriptor(), [this, &camera] { take_from(camera); });
     } catch (const std::system_error& error) {
         camera.feed.reset();

@@ -86,8 +86,11 @@ Status<AppError> give_device(rig::Rig& rig, const std::string& given, const Daem
         return Done{};
     }
     const bool has_name = end != std::string::npos && given.find('/') > end && !fs::exists(given);
-    if (rig.cameras.size() == 1 && rig.cameras.front().name.empty() && has_name)
-        return camera_fault(request, ErrorCode::unknown_name, "the rig's only camera has no name",
+    if (rig.cameras.size() == 1 && has_name)
+        return camera_fault(request, ErrorCode::unknown_name,
+                            "the rig's only camera has " + (rig.cameras.front().name.empty()
+                                                                ? std::string("no name")
+                                                                : "the name " + rig.cameras.front().name),
                             "give --camera " + given.substr(end + 1), "'" + given + "'");
     if (rig.cameras.empty())
         return camera_fault(request, ErrorCode::conflict, "the rig has no camera for " + given,

@@ -185,7 +185,7 @@ Json node_json(const DaemonView& view, const HostNode& node) {
 /// The fault that the comparison of a camera's images with ranges finds, if any.
 PoseFault pose_fault(const DaemonView& view, std::size_t camera) {
     const CrossChecks* const checks = view.pipeline->builder().cross_checks();
-    return checks != nullptr ? checks->of(camera).pose().fault().value_or(PoseFault{}) : PoseFault{};
+    return checks != nullptr ? checks->pose_fault(camera).value_or(PoseFault{}) : PoseFault{};
 }
 
 /// The first fault of a joint that the comparison with a camera finds, if any.

@@ -49,9 +49,11 @@ void find_losses(Playback& playback) {
     const bool is_empty = playback.pipeline.map().known_voxels() == 0;
     for (const CounterTable& table : playback.inputs) {
         auto loss = octoskin::loss_of(table);
-        if (!loss && is_empty && table.used == 0) loss = most_frequent(table);
+        // A camera of which no image is used is lost, whatever the reason.
+        const bool is_unused_camera = table.unit == "depth frames" && table.in > 0;
+        if (!loss && (is_empty || is_unused_camera) && table.used == 0) loss = most_frequent(table);
         if (!loss) continue;
-        auto& said = loss->is_mendable || is_empty ? playback.warnings : playback.notes;
+        auto& said = loss->is_mendable || is_empty || is_unused_camera ? playback.warnings : playback.notes;
         if (loss->reason != "wrong_size")  // the warnings already contain the size
             said.push_back(describe(*loss) + detail(*loss, playback));
         note_joint_loss(*loss, playback);

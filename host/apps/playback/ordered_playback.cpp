@@ -193,7 +193,12 @@ using CameraIndices = std::vector<std::uint8_t>;
 Result<CameraIndices, AppError> cameras_by_name(const PlaybackRequest& request, const rig::Rig& rig) {
     if (request.rig.empty() || rig.cameras.size() < 2) return CameraIndices{};
     const auto own = read_given_rig(request.recording.rig());
-    if (!own) return CameraIndices{};
+    if (!own) {
+        Error error = own.error().error;
+        error.remedy =
+            "order.log has the cameras in the order of this rig: mend it, or use --by-capture-time";
+        return fail(ExitCode::bad_config, std::move(error));
+    }
     CameraIndices indices;
     for (const rig::Camera& camera : own->cameras) {
         const auto found = std::ranges::find(rig.cameras, camera.name, &rig::Camera::name);
@@ -250,6 +255,9 @@ Result<OrderedPlayback, AppError> play_in_order(const PlaybackRequest& request, 
     played.inputs = {tabulate("readings", played.outcome.readings, 0, seconds_text),
                      tabulate("joint samples", played.outcome.joint_samples, 0, seconds_text),
                      tabulate("depth frames", played.outcome.depth_frames, 0, seconds_text)};
+    if (const std::uint64_t missing = played.outcome.depth_missing; missing > 0)
+        played.warnings.push_back(
+            fmt::format("{} depth frames that the daemon used are not in the recording", missing));
     judge(request, rig, *order, pipeline.map(), played);
     return played;
 }

@@ -214,7 +214,7 @@ void find_contradictions(const HostRig& rig, Playback& playback) {
     const CrossChecks* const checks = playback.pipeline.builder().cross_checks();
     if (checks == nullptr) return;
     for (std::size_t camera = 0; camera < checks->cameras(); ++camera) {
-        if (const auto& fault = checks->of(camera).pose().fault())
+        if (const auto fault = checks->pose_fault(camera))
             playback.warnings.push_back(describe(*fault, rig.joint_names(), rig.cameras[camera].name));
     }
     for (const HostNode& node : rig.nodes) {

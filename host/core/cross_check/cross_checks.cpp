@@ -25,6 +25,12 @@ bool is_weaker(const SensorEvidence& a, const SensorEvidence& b) {
            std::tuple(rank_of(b.verdict()), b.evidence, b.compared);
 }
 
+void withdraw(SensorEvidence& evidence, SensorDoubt doubt) {
+    evidence.is_far_off = false;
+    evidence.fault.reset();
+    evidence.doubt = doubt;
+}
+
 }  // namespace
 
 CrossChecks::CrossChecks(const HostRig& rig, std::span<const CrossCheckConfig> configs) {
@@ -44,18 +50,36 @@ CrossChecks::SensorFinding CrossChecks::merged(std::span<const SensorEvidence> b
     const bool agrees_with_one = std::ranges::any_of(by_camera, [](const SensorEvidence& evidence) {
         return evidence.verdict() == CrossCheckFinding::agrees;
     });
-    if (found.evidence.contradicts() && agrees_with_one) {
-        found.evidence.is_far_off = false;
-        found.evidence.fault.reset();
-        found.evidence.doubt = SensorDoubt::cameras_disagree;
-    }
+    if (found.evidence.contradicts() && agrees_with_one)
+        withdraw(found.evidence, SensorDoubt::cameras_disagree);
     return found;
+}
+
+/// Its own finding takes it into account already.
+bool CrossChecks::is_joint_suspect_by_another(std::size_t camera) const {
+    return std::ranges::any_of(checks_, [&](const CrossCheck& check) {
+        const PoseJudge& pose = check.pose();
+        const bool is_suspect = pose.joints().is_suspect() || (pose.fault() && pose.fault()->joint);
+        return &check != &checks_.at(camera) && is_suspect;
+    });
+}
+
+std::optional<PoseFault> CrossChecks::pose_fault(std::size_t camera) const {
+    std::optional<PoseFault> fault = checks_.at(camera).pose().fault();
+    for (const CrossCheck& other : checks_) {
+        const auto& of_other = other.pose().fault();
+        if (fault && !fault->joint && of_other && of_other->joint) fault->joint = of_other->joint;
+    }
+    return fault;
 }
 
 CrossChecks::SensorFinding CrossChecks::finding(std::uint8_t node_id, std::uint8_t sensor) const {
     std::vector<SensorEvidence> by_camera;
     for (const CrossCheck& check : checks_) by_camera.push_back(check.evidence(node_id, sensor));
-    return merged(by_camera);
+    SensorFinding found = merged(by_camera);
+    if (found.evidence.contradicts() && is_joint_suspect_by_another(found.camera))
+        withdraw(found.evidence, SensorDoubt::joint_is_off);
+    return found;
 }
 
 bool CrossChecks::is_to_be_refused(std::uint8_t node_id, std::uint8_t sensor) const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,13 +34,20 @@ class CrossChecks {
     /// may be the cause: nothing is reported (SensorDoubt::cameras_disagree). `by_camera`: at least one
     /// (asserted). O(cameras).
     [[nodiscard]] static SensorFinding merged(std::span<const SensorEvidence> by_camera);
-    /// The merged evidence about a sensor of the rig (asserted).
+    /// The merged evidence about a sensor of the rig (asserted). Nothing is reported while an error of a
+    /// joint is likely by another camera: the sensors below that joint are off for all of them.
     [[nodiscard]] SensorFinding finding(std::uint8_t node_id, std::uint8_t sensor) const;
+
+    /// The error of a camera or of a joint by one camera. If another camera finds an error of a joint, that
+    /// joint may be the cause here, too: then both are set.
+    [[nodiscard]] std::optional<PoseFault> pose_fault(std::size_t camera) const;
 
     /// CrossCheck::is_to_be_refused for the camera of that finding, if it contradicts.
     [[nodiscard]] bool is_to_be_refused(std::uint8_t node_id, std::uint8_t sensor) const;
 
   private:
+    [[nodiscard]] bool is_joint_suspect_by_another(std::size_t camera) const;
+
     std::vector<CrossCheck> checks_;
 };
 

@@ -1,5 +1,6 @@
 #include "host/core/pipeline/measurement_queue.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -11,21 +12,25 @@ constexpr Nanoseconds kDepthAheadMax{1'000'000'000};
 /// Much less than any timing budget: two readings of one source this close are the same reading, placed by
 /// two states of the clock map.
 constexpr Nanoseconds kSameReading{5'000'000};
-/// A camera's rank in the order of sources: node 0 is the host.
-ReleaseKey key_of(const DepthFrame& frame) {
-    return {frame.captured, {.sensor = frame.camera}};
-}
-
 template <class T>
 using Pushed = typename ReorderBuffer<T>::Pushed;
 
 }  // namespace
 
-MeasurementQueue::MeasurementQueue(Release release, const QueueLimits& limits, std::size_t cameras)
-    : release_(release),
-      joint_samples_(limits.joint_samples),
-      readings_(limits.readings),
-      cameras_(cameras, Camera{ReorderBuffer<DepthFrame>(limits.depth_frames)}) {}
+MeasurementQueue::MeasurementQueue(Release release, const QueueLimits& limits,
+                                   std::span<const std::string> cameras)
+    : release_(release), joint_samples_(limits.joint_samples), readings_(limits.readings) {
+    for (const std::string& name : cameras) {
+        const auto before = std::ranges::count_if(cameras, [&](const auto& other) { return other < name; });
+        cameras_.push_back(
+            {ReorderBuffer<DepthFrame>(limits.depth_frames), static_cast<std::uint8_t>(before)});
+    }
+}
+
+/// Node 0 is the host.
+ReleaseKey MeasurementQueue::key_of(const DepthFrame& frame) const {
+    return {frame.captured, {.sensor = cameras_.at(frame.camera).rank}};
+}
 
 std::optional<ReadingReason> MeasurementQueue::put(const RangeMeasurement& measurement) {
     const ReleaseKey key{measurement.captured, measurement.source};

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "common/time.hpp"
@@ -41,7 +43,9 @@ using CameraSet = std::bitset<kCamerasMax>;
 
 class MeasurementQueue {
   public:
-    MeasurementQueue(Release release, const QueueLimits& limits, std::size_t cameras);
+    /// `cameras`: their names. Frames of one capture time are in the order of these: the order of the rig
+    /// does not matter.
+    MeasurementQueue(Release release, const QueueLimits& limits, std::span<const std::string> cameras);
 
     /// Each returns why the measurement does not wait; empty: it waits. O(log waiting). For readings and
     /// joint samples, `queue_overflow` means that an older one was dropped.
@@ -89,8 +93,11 @@ class MeasurementQueue {
     }
 
   private:
+    [[nodiscard]] ReleaseKey key_of(const DepthFrame& frame) const;
+
     struct Camera {
         ReorderBuffer<DepthFrame> frames;
+        std::uint8_t rank = 0;                ///< by name
         std::optional<HostTime> newest = {};  ///< the newest that arrived
     };
     [[nodiscard]] bool is_late(const ReleaseKey& key) const;

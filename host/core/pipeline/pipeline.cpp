@@ -36,6 +36,12 @@ std::vector<JointGate> gates_of(const HostRig& rig, std::span<const JointLimits>
     return gates;
 }
 
+std::vector<std::string> names_of(const std::vector<HostCamera>& cameras) {
+    std::vector<std::string> names;
+    for (const HostCamera& camera : cameras) names.push_back(camera.name);
+    return names;
+}
+
 }  // namespace
 
 Result<Pipeline, RobotModelFault> Pipeline::build(const HostRig& rig, RobotModel robot,
@@ -55,13 +61,13 @@ Pipeline::Pipeline(const HostRig& rig, MapBuilder builder, const MappingConfig& 
     : config_(config),
       intake_(rig, intake_config(config, mapping)),
       marks_(config.begin),
-      waiting_(config.release, limits_of(rig, config.waiting_max), rig.cameras.size()),
+      waiting_(config.release, limits_of(rig, config.waiting_max), names_of(rig.cameras)),
       joint_gates_(gates_of(rig, builder.robot().robot().limits(), config.joints.limit_tolerance)),
       builder_(std::move(builder)),
       beside_(rig.cameras.size()) {
     inputs_.depth_frames.resize(std::max(rig.cameras.size(), std::size_t{1}));
+    camera_names_ = names_of(rig.cameras);
     for (const HostCamera& camera : rig.cameras) {
-        camera_names_.push_back(camera.name);
         camera_patiences_.emplace_back(std::llround(3e9 / camera.rate_hz));
     }
 }

@@ -171,7 +171,7 @@ void add_camera(const DaemonView& view, const Looked& camera, Problems& problems
 void add_pose_faults(const DaemonView& view, Problems& problems) {
     const CrossChecks* const checks = view.pipeline->builder().cross_checks();
     for (std::size_t i = 0; checks != nullptr && i < checks->cameras(); ++i) {
-        const auto& fault = checks->of(i).pose().fault();
+        const auto fault = checks->pose_fault(i);
         if (!fault) continue;
         const ProblemCode code = !fault->joint    ? ProblemCode::camera_pose
                                  : !fault->camera ? ProblemCode::joint_pose

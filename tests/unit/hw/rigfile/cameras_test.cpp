@@ -98,6 +98,11 @@ TEST_F(Cameras, are_refused_with_a_bad_name_or_a_shared_device_or_in_both_forms)
     EXPECT_EQ(refused(item("name: a"), std::string("{") + kRest + "}").code, ErrorCode::conflict);
     EXPECT_EQ(refused(" ~", std::string("{name: a, ") + kRest + "}").code, ErrorCode::conflict);
     EXPECT_EQ(refused(item("name: a, device: none.oni")).code, ErrorCode::not_found);
+    const std::string large =
+        "pose: {xyz_m: [1, 0, 1], rpy_deg: [0, 0, 0]}, width_px: 4096, height_px: 4096, "
+        "fx_px: 4096, fy_px: 4096, cx_px: 2048, cy_px: 2048, rate_hz: 1}";
+    EXPECT_TRUE(read("\n  - {name: a, " + large));
+    EXPECT_EQ(refused("\n  - {name: a, " + large + item("name: b")).code, ErrorCode::limit_exceeded);
     EXPECT_EQ(refused(" []").code, ErrorCode::limit_exceeded);
     EXPECT_EQ(refused(" {}").code, ErrorCode::wrong_type);
     std::string many;

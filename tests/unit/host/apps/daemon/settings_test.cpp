@@ -134,6 +134,7 @@ TEST_F(CameraSettings, refuse_unknown_names_and_devices_that_are_missing_shared_
     const std::string one = "camera: " + keys("") + "\n";
     EXPECT_EQ(refusal(one, {"front=x"}), ErrorCode::unknown_name);
     EXPECT_EQ(refusal(one, {"x", "y"}), ErrorCode::duplicate);
+    EXPECT_EQ(refusal("cameras:\n  - " + keys("name: front, ") + "\n", {"left=x"}), ErrorCode::unknown_name);
     EXPECT_EQ(refusal("", {"x"}), ErrorCode::conflict);
     folder_.write("film.oni", "any");
     std::filesystem::create_symlink("film.oni", folder_ / "same.oni");

@@ -97,6 +97,15 @@ TEST(SeveralCameras, make_the_same_map_in_any_order_of_the_rig) {
     EXPECT_EQ(encode_ot(replayed(scene, {back, front}).map()), map);
 }
 
+TEST(SeveralCameras, make_the_same_map_in_any_order_of_the_rig_also_of_images_of_one_time) {
+    Scene scene = two_camera_scene();
+    const auto front = frames_of(kFront, 4.0, 6);
+    const auto back = frames_of(kBack, 4.0, 6);
+    const std::string map = encode_ot(replayed(scene, {front, back}).map());
+    std::swap(scene.rig.cameras[0], scene.rig.cameras[1]);
+    EXPECT_EQ(encode_ot(replayed(scene, {back, front}).map()), map);
+}
+
 TEST(SeveralCameras, build_each_on_its_own_earlier_images) {
     // A camera whose images all have values remembers them, whatever the other one sees meanwhile.
     const Scene scene = two_camera_scene();
