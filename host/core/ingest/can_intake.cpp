@@ -1,7 +1,7 @@
 #include "host/core/ingest/can_intake.hpp"
 
 #include <algorithm>
-#include <ranges>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -14,7 +14,7 @@ namespace {
 /// Positions beyond the source's joints are zero on the wire. Another value is that of a joint which the rig
 /// does not have, so that the joints before it may be other ones, too.
 bool has_joint_beyond(const JointReading& reading, std::size_t joint_count) {
-    const auto rest = reading.position_rad | std::views::drop(joint_count);
+    const auto rest = std::span(reading.position_rad).subspan(joint_count);
     return std::ranges::any_of(rest, [](double position) { return position != 0.0; });
 }
 
