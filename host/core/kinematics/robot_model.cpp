@@ -327,8 +327,7 @@ const char* describe(RobotModelError error) noexcept {
             return "expected a <mimic> of a joint that moves by itself, below the base link";
         case RobotModelError::mimic_of_turns:
             return "expected a <mimic> of a continuous joint that turns, by a whole multiple: else its "
-                   "position "
-                   "depends on how often that joint has turned";
+                   "position depends on how often that joint has turned";
         case RobotModelError::too_large:
             return "expected at most 1000 links";
     }

@@ -22,7 +22,7 @@ struct CameraSurroundings {
     const Arm& arm;
     const Trajectory& trajectory;
     const Body& body;
-    std::function<const World&(SimTime)> world_at;  ///< empty: `world` stands still
+    std::function<const World&(SimTime)> world_at;  ///< empty: `world` is stationary
 };
 
 /// The seed of the noise of a rig's camera with this index: of the first one the seed itself, so that a rig's

@@ -96,7 +96,7 @@ TEST(UnixSocket, is_never_made_over_something_else) {
     EXPECT_EQ(too_long.error().error.value, std::to_string(folder.path().string().size() + 201) + " bytes");
 }
 
-/// By somebody who removed it.
+/// A file or a socket of another program under the same name is kept.
 TEST(UnixSocket, is_removed_only_while_its_name_is_its_own) {
     const testing_support::ScratchFolder folder;
     const auto file = folder / "control";
