@@ -1,6 +1,4 @@
 // A live map with a worker for depth frames: readings do not wait for an image.
-#include "host/core/pipeline/depth_worker.hpp"
-
 #include <gtest/gtest.h>
 
 #include <new>
@@ -10,60 +8,12 @@
 #include "host/core/pipeline/pipeline.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+#include "tests/unit/host/core/pipeline/patient_worker.hpp"
 
 namespace octoskin {
 namespace {
 
 using namespace test;
-
-/// Works when it is told to, or waited for.
-class PatientWorker final : public DepthWorker {
-  public:
-    void begin(std::function<void()> work) override {
-        EXPECT_FALSE(work_) << "one at a time";
-        work_ = std::move(work);
-        is_done_ = false;
-        ++begun;
-    }
-    bool is_done() const override { return is_done_; }
-    void finish() override {
-        if (!is_done_) ++waits;
-        end();
-        work_ = nullptr;
-    }
-    void end() {
-        if (!is_done_) work_();
-        is_done_ = true;
-    }
-    int begun = 0;
-    int waits = 0;
-
-  private:
-    std::function<void()> work_;
-    bool is_done_ = true;
-};
-
-/// What goes into the maps, in its order.
-class OrderOf final : public CommitListener, public CommitSource {
-  public:
-    void on_joints(const JointMeasurement& joints) override { commits_.emplace_back(joints); }
-    void on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) override {
-        commits_.emplace_back(measurement);
-    }
-    void on_depth(const DepthFrame& frame, const Evidence&) override {
-        commits_.emplace_back(DepthCommit{frames_.size(), frame.captured});
-        frames_.push_back(frame);
-    }
-    Result<std::optional<Commit>, Error> next() override {
-        return next_ < commits_.size() ? std::optional(commits_[next_++]) : std::nullopt;
-    }
-    [[nodiscard]] const std::vector<DepthFrame>& frames() const { return frames_; }
-
-  private:
-    std::vector<Commit> commits_;
-    std::vector<DepthFrame> frames_;
-    std::size_t next_ = 0;
-};
 
 /// Readings every 20 ms beside the images, from 4 s to 4.6 s.
 Scene busy_scene() {
@@ -103,7 +53,7 @@ class DepthWorkerTest : public testing::TestWithParam<int> {};
 TEST_P(DepthWorkerTest, loses_nothing_and_the_order_told_makes_the_same_map_however_long_an_image_takes) {
     const Scene scene = busy_scene();
     PatientWorker worker;
-    OrderOf order;
+    CommitOrder order;
     Pipeline made = make_pipeline(scene);
     made.set_listener(&order);
     made.work_beside({&worker});
@@ -177,7 +127,7 @@ TEST(DepthWorker, s_frame_is_not_used_once_the_pose_that_a_replay_needs_is_forgo
     scene.depth = {flat_frame(4.0)};
     for (const int patience : {5, 300}) {
         PatientWorker worker;
-        OrderOf order;
+        CommitOrder order;
         Pipeline made = make_pipeline(scene);
         made.set_listener(&order);
         made.work_beside({&worker});

@@ -1,13 +1,13 @@
 // Two cameras: each is filtered, remembered, counted and lost by itself, and both make one map.
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <array>
 #include <memory>
 
-#include "host/core/pipeline/depth_worker.hpp"
 #include "host/core/pipeline/ordered_replay.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
 #include "tests/unit/host/core/pipeline/one_joint_scene.hpp"
+#include "tests/unit/host/core/pipeline/patient_worker.hpp"
 
 namespace octoskin {
 namespace {
@@ -131,6 +131,9 @@ TEST(SeveralCameras, are_lost_and_late_each_by_itself) {
     EXPECT_EQ(of_back.used(), 2U) << pipeline.inputs_text();
     EXPECT_EQ(of_back.rejected(DepthReason::out_of_order), 1U);
     EXPECT_EQ(of_back.rejected(DepthReason::wrong_size), 1U);
+    EXPECT_EQ(pipeline.builder().depth_stage(kFront).wrong_size().frames, 0U);
+    EXPECT_EQ(pipeline.builder().depth_stage(kBack).wrong_size().frames, 1U);
+    EXPECT_EQ(pipeline.builder().depth_stage(kBack).wrong_size().width, 16U);
     EXPECT_TRUE(pipeline.is_camera_stale(kBack));
 }
 
@@ -159,62 +162,13 @@ TEST(SeveralCameras, have_each_its_own_noise) {
     EXPECT_NE(encode_ot(replayed(scene, {front, back}).map()), quiet);
 }
 
-/// Ends when the test says so.
-class PatientWorker final : public DepthWorker {
-  public:
-    void begin(std::function<void()> work) override {
-        EXPECT_FALSE(work_) << "one at a time";
-        work_ = std::move(work);
-        is_done_ = false;
-    }
-    bool is_done() const override { return is_done_; }
-    void finish() override {
-        end();
-        work_ = nullptr;
-    }
-    void end() {
-        if (!is_done_) work_();
-        is_done_ = true;
-    }
-    [[nodiscard]] bool has_work() const { return work_ && !is_done_; }
-
-  private:
-    std::function<void()> work_;
-    bool is_done_ = true;
-};
-
-/// What goes into the map, in its order.
-class OrderOf final : public CommitListener, public CommitSource {
-  public:
-    void on_joints(const JointMeasurement& joints) override { commits_.emplace_back(joints); }
-    void on_reading(const RangeMeasurement& measurement, const Beam&, std::span<const VoxelUpdate>) override {
-        commits_.emplace_back(measurement);
-    }
-    void on_depth(const DepthFrame& frame, const Evidence&) override {
-        auto& frames = frames_.at(frame.camera);
-        commits_.emplace_back(DepthCommit{frames.size(), frame.captured, frame.camera});
-        frames.push_back(frame);
-        cameras.push_back(frame.camera);
-    }
-    Result<std::optional<Commit>, Error> next() override {
-        return next_ < commits_.size() ? std::optional(commits_[next_++]) : std::nullopt;
-    }
-    [[nodiscard]] const std::vector<DepthFrame>& frames(std::size_t camera) const { return frames_[camera]; }
-    std::vector<std::uint8_t> cameras;
-
-  private:
-    std::vector<Commit> commits_;
-    std::array<std::vector<DepthFrame>, 2> frames_;
-    std::size_t next_ = 0;
-};
-
 // The front's image takes longer than the back's: the order in which they end is the order of the replay.
 TEST(SeveralCameras, work_beside_each_other_and_replay_in_the_order_of_the_live_map) {
     Scene scene = two_camera_scene();
     scene.config.release = Release::once_placed;
     Pipeline live = make_pipeline(scene);
     std::array<PatientWorker, 2> workers;
-    OrderOf order;
+    CommitOrder order;
     live.set_listener(&order);
     live.work_beside({&workers[kFront], &workers[kBack]});
     auto front = frames_of(kFront, 4.0, 5);
@@ -238,8 +192,8 @@ TEST(SeveralCameras, work_beside_each_other_and_replay_in_the_order_of_the_live_
     live.finish();
     EXPECT_TRUE(live.is_balanced()) << live.inputs_text();
     EXPECT_TRUE(were_both_at_work);
-    ASSERT_FALSE(order.cameras.empty());
-    EXPECT_EQ(order.cameras.front(), kBack) << "the front's was begun first, and ended later";
+    ASSERT_FALSE(order.cameras().empty());
+    EXPECT_EQ(order.cameras().front(), kBack) << "the front's was begun first, and ended later";
     EXPECT_EQ(live.inputs().depth_frames[kBack].used(), 5U) << live.inputs_text();
 
     Pipeline again = make_pipeline(scene);
