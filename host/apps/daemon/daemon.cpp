@@ -10,6 +10,7 @@
 
 #include "common/wall_time.hpp"
 #include "host/apps/daemon/daemon_parts.hpp"
+#include "host/apps/daemon/description.hpp"
 #include "host/apps/daemon/ending.hpp"
 #include "host/apps/daemon/unwinding_room.hpp"
 #include "host/apps/query/query_answer.hpp"
@@ -208,6 +209,9 @@ std::string Daemon::Parts::answer(const std::string& line) {
         return status_json(view()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     }
     if (line == "hello") return R"({"ok":true})";
+    if (line == "describe")
+        return description_json(settings.host, request.has_camera, reloads.count)
+            .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     if (WatchServer::is_request(line)) {
         const bool is_known = WatchServer::parse(line).has_value();
         return query_refused(is_known
@@ -227,7 +231,7 @@ std::string Daemon::Parts::answer(const std::string& line) {
     return query_refused({ExitCode::usage,
                           {.code = ErrorCode::bad_argument,
                            .what = "unknown request",
-                           .remedy = "there are: hello, status, record, query, watch"}})
+                           .remedy = "there are: hello, status, describe, record, query, watch"}})
         .dump();
 }
 

@@ -33,6 +33,7 @@ struct HostSensor {
     Microseconds timing_budget{20'000};
     Microseconds period{33'000};  ///< inter-measurement period as configured
     std::vector<HostZone> zones = {HostZone{}};
+    double fov_rad = 0.0;         ///< full angle of its cone: its only zone's, or the whole array's; 0: a ray
     double reflex_below_m = 0.0;  ///< a hit closer than this makes the node send REFLEX; 0: never
 };
 

@@ -10,7 +10,6 @@
 
 #include "host/core/kinematics/joint_history.hpp"
 #include "host/io/rig/zone_optics.hpp"
-#include "host/io/urdf/urdf_robot.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/links_without_body.hpp"
 #include "hw/rigfile/reflex.hpp"
@@ -32,6 +31,9 @@ HostSensor to_host(const rig::Sensor& sensor, const SensorConfig& config) {
         host.zones.push_back({sensor.zone_offset_m[i], rig::zone_direction(config.zones[i]),
                               beam_optics(sensor, config.zones[i])});
     }
+    host.fov_rad =
+        2.0 *
+        (config.zone_count == 1 ? host.zones.front().optics : beam_optics(sensor, Roi{})).half_angle_rad;
     host.reflex_below_m = 1e-3 * config.reflex_below_mm;
     return host;
 }
@@ -135,6 +137,8 @@ HostCamera host_camera(const rig::Camera& camera) {
 Result<HostSetup, Error> make_host_setup(const rig::Rig& rig) {
     auto robot = read_robot_model(rig.urdf, rig.base_link, rig.joint_names());
     if (!robot) return unexpected(robot.error());
+    auto frames = read_robot_frames(rig.urdf, rig.base_link);
+    if (!frames) return unexpected(frames.error());
     const auto capsules = rig::padded_body(rig);
     if (!capsules) return unexpected(capsules.error());
     HostRig host = to_host(rig);
@@ -173,7 +177,8 @@ Result<HostSetup, Error> make_host_setup(const rig::Rig& rig) {
     for (const rig::JointSource& source : rig.joint_sources)
         if (auto warning = rate_warning(source.rate_hz); !warning.empty())
             warnings.push_back(std::move(warning));
-    return HostSetup{std::move(host), std::move(robot).value(), std::move(warnings), std::move(notes)};
+    return HostSetup{std::move(host), std::move(robot).value(), std::move(warnings), std::move(notes),
+                     std::move(frames).value()};
 }
 
 }  // namespace octoskin

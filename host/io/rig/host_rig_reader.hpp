@@ -7,6 +7,7 @@
 #include "common/result.hpp"
 #include "host/core/kinematics/robot_model.hpp"
 #include "host/core/rig/host_rig.hpp"
+#include "host/io/urdf/urdf_robot.hpp"
 #include "hw/rigfile/rig.hpp"
 
 namespace octoskin {
@@ -19,6 +20,7 @@ struct HostSetup {
     std::vector<std::string> warnings;
     /// Valid settings that the user may want to check, likewise.
     std::vector<std::string> notes = {};
+    RobotFrames frames = {};
 };
 
 [[nodiscard]] HostCamera host_camera(const rig::Camera& camera);

@@ -81,17 +81,23 @@ std::optional<Refusal> refusal_of(const rig::UrdfDocument& document, const urdf:
     return error ? std::optional(Refusal{*std::move(error), "its axis"}) : std::nullopt;
 }
 
+Eigen::Isometry3d origin_of(const urdf::Joint& joint) {
+    const urdf::Pose& origin = joint.parent_to_joint_origin_transform;
+    const Eigen::Quaterniond rotation(origin.rotation.w, origin.rotation.x, origin.rotation.y,
+                                      origin.rotation.z);
+    Eigen::Isometry3d T_parent_joint = Eigen::Isometry3d::Identity();
+    T_parent_joint.linear() = rotation.toRotationMatrix();
+    T_parent_joint.translation() << origin.position.x, origin.position.y, origin.position.z;
+    return T_parent_joint;
+}
+
 JointDescription to_description(const urdf::Joint& joint) {
     JointDescription description;
     description.name = joint.name;
     description.parent_link = joint.parent_link_name;
     description.child_link = joint.child_link_name;
     description.kind = *kind_of(joint);
-    const urdf::Pose& origin = joint.parent_to_joint_origin_transform;
-    const Eigen::Quaterniond rotation(origin.rotation.w, origin.rotation.x, origin.rotation.y,
-                                      origin.rotation.z);
-    description.T_parent_joint.linear() = rotation.toRotationMatrix();
-    description.T_parent_joint.translation() << origin.position.x, origin.position.y, origin.position.z;
+    description.T_parent_joint = origin_of(joint);
     description.axis << joint.axis.x, joint.axis.y, joint.axis.z;
     if (joint.limits) description.limits = {joint.limits->lower, joint.limits->upper, joint.limits->velocity};
     const bool is_fixed = description.kind == JointKind::fixed;  // then a <mimic> has no effect
@@ -122,6 +128,12 @@ Result<std::vector<JointDescription>, Error> joints_below(const rig::UrdfDocumen
     return descriptions;
 }
 
+Unexpected<Error> no_base_link(const rig::UrdfDocument& document, const std::string& base_link) {
+    return unexpected(
+        document.error("link", base_link,
+                       {ErrorCode::unknown_name, "expected this base link, found no link with its name"}));
+}
+
 }  // namespace
 
 Result<RobotModel, Error> read_robot_model(const FilePlace& urdf, const std::string& base_link,
@@ -129,10 +141,7 @@ Result<RobotModel, Error> read_robot_model(const FilePlace& urdf, const std::str
     const auto document = rig::UrdfDocument::read(urdf);
     if (!document) return unexpected(document.error());
     const auto base = document->model().getLink(base_link);
-    if (!base)
-        return unexpected(document->error(
-            "link", base_link,
-            {ErrorCode::unknown_name, "expected this base link, found no link with its name"}));
+    if (!base) return no_base_link(*document, base_link);
     const auto joints = joints_below(*document, *base);
     if (!joints) return unexpected(joints.error());
     auto model = RobotModel::build(base_link, *joints, moved);
@@ -144,6 +153,22 @@ Result<RobotModel, Error> read_robot_model(const FilePlace& urdf, const std::str
                                           {ErrorCode::bad_value, describe(fault.error)}));
     }
     return std::move(model).value();
+}
+
+Result<RobotFrames, Error> read_robot_frames(const FilePlace& urdf, const std::string& base_link) {
+    const auto document = rig::UrdfDocument::read(urdf);
+    if (!document) return unexpected(document.error());
+    urdf::LinkConstSharedPtr at = document->model().getLink(base_link);
+    if (!at) return no_base_link(*document, base_link);
+    RobotFrames frames;
+    frames.base_link = base_link;
+    frames.links = document->link_names();
+    while (at->parent_joint && at->parent_joint->type == urdf::Joint::FIXED) {
+        frames.T_root_base = origin_of(*at->parent_joint) * frames.T_root_base;
+        at = at->getParent();
+    }
+    frames.root_link = at->name;
+    return frames;
 }
 
 }  // namespace octoskin

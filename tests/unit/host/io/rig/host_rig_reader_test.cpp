@@ -90,6 +90,25 @@ TEST(HostRigReader, gives_each_zone_its_own_part_of_the_cone) {
     }
 }
 
+/// The field of view of the first sensor of one of the rigs that ship.
+double fov_deg_in(const std::string& file) {
+    const auto rig = rig::read_rig(kSource / "hw/rigs" / file);
+    EXPECT_TRUE(rig) << rig.error().message();
+    return make_host_setup(*rig)->rig.nodes[0].sensors[0].fov_rad * 180.0 / 3.14159265358979323846;
+}
+
+TEST(HostRigReader, gives_a_sensor_the_view_of_its_only_zone_or_of_its_whole_array) {
+    EXPECT_EQ(fov_deg_in("experiment.yaml"), 0.0) << "an ideal ray";
+    EXPECT_NEAR(fov_deg_in("experiment_cone.yaml"), 27.0, 1e-9);
+    EXPECT_NEAR(fov_deg_in("experiment_zones.yaml"), 27.0, 1e-9);
+    rig::Rig rig = experiment();
+    rig.nodes[0].sensors[0].cone = rig::Cone{};
+    rig.nodes[0].config.sensors[0].zones[0] = {.centre_spad = 199, .width = 4, .height = 4};
+    const HostSensor sensor = make_host_setup(rig)->rig.nodes[0].sensors[0];
+    EXPECT_EQ(sensor.fov_rad, 2.0 * sensor.zones[0].optics.half_angle_rad);
+    EXPECT_LT(sensor.fov_rad, 0.4);
+}
+
 TEST(HostRigReader, more_than_half_of_the_array_is_no_zone) {
     rig::Rig rig = experiment();
     auto& sensor = rig.nodes[0].sensors[0];

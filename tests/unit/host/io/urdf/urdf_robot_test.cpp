@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tests/support/errors/error_fields.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
 namespace {
@@ -183,6 +184,56 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenUrdf{"not-a-robot.urdf", "", 0, ErrorCode::foreign_format, "", "a URDF with a <robot>"},
         BrokenUrdf{"empty.urdf", "", 0, ErrorCode::foreign_format, "", "a URDF with a <robot>"},
         BrokenUrdf{"absent.urdf", "", 0, ErrorCode::not_found}));
+
+/// A base link with these two joints above it, a metre along x and a quarter turn each.
+Result<RobotFrames, Error> frames_below(const std::string& upper, const std::string& lower,
+                                        const std::string& base_link = "base") {
+    const testing_support::ScratchFolder folder;
+    const auto joint = [](const char* name, const std::string& type, const char* parent, const char* child) {
+        return std::string("<joint name='") + name + "' type='" + type + "'><parent link='" + parent +
+               "'/><child link='" + child +
+               "'/><axis xyz='0 0 1'/><origin xyz='1 0 0' rpy='0 0 1.5707963267948966'/></joint>";
+    };
+    const auto file =
+        folder.write("robot.urdf",
+                     "<robot name='r'><link name='world'/><link name='cart'/><link name='base'/>"
+                     "<link name='arm'/>" +
+                         joint("rails", upper, "world", "cart") + joint("mount", lower, "cart", "base") +
+                         joint("wrist", "continuous", "base", "arm") + "</robot>");
+    return read_robot_frames(file, base_link);
+}
+
+TEST(RobotFrames, begin_at_the_root_above_the_fixed_joints) {
+    const auto frames = frames_below("fixed", "fixed");
+    ASSERT_TRUE(frames) << frames.error().message();
+    EXPECT_EQ(frames->root_link, "world");
+    EXPECT_EQ(frames->base_link, "base");
+    EXPECT_EQ(frames->links, (std::vector<std::string>{"arm", "base", "cart", "world"}));
+    Eigen::Matrix4d expected;  // half a turn, a metre along x and one along y
+    expected << -1, 0, 0, 1, 0, -1, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1;
+    EXPECT_TRUE(frames->T_root_base.matrix().isApprox(expected, 1e-12)) << frames->T_root_base.matrix();
+}
+
+TEST(RobotFrames, end_below_a_joint_without_a_position) {
+    for (const char* kind : {"floating", "planar"}) {
+        const auto cart = frames_below(kind, "fixed");
+        ASSERT_TRUE(cart) << cart.error().message();
+        EXPECT_EQ(cart->root_link, "cart") << kind;
+        EXPECT_NEAR(cart->T_root_base.translation().x(), 1.0, 1e-12);
+        EXPECT_NEAR(cart->T_root_base.translation().y(), 0.0, 1e-12);
+        const auto alone = frames_below("fixed", kind);
+        ASSERT_TRUE(alone) << alone.error().message();
+        EXPECT_EQ(alone->root_link, "base") << kind;
+        EXPECT_TRUE(alone->T_root_base.matrix().isIdentity());
+        EXPECT_EQ(alone->links.size(), 4U);
+    }
+}
+
+TEST(RobotFrames, of_an_unknown_base_link_are_refused) {
+    const auto frames = frames_below("fixed", "fixed", "waist");
+    ASSERT_FALSE(frames);
+    EXPECT_THAT(frames.error(), AllOf(code_is(ErrorCode::unknown_name), key_is("link waist")));
+}
 
 // In the order of the file, whatever the order of the tree is.
 TEST(UrdfRobot, every_joint_that_cannot_be_taken_is_in_one_message) {
