@@ -4,12 +4,15 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 
 namespace octoskin::openni2 {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr std::array<char, 4> kMagic{'O', 'S', 'K', 'D'};
 constexpr std::uint32_t kVersion = 4;
@@ -101,10 +104,13 @@ Result<std::optional<PipedFrame>, PipeError> FramePipe::read_frame(FrameSize siz
     return std::optional(std::move(frame));
 }
 
-Status<PipeError> FramePipe::wait_for(short events) const {
+/// What comes while this thread does not run is not late: with `end` in the past, it looks once.
+Status<PipeError> FramePipe::wait_for(short events, Clock::time_point end) const {
     std::array<pollfd, 2> waiting{{{descriptor_, events, 0}, {interrupt_, POLLIN, 0}}};
     for (;;) {
-        const int ready = ::poll(waiting.data(), waiting.size(), static_cast<int>(patience_.count()));
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
+        const int ready = ::poll(waiting.data(), waiting.size(),
+                                 static_cast<int>(std::max<std::chrono::milliseconds::rep>(left.count(), 0)));
         if (ready > 0 && waiting[1].revents != 0) return unexpected(PipeError::interrupted);
         if (ready > 0) return Done{};
         if (ready == 0) return unexpected(PipeError::timeout);
@@ -114,7 +120,7 @@ Status<PipeError> FramePipe::wait_for(short events) const {
 
 Status<PipeError> FramePipe::write_bytes(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
-        if (const auto ready = wait_for(POLLOUT); !ready) return ready;
+        if (const auto ready = wait_for(POLLOUT, Clock::now() + patience_); !ready) return ready;
         const ssize_t moved = write_some(descriptor_, bytes);
         if (moved > 0) {
             bytes = bytes.subspan(static_cast<std::size_t>(moved));
@@ -127,13 +133,21 @@ Status<PipeError> FramePipe::write_bytes(std::span<const std::byte> bytes) {
     return Done{};
 }
 
+ssize_t FramePipe::receive(std::span<std::byte> bytes) const {
+    if (read_some_ == nullptr) return ::read(descriptor_, bytes.data(), bytes.size());
+    return read_some_(descriptor_, {reinterpret_cast<char*>(bytes.data()), bytes.size()});
+}
+
 Status<PipeError> FramePipe::read_bytes(std::span<std::byte> bytes) {
+    const Clock::time_point end = Clock::now() + patience_;
     while (!bytes.empty()) {
-        if (const auto ready = wait_for(POLLIN); !ready) return ready;
-        const ssize_t moved = ::read(descriptor_, bytes.data(), bytes.size());
+        if (const auto ready = wait_for(POLLIN, end); !ready) return ready;
+        const ssize_t moved = receive(bytes);
         if (moved == 0) return unexpected(PipeError::closed);
         if (moved > 0) {
             bytes = bytes.subspan(static_cast<std::size_t>(moved));
+        } else if (errno == ECONNRESET) {  // the other end left something unread
+            return unexpected(PipeError::closed);
         } else if (errno != EINTR && errno != EAGAIN) {
             return unexpected(PipeError::io);
         }

@@ -10,6 +10,8 @@
 // Native byte order: both ends are on one machine. A stream without `end` was cut off.
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -25,6 +27,7 @@ struct FrameSize {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     [[nodiscard]] std::size_t pixels() const noexcept { return static_cast<std::size_t>(width) * height; }
+    friend bool operator==(const FrameSize&, const FrameSize&) = default;
 };
 /// Both ends refuse more: OpenNI2's player has buffers for this many pixels, without a check.
 inline constexpr std::uint32_t kSideMax = 4096;
@@ -52,13 +55,19 @@ enum class PipeError : std::uint8_t {
 };
 [[nodiscard]] const char* name(PipeError error) noexcept;
 
-/// Every call waits at most `patience` for the next byte, if the descriptor is a socket or non-blocking. The
-/// caller keeps ownership of the descriptors.
+/// A write waits at most `patience` for each room for more bytes. A read waits that long for the header, that
+/// long for the time of a frame, and that long for its pixels, however slowly they come. All this if the
+/// descriptor is a socket or non-blocking. The caller keeps ownership of the descriptors.
 class FramePipe {
   public:
-    /// `interrupt`: when this descriptor becomes readable, calls stop waiting; -1: none.
-    FramePipe(int descriptor, std::chrono::milliseconds patience, int interrupt = -1)
-        : descriptor_(descriptor), patience_(patience), interrupt_(interrupt) {}
+    /// Reads some bytes like read(2).
+    using ReadSome = ssize_t (*)(int descriptor, std::span<char> bytes);
+
+    /// `interrupt`: when this descriptor becomes readable, calls stop waiting; -1: none. `read_some`: in
+    /// place of read(2), if the other end is not trusted.
+    FramePipe(int descriptor, std::chrono::milliseconds patience, int interrupt = -1,
+              ReadSome read_some = nullptr)
+        : descriptor_(descriptor), patience_(patience), interrupt_(interrupt), read_some_(read_some) {}
 
     [[nodiscard]] Status<PipeError> write_header(const StreamHeader& header);
     [[nodiscard]] Status<PipeError> write_frame(std::uint64_t timestamp_us,
@@ -73,11 +82,13 @@ class FramePipe {
   private:
     [[nodiscard]] Status<PipeError> write_bytes(std::span<const std::byte> bytes);
     [[nodiscard]] Status<PipeError> read_bytes(std::span<std::byte> bytes);
-    [[nodiscard]] Status<PipeError> wait_for(short events) const;
+    [[nodiscard]] ssize_t receive(std::span<std::byte> bytes) const;
+    [[nodiscard]] Status<PipeError> wait_for(short events, std::chrono::steady_clock::time_point end) const;
 
     int descriptor_;
     std::chrono::milliseconds patience_;
     int interrupt_;
+    ReadSome read_some_;
 };
 
 }  // namespace octoskin::openni2

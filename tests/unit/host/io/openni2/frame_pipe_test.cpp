@@ -6,9 +6,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
+#include <thread>
 
 namespace octoskin::openni2 {
 namespace {
@@ -135,6 +138,34 @@ TEST_F(FramePipeTest, does_not_wait_for_ever_for_data) {
     const auto frame = near_end().read_frame(size->size);
     ASSERT_FALSE(frame);
     EXPECT_EQ(frame.error(), PipeError::timeout);
+}
+
+// The patience is for all pixels of a frame, not for each byte.
+TEST_F(FramePipeTest, does_not_wait_for_ever_for_a_frame_that_comes_in_drops) {
+    send(kStream.substr(0, 32));  // up to the time of the frame
+    const auto size = near_end().read_header();
+    ASSERT_TRUE(size);
+    std::jthread drops([this](const std::stop_token& end) {
+        while (!end.stop_requested()) {
+            send("x");
+            std::this_thread::sleep_for(10ms);
+        }
+    });
+    const auto frame = near_end().read_frame({64, 64});
+    ASSERT_FALSE(frame);
+    EXPECT_EQ(frame.error(), PipeError::timeout);
+}
+
+TEST_F(FramePipeTest, reads_with_what_it_is_given_in_place_of_read) {
+    send(kStream);
+    FramePipe pipe(ends_[0], 50ms, -1, [](int descriptor, std::span<char> bytes) {
+        return ::recv(descriptor, bytes.data(), std::min<std::size_t>(bytes.size(), 1), 0);
+    });
+    const auto header = pipe.read_header();
+    ASSERT_TRUE(header);
+    const auto frame = pipe.read_frame(header->size);
+    ASSERT_TRUE(frame && frame->has_value());
+    EXPECT_EQ((*frame)->depth_mm, (std::vector<std::uint16_t>{0x0304, 0x0506}));
 }
 
 TEST_F(FramePipeTest, does_not_wait_for_ever_for_somebody_who_does_not_read) {
