@@ -1,60 +1,40 @@
 #include "host/apps/daemon/camera_feed.hpp"
 
+#include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <exception>
+#include <limits>
 #include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/quiet_thread.hpp"
 #include "host/apps/recording/shortage.hpp"
-#include "host/io/openni2/frame_pipe.hpp"
-#include "host/io/openni2/helper_process.hpp"
 
 namespace octoskin {
 namespace {
 
-constexpr const char* kHelper = "octoskin-camera";
-constexpr std::chrono::milliseconds kOpenPatience{15'000};  // a real device takes seconds to start
-
-std::string with_complaint(const std::string& what, openni2::HelperProcess& helper) {
-    const std::string complaint = helper.complaint();
-    return complaint.empty() ? what : what + " (" + complaint + ")";
-}
-
-bool is_oni_name(const std::string& uri) {
-    return std::filesystem::path(uri).extension() == ".oni";
-}
-
-/// Why the file cannot be played; empty if it may be playable.
-std::string fault_of_file(const std::string& uri) {
-    std::error_code error;
-    if (!is_oni_name(uri) || std::filesystem::is_regular_file(uri, error)) return {};
-    return uri + (std::filesystem::exists(uri, error) ? ": is not a file" : ": no such file");
-}
-
-std::string not_opened(const std::string& uri) {
-    if (uri.empty()) return "no camera found: is one plugged in, with an OpenNI2 driver?";
-    return uri + (is_oni_name(uri) ? ": no .oni file with depth that OpenNI2 can play"
-                                   : ": no camera with depth there");
+/// Empty: no time of this machine's clock.
+std::optional<HostTime> host_time_of(const openni2::PipedFrame& frame) {
+    constexpr std::uint64_t kMaxUs = std::numeric_limits<std::int64_t>::max() / 1000;
+    if (!frame.is_timed || frame.timestamp_us > kMaxUs) return std::nullopt;
+    return HostTime{static_cast<std::int64_t>(frame.timestamp_us) * 1000};
 }
 
 }  // namespace
 
-CameraFeed::CameraFeed(std::string uri, std::chrono::milliseconds silence_max,
-                       std::optional<std::filesystem::path> helper, std::optional<openni2::CameraMode> mode)
-    : uri_(std::move(uri)),
-      silence_max_(silence_max),
-      helper_(std::move(helper)),
-      mode_(mode),
+CameraFeed::CameraFeed(std::unique_ptr<FrameSource> source, std::chrono::milliseconds repeated_max)
+    : source_(std::move(source)),
+      repeated_max_(repeated_max),
       event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC | EFD_SEMAPHORE)),
       end_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
     if (event_ < 0 || end_ < 0)
         throw std::system_error(errno, std::generic_category(), "cannot make an eventfd");
-    record_.why = "not opened yet";
+    record_.why = source_->why_at_first();
+    record_.remedy = source_->remedy();
     record_.begun = monotonic_now();
     try {
         thread_ = start_without_signals([this] { work(); });
@@ -79,7 +59,6 @@ void CameraFeed::end() {
         is_ending_ = true;
     }
     (void)!::write(end_, &one, sizeof(one));
-    changed_.notify_all();
 }
 
 std::optional<DepthFrame> CameraFeed::take() {
@@ -101,56 +80,46 @@ void CameraFeed::work() {
     while (!is_ending_) {
         try {
             watch_camera();
-        } catch (const std::exception& thrown) {  // no memory for a frame, or for the helper
+        } catch (const std::exception& thrown) {  // no memory for a frame, or for its source
             note_closed(reason_of(thrown));
+            pause();
         }
-        wait_before_retry();
     }
     has_ended_ = true;
 }
 
-void CameraFeed::wait_before_retry() {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kRetry, [this] { return is_ending_.load(); });
+void CameraFeed::pause() const {
+    pollfd ending{end_, POLLIN, 0};
+    (void)::poll(&ending, 1, static_cast<int>(kPause.count()));
 }
 
 void CameraFeed::watch_camera() {
-    if (const std::string fault = fault_of_file(uri_); !fault.empty()) return note_closed(fault);
-    const auto helper = openni2::find_helper(kHelper, helper_);
-    if (!helper) return note_closed(helper.error());
-    std::vector<std::string> arguments{uri_};
-    if (mode_) arguments.push_back(to_text(*mode_));
-    auto process = openni2::HelperProcess::start(*helper, arguments, openni2::HelperPipe::its_output,
-                                                 openni2::HelperComplaints::kept);
-    if (!process) return note_closed(process.error());
-    std::error_code error;
-    const auto film_bytes = std::filesystem::file_size(uri_, error);
-    const auto patience = kOpenPatience + openni2::time_to_check(error ? 0 : film_bytes);
-    const auto header = openni2::FramePipe(process->descriptor(), patience, end_).read_header();
-    if (!header) return note_closed(with_complaint(not_opened(uri_), *process));
-    note_opened(header->rate_mhz * 1e-3);
-    openni2::FramePipe frames(process->descriptor(), silence_max_, end_);
+    const auto stream = source_->open(end_);
+    if (!stream) return note_closed(stream.error());
+    note_opened((*stream)->rate_hz());
     images_.begin_opening();
     while (!is_ending_) {
-        auto frame = frames.read_frame(header->size);
-        if (!frame || !frame->has_value()) {
-            const std::string what = frame ? "it ended" : name(frame.error());
-            return note_closed(with_complaint(what, *process));
-        }
-        if (!(*frame)->is_timed) {
-            note_untimed();
-            continue;
-        }
-        const HostTime captured{static_cast<std::int64_t>((*frame)->timestamp_us) * 1000};
-        DepthFrame taken{captured, header->size.width, header->size.height, std::move((*frame)->depth_mm)};
-        if (is_oni_name(uri_) || !images_.take(taken)) {
-            put(std::move(taken));
-            continue;
-        }
-        note_repeated();
-        if (images_.has_value() && images_.lasted() > silence_max_)
-            return note_closed(with_complaint("it shows one image again and again", *process));
+        auto frame = (*stream)->read();
+        if (!frame) return note_closed(frame.error());
+        const std::string fault = take_in(std::move(*frame), (*stream)->size());
+        if (!fault.empty()) return note_closed((*stream)->reason(fault));
     }
+}
+
+std::string CameraFeed::take_in(openni2::PipedFrame frame, openni2::FrameSize size) {
+    const auto captured = host_time_of(frame);
+    if (!captured) {
+        note_untimed();
+        return {};
+    }
+    DepthFrame taken{*captured, size.width, size.height, std::move(frame.depth_mm)};
+    if (source_->may_repeat() || !images_.take(taken)) {
+        put(std::move(taken));
+        return {};
+    }
+    note_repeated();
+    const bool hangs = images_.has_value() && images_.lasted() > repeated_max_;
+    return hangs ? "it shows one image again and again" : "";
 }
 
 void CameraFeed::note_opened(double rate_hz) {

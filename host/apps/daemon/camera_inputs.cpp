@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/apps/daemon/clocks.hpp"
+#include "host/apps/daemon/helper_frames.hpp"
 
 namespace octoskin {
 namespace {
@@ -67,7 +68,7 @@ void CameraInputs::attend() {
     std::erase_if(leaving_, [](const Leaving& leaving) { return leaving.feed->has_ended(); });
     const HostTime now = monotonic_now();
     for (const auto& camera : cameras_) {
-        const bool is_soon = camera->tried && now - *camera->tried < CameraFeed::kRetry;
+        const bool is_soon = camera->tried && now - *camera->tried < HelperFrames::kRetry;
         if (!camera->feed && !is_soon) open(*camera, now);
     }
 }
@@ -80,8 +81,11 @@ void CameraInputs::open(Camera& camera, HostTime now) {
     }
     camera.tried = now;
     try {
-        camera.feed = std::make_unique<CameraFeed>(
-            camera.wanted.device, silence_max(camera.wanted.mode.rate_hz), std::nullopt, camera.wanted.mode);
+        const std::chrono::milliseconds silence = silence_max(camera.wanted.mode.rate_hz);
+        camera.feed =
+            std::make_unique<CameraFeed>(std::make_unique<HelperFrames>(camera.wanted.device, silence,
+                                                                        std::nullopt, camera.wanted.mode),
+                                         silence);
         camera.ready = loop_.on_readable(camera.feed->descriptor(), [this, &camera] { take_from(camera); });
     } catch (const std::system_error& error) {
         camera.feed.reset();

@@ -35,11 +35,15 @@ std::optional<Problem> camera_problem(const CameraRecord& camera, double rate_hz
                               : "no frame has come yet";
         return Problem{.code = ProblemCode::camera_no_frames,
                        .on = "camera",
-                       .what = since + (camera.is_open ? ", although it is open" : ": " + camera.why)};
+                       .what = since + (camera.is_open ? ", although it is open" : ": " + camera.why),
+                       .remedy = camera.is_open ? "" : camera.remedy};
     }
     if (!camera.is_open) {
-        return Problem{
-            .code = ProblemCode::camera_closed, .on = "camera", .what = camera.why, .detail = camera.why};
+        return Problem{.code = ProblemCode::camera_closed,
+                       .on = "camera",
+                       .what = camera.why,
+                       .remedy = camera.remedy,
+                       .detail = camera.why};
     }
     const double true_rate_hz = camera.rate_hz > 0.0 ? camera.rate_hz : rate_hz;
     const Nanoseconds period{static_cast<std::int64_t>(1e9 / true_rate_hz)};

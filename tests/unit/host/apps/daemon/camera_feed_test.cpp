@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "host/apps/daemon/helper_frames.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace octoskin {
@@ -15,6 +18,15 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
+
+/// Of a camera that a script reads in the helper's place.
+class HelperFeed : public CameraFeed {
+  public:
+    HelperFeed(std::string uri, std::chrono::milliseconds silence_max, std::filesystem::path helper,
+               std::optional<openni2::CameraMode> mode = {})
+        : CameraFeed(std::make_unique<HelperFrames>(std::move(uri), silence_max, std::move(helper), mode),
+                     silence_max) {}
+};
 
 class CameraFeedTest : public testing::Test {
   protected:
@@ -42,7 +54,7 @@ constexpr const char* kUntimed = "printf '\\376\\377\\377\\377\\377\\377\\377\\3
 constexpr const char* kTimed = "printf '\\1\\0\\0\\0\\0\\0\\0\\0\\003\\004\\005\\006'\n";
 
 TEST_F(CameraFeedTest, ends_at_once_while_its_camera_is_being_opened) {
-    std::optional<CameraFeed> feed;
+    std::optional<HelperFeed> feed;
     feed.emplace("", 2s, camera("touch " + (scratch_ / "begun").string() + "; exec sleep 100"));
     ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(scratch_ / "begun"); }));
     const auto begun = Clock::now();
@@ -51,7 +63,7 @@ TEST_F(CameraFeedTest, ends_at_once_while_its_camera_is_being_opened) {
 }
 
 TEST_F(CameraFeedTest, ends_at_once_while_its_camera_shows_nothing) {
-    std::optional<CameraFeed> feed;
+    std::optional<HelperFeed> feed;
     feed.emplace("", 100s, camera(std::string(kHeader) + "exec sleep 100"));
     ASSERT_TRUE(wait_until([&] { return feed->record().is_open; }));
     const auto begun = Clock::now();
@@ -60,7 +72,7 @@ TEST_F(CameraFeedTest, ends_at_once_while_its_camera_shows_nothing) {
 }
 
 TEST_F(CameraFeedTest, says_what_the_helper_says) {
-    const CameraFeed feed("the-uri", 2s, camera("echo 'octoskin-camera: the reason' >&2; exit 1"));
+    const HelperFeed feed("the-uri", 2s, camera("echo 'octoskin-camera: the reason' >&2; exit 1"));
     ASSERT_TRUE(wait_until([&] { return feed.record().why.find("the-uri") == 0; }));
     EXPECT_NE(feed.record().why.find("(octoskin-camera: the reason)"), std::string::npos)
         << feed.record().why;
@@ -68,7 +80,7 @@ TEST_F(CameraFeedTest, says_what_the_helper_says) {
 }
 
 TEST_F(CameraFeedTest, puts_what_the_helper_says_on_one_line_without_a_colon_at_its_end) {
-    const CameraFeed feed("the-uri", 2s,
+    const HelperFeed feed("the-uri", 2s,
                           camera("printf 'octoskin-camera: too late:\\tby 5 s: \\n\\n' >&2; exit 1"));
     ASSERT_TRUE(wait_until([&] { return feed.record().why.find("the-uri") == 0; }));
     EXPECT_NE(feed.record().why.find("(octoskin-camera: too late: by 5 s)"), std::string::npos)
@@ -78,18 +90,18 @@ TEST_F(CameraFeedTest, puts_what_the_helper_says_on_one_line_without_a_colon_at_
 TEST_F(CameraFeedTest, tells_an_oni_file_that_is_not_there_from_one_that_is_none) {
     const auto failing = camera("exit 1");
     const std::string absent = (scratch_ / "nix.oni").string();
-    const CameraFeed without_file(absent, 2s, failing);
+    const HelperFeed without_file(absent, 2s, failing);
     EXPECT_TRUE(wait_until([&] { return without_file.record().why == absent + ": no such file"; }))
         << without_file.record().why;
     const std::string broken = scratch_.write("broken.oni", "no depth").string();
-    const CameraFeed with_file(broken, 2s, failing);
+    const HelperFeed with_file(broken, 2s, failing);
     EXPECT_TRUE(wait_until([&] {
         return with_file.record().why == broken + ": no .oni file with depth that OpenNI2 can play";
     })) << with_file.record().why;
 }
 
 TEST_F(CameraFeedTest, counts_frames_without_a_time_and_hands_over_the_others) {
-    CameraFeed feed("", 100s, camera(std::string(kHeader) + kUntimed + kUntimed + kTimed + "exec sleep 100"));
+    HelperFeed feed("", 100s, camera(std::string(kHeader) + kUntimed + kUntimed + kTimed + "exec sleep 100"));
     std::optional<DepthFrame> frame;
     ASSERT_TRUE(wait_until([&] { return (frame = feed.take()).has_value(); }));
     EXPECT_EQ(frame->captured, HostTime{1'000});
@@ -100,7 +112,7 @@ TEST_F(CameraFeedTest, counts_frames_without_a_time_and_hands_over_the_others) {
 }
 
 TEST_F(CameraFeedTest, ends_without_keeping_anybody_waiting_and_keeps_what_it_has_shown) {
-    CameraFeed feed("", 100s, camera(std::string(kHeader) + kTimed + kTimed + "exec sleep 100"));
+    HelperFeed feed("", 100s, camera(std::string(kHeader) + kTimed + kTimed + "exec sleep 100"));
     ASSERT_TRUE(wait_until([&] { return feed.record().frames == 2; }));
     EXPECT_FALSE(feed.has_ended());
     const auto begun = Clock::now();
@@ -116,7 +128,7 @@ TEST_F(CameraFeedTest, keeps_the_newest_of_what_nobody_takes_and_counts_the_othe
     std::string script = kHeader;
     for (int i = 1; i <= 5; ++i)
         script += "printf '\\" + std::to_string(i) + "\\0\\0\\0\\0\\0\\0\\0\\003\\004\\005\\006'\n";
-    CameraFeed feed("", 100s, camera(script + "exec sleep 100"));
+    HelperFeed feed("", 100s, camera(script + "exec sleep 100"));
     ASSERT_TRUE(wait_until([&] { return feed.record().frames == 5; }));
     EXPECT_EQ(feed.record().displaced, 2U);
     for (const std::int64_t us : {3, 4, 5}) {
@@ -138,7 +150,7 @@ TEST_F(CameraFeedTest, hands_over_no_image_that_repeats_the_ones_before_for_long
     std::string script = kHeader;
     for (int i = 0; i < 10; ++i) script += frame_at(10 * i, 'a');  // from the 7th on
     script += frame_at(100, 'b');
-    CameraFeed feed("", 100s, camera(script + "exec sleep 100"));
+    HelperFeed feed("", 100s, camera(script + "exec sleep 100"));
     std::vector<HostTime> taken;
     ASSERT_TRUE(wait_until([&] {
         while (const auto frame = feed.take()) taken.push_back(frame->captured);
@@ -155,14 +167,14 @@ TEST_F(CameraFeedTest, opens_a_camera_anew_that_repeats_an_image_unless_it_is_em
         for (int i = 0; i < 30; ++i) script += frame_at(10 * i, pixel);
         return script + "exec sleep 100";
     };
-    CameraFeed hung("", 2s, camera(repeating('a')));
+    HelperFeed hung("", 2s, camera(repeating('a')));
     EXPECT_TRUE(wait_until([&] { return hung.record().repeated > 0 && hung.record().opened > 1; }))
         << hung.record().opened;
-    const CameraFeed covered("", 100s, camera(repeating('\0')));
+    const HelperFeed covered("", 100s, camera(repeating('\0')));
     EXPECT_TRUE(wait_until([&] { return covered.record().frames == 30; }));
     EXPECT_EQ(covered.record().repeated, 24U);
     EXPECT_EQ(covered.record().opened, 1U);
-    const CameraFeed film(scratch_.write("still.oni", "").string(), 100s, camera(repeating('a')));
+    const HelperFeed film(scratch_.write("still.oni", "").string(), 100s, camera(repeating('a')));
     EXPECT_TRUE(wait_until([&] { return film.record().frames == 30; }));
     EXPECT_EQ(film.record().repeated, 0U);
 }
@@ -175,7 +187,7 @@ TEST_F(CameraFeedTest, hands_over_nothing_of_a_camera_that_hangs_though_it_is_op
     std::string second = kHeader;
     for (int i = 0; i < 30; ++i) second += frame_at(400 + 10 * i, 'a');
     const std::string third = kHeader + frame_at(800, 'a') + frame_at(810, 'b');
-    CameraFeed feed("", 2s,
+    HelperFeed feed("", 2s,
                     camera("echo >> " + times + "\ncase $(wc -l < " + times + ") in\n1)\n" + first +
                            ";;\n2)\n" + second + ";;\n*)\n" + third + ";;\nesac\nexec sleep 100"));
     std::vector<HostTime> taken;
@@ -199,7 +211,7 @@ TEST_F(CameraFeedTest, hands_over_but_the_first_image_of_each_opening_of_a_camer
         script += ";;\n";
     }
     script += std::string("*)\n") + kHeader + frame_at(2000, 'b') + ";;\nesac\nexec sleep 100";
-    CameraFeed feed("", 2s, camera(script));
+    HelperFeed feed("", 2s, camera(script));
     std::vector<HostTime> taken;
     ASSERT_TRUE(wait_until([&] {
         while (const auto frame = feed.take()) taken.push_back(frame->captured);
@@ -213,7 +225,7 @@ TEST_F(CameraFeedTest, hands_over_but_the_first_image_of_each_opening_of_a_camer
 TEST_F(CameraFeedTest, opens_a_camera_anew_that_repeats_an_image_though_one_in_ten_differs) {
     std::string script = kHeader;
     for (int i = 0; i < 40; ++i) script += frame_at(10 * i, static_cast<char>(i % 10 == 9 ? i : 'a'));
-    CameraFeed feed("", 2s, camera(script + "exec sleep 100"));
+    HelperFeed feed("", 2s, camera(script + "exec sleep 100"));
     EXPECT_TRUE(wait_until([&] { return feed.record().opened > 1; }));
     EXPECT_TRUE(feed.record().repeats_often);
 }
@@ -225,7 +237,7 @@ TEST_F(CameraFeedTest, tells_the_helper_which_camera_and_which_mode) {
     const auto wait_for = [&](const std::string& words) {
         return wait_until([&] { return testing_support::ScratchFolder::read(reported) == words + "\n"; });
     };
-    std::optional<CameraFeed> feed;
+    std::optional<HelperFeed> feed;
     feed.emplace("the-uri", 2s, program, openni2::CameraMode{640, 480, 30.0});
     EXPECT_TRUE(wait_for("2 the-uri 640x480@30"));
     feed.reset();

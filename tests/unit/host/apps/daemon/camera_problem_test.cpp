@@ -47,6 +47,19 @@ TEST(CameraProblem, is_that_it_was_never_opened) {
     EXPECT_THAT(reported(camera, 6 * kSecond), is_of_camera(ProblemCode::camera_no_frames, "not opened yet"));
 }
 
+TEST(CameraProblem, has_the_remedy_while_it_is_not_open) {
+    CameraRecord camera = looked_for();
+    camera.why = "ros:/depth: no program feeds it";
+    camera.remedy = "start the program";
+    for (const Nanoseconds after : {kSecond, 6 * kSecond})
+        EXPECT_THAT(reported(camera, after),
+                    Optional(AllOf(what_has("ros:/depth"), remedy_has("start the program"))));
+    camera.is_open = true;
+    const auto open = reported(camera, 6 * kSecond);
+    ASSERT_TRUE(open);
+    EXPECT_EQ(open->remedy, "");
+}
+
 TEST(CameraProblem, is_that_it_opens_and_never_shows_anything_however_often) {
     CameraRecord camera = looked_for();
     camera.is_open = true;
