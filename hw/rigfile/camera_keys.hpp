@@ -24,7 +24,8 @@ inline constexpr TextKey kDevice{
     .kind = TextKind::path,
     .fallback = {.text = "the first device"},
     .meaning =
-        "OpenNI2 URI (`octoskin cameras`) or `.oni` file, for `octoskin run`; `--camera` overrides it. "
+        "OpenNI2 URI (`octoskin cameras`), `.oni` file, or `ros:` and the topic of its images, which another "
+        "program feeds (`octoskin bridge`), for `octoskin run`; `--camera` overrides it. "
         "With several cameras, each needs one of its own"};
 inline constexpr IntegerKey kWidth{.path = "camera.width_px",
                                    .unit = "px",

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "hw/rigfile/fed_device.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/pose.hpp"
 #include "hw/rigfile/rig_keys.hpp"
@@ -87,6 +88,8 @@ CameraNoise read_noise(const Value& value, const std::string& path) {
 std::string read_device(const Table& table) {
     const Value& value = table.require(keys::camera::kDevice);
     std::string device = table.text(keys::camera::kDevice);
+    if (!is_good_device(device))
+        table.fail(keys::camera::kDevice, {ErrorCode::bad_value, kGoodDevice, fmt::format("'{}'", device)});
     if (!device.ends_with(".oni")) return device;
     return std::filesystem::absolute(existing_file(value, table.path_of(keys::camera::kDevice)).shown())
         .lexically_normal()

@@ -98,7 +98,7 @@ struct Camera {
     std::string link = {};  ///< that carries it; empty: the base link
     Eigen::Isometry3d T_link_camera =
         Eigen::Isometry3d::Identity();      ///< optical frame: z forward, x right, y down
-    std::string device = {};                ///< OpenNI2 URI or .oni file to read it from; empty: not given
+    std::string device = {};                ///< OpenNI2 URI, .oni file or "ros:/TOPIC"; empty: not given
     std::optional<CameraNoise> noise = {};  ///< empty: that of the mapping
     DataSetKeys data_set = {};
 };

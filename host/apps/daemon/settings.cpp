@@ -14,6 +14,7 @@
 #include "host/apps/robot/fitted_robot.hpp"
 #include "host/core/rig/camera_text.hpp"
 #include "host/io/mapping/mapping_file.hpp"
+#include "hw/rigfile/fed_device.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/rig.hpp"
 
@@ -143,9 +144,20 @@ Status<AppError> check_devices(const rig::Rig& rig, const DaemonRequest& request
     return Done{};
 }
 
+/// The rig's own are checked where they are read.
+Status<AppError> check_topics(const rig::Rig& rig, const DaemonRequest& request) {
+    for (const rig::Camera& camera : rig.cameras)
+        if (!rig::is_good_device(camera.device))
+            return camera_fault(request, ErrorCode::bad_value, rig::kGoodDevice,
+                                "give a topic such as ros:/camera/depth/image_rect_raw",
+                                "'" + camera.device + "'");
+    return Done{};
+}
+
 Status<AppError> choose_devices(rig::Rig& rig, const DaemonRequest& request) {
     if (!request.has_camera) return Done{};
     if (auto given = give_devices(rig, request); !given) return given;
+    if (auto checked = check_topics(rig, request); !checked) return checked;
     return check_devices(rig, request);
 }
 

@@ -27,8 +27,8 @@ struct DaemonRequest {
     std::optional<int> can_descriptor;
     bool is_listen_only = false;  ///< transmits nothing, SYNC included
     bool has_camera = true;       ///< if the rig has one
-    /// Devices of OpenNI2, or .oni files, in place of the rig's: "NAME=DEVICE", or without NAME for a rig
-    /// with one camera.
+    /// Devices of OpenNI2, .oni files, or "ros:" with a topic, in place of the rig's: "NAME=DEVICE", or
+    /// without NAME for a rig with one camera.
     std::vector<std::string> cameras;
     std::filesystem::path joint_socket;  ///< empty: joint states come over CAN only
     std::filesystem::path control_socket;

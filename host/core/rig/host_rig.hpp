@@ -67,7 +67,7 @@ struct HostCamera {
     Eigen::Isometry3d T_link_camera = Eigen::Isometry3d::Identity();
     double rate_hz = 10.0;
     std::optional<DepthNoiseLaw> noise = {};  ///< empty: that of the mapping
-    std::string device = {};                  ///< OpenNI2 URI or .oni file; empty: the first device
+    std::string device = {};                  ///< OpenNI2 URI, .oni file, ros:/TOPIC; empty: the first
 };
 
 /// A piece of the robot's body: all points within `radius_m` of the segment from p_link_a to p_link_b,

@@ -119,6 +119,8 @@ const Broken kBroken[] = {
      "known here are xyz_m, rpy_deg, quaternion_wxyz, rotation_rows"},
     {"camera-looking-straight-down.yaml", 10, "camera.pose.looking_at_m", ErrorCode::bad_value, "",
      "give rpy_deg instead"},
+    {"camera-topic-without-its-slash.yaml", 10, "camera.device", ErrorCode::bad_value, "'ros:depth/image'",
+     "which begins with /"},
     {"camera-depth-reversed.yaml", 11, "camera.depth_max_m", ErrorCode::out_of_range, "4",
      "more than depth_min_m"},
     {"camera-depth-beyond-its-images.yaml", 10, "camera.depth_max_m", ErrorCode::out_of_range, "'70'",

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "hw/rigfile/fed_device.hpp"
 #include "hw/rigfile/rig.hpp"
 #include "tests/support/errors/error_fields.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -84,6 +85,26 @@ TEST_F(Cameras, have_a_hash_that_depends_on_what_they_see_and_not_on_their_devic
     EXPECT_EQ(placement_crc32(rig, ""), placement_crc32(other_noise, ""));
 }
 
+TEST_F(Cameras, may_be_fed_by_a_program_under_the_name_of_a_topic) {
+    for (const char* topic : {"/depth", "/camera/depth/image_rect_raw", "/a/_b2/C"}) {
+        const std::string device = std::string("ros:") + topic;
+        const auto rig = read(item("name: a, device: '" + device + "'"));
+        ASSERT_TRUE(rig) << rig.error().message();
+        EXPECT_EQ(rig->cameras[0].device, device);
+        EXPECT_TRUE(is_fed_device(rig->cameras[0].device));
+    }
+    for (const char* topic : {"", "/", "depth", "//depth", "/depth/", "/a//b", "/a b", "/a-b", "/2d", "/a/2d",
+                              "/d.oni", "/~a", "/ä", "ros:/a"}) {
+        const Error error = refused(item(std::string("name: a, device: 'ros:") + topic + "'"));
+        EXPECT_EQ(error.code, ErrorCode::bad_value) << topic;
+        EXPECT_EQ(error.key, "cameras[0].device");
+        EXPECT_EQ(error.line, 4) << topic;
+        EXPECT_EQ(error.value, std::string("'ros:") + topic + "'");
+    }
+    EXPECT_FALSE(is_fed_device("1d27/0601@1/5"));
+    EXPECT_FALSE(is_fed_device("/ros:/a"));
+}
+
 TEST_F(Cameras, are_refused_with_a_bad_name_or_a_shared_device_or_in_both_forms) {
     for (const char* name : {"''", "-a", ".a", "a/b", "..", "'a b'", "123456789012345678901234567890123"})
         EXPECT_EQ(refused(item(std::string("name: ") + name)).code, ErrorCode::bad_name) << name;
@@ -98,6 +119,9 @@ TEST_F(Cameras, are_refused_with_a_bad_name_or_a_shared_device_or_in_both_forms)
     EXPECT_EQ(refused(item("name: a"), std::string("{") + kRest + "}").code, ErrorCode::conflict);
     EXPECT_EQ(refused(" ~", std::string("{name: a, ") + kRest + "}").code, ErrorCode::conflict);
     EXPECT_EQ(refused(item("name: a, device: none.oni")).code, ErrorCode::not_found);
+    const Error one_topic = refused(item("name: a, device: 'ros:/x'") + item("name: b, device: 'ros:/x'"));
+    EXPECT_EQ(one_topic.code, ErrorCode::duplicate);
+    EXPECT_EQ(one_topic.key, "cameras[1].device");
     const std::string large =
         "pose: {xyz_m: [1, 0, 1], rpy_deg: [0, 0, 0]}, width_px: 4096, height_px: 4096, "
         "fx_px: 4096, fy_px: 4096, cx_px: 2048, cy_px: 2048, rate_hz: 1}";

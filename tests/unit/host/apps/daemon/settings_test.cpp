@@ -123,6 +123,9 @@ TEST_F(CameraSettings, take_devices_from_the_rig_or_by_name) {
     const auto one = read("camera: " + keys("") + "\n", {"any/a=b"});
     ASSERT_TRUE(one) << one.error().error.message();
     EXPECT_EQ(one->host.rig.cameras.at(0).device, "any/a=b");
+    const auto fed = read(two("device: x, ", "device: y, "), {"back=ros:/camera/depth"});
+    ASSERT_TRUE(fed) << fed.error().error.message();
+    EXPECT_EQ(fed->host.rig.cameras[1].device, "ros:/camera/depth");
 }
 
 TEST_F(CameraSettings, refuse_unknown_names_and_devices_that_are_missing_shared_or_given_twice) {
@@ -137,6 +140,10 @@ TEST_F(CameraSettings, refuse_unknown_names_and_devices_that_are_missing_shared_
     EXPECT_EQ(refusal("cameras:\n  - " + keys("name: front, ") + "\n", {"left=x"}), ErrorCode::unknown_name);
     EXPECT_EQ(refusal("", {"x"}), ErrorCode::conflict);
     folder_.write("film.oni", "any");
+    EXPECT_EQ(refusal(one, {"ros:depth"}), ErrorCode::bad_value);
+    EXPECT_EQ(refusal(two(), {"front=x", "back=ros:/depth/"}), ErrorCode::bad_value);
+    EXPECT_EQ(refusal(two(), {"front=ros:/depth", "back=ros:/depth"}), ErrorCode::duplicate);
+    EXPECT_EQ(refusal(two("device: 'ros:/depth', "), {"back=ros:/depth"}), ErrorCode::duplicate);
     std::filesystem::create_symlink("film.oni", folder_ / "same.oni");
     EXPECT_EQ(refusal(two(), {"front=" + (folder_ / "film.oni").string(),
                               "back=" + (folder_ / "same.oni").string()}),
