@@ -1,12 +1,16 @@
 #include "host/apps/daemon/camera_inputs.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <system_error>
 #include <utility>
 
 #include "host/apps/daemon/clocks.hpp"
 #include "host/apps/daemon/helper_frames.hpp"
+#include "host/core/rig/camera_text.hpp"
+#include "hw/rigfile/fed_device.hpp"
+#include "hw/rigfile/joined.hpp"
 
 namespace octoskin {
 namespace {
@@ -50,6 +54,7 @@ void CameraInputs::release_others(const std::vector<HostCamera>& cameras) {
 void CameraInputs::release(Camera& camera) {
     if (!camera.feed) return;
     camera.ready = EventSource();
+    camera.fed = nullptr;
     camera.feed->end();
     while (auto frame = camera.feed->take()) {  // at most those that wait
         frame->camera = index_of(camera);
@@ -81,16 +86,75 @@ void CameraInputs::open(Camera& camera, HostTime now) {
     }
     camera.tried = now;
     try {
-        const std::chrono::milliseconds silence = silence_max(camera.wanted.mode.rate_hz);
         camera.feed =
-            std::make_unique<CameraFeed>(std::make_unique<HelperFrames>(camera.wanted.device, silence,
-                                                                        std::nullopt, camera.wanted.mode),
-                                         silence);
+            std::make_unique<CameraFeed>(source_of(camera), silence_max(camera.wanted.mode.rate_hz));
         camera.ready = loop_.on_readable(camera.feed->descriptor(), [this, &camera] { take_from(camera); });
     } catch (const std::system_error& error) {
+        camera.fed = nullptr;
         camera.feed.reset();
         camera.missing.why = std::string("no thread left for it: ") + error.what();
     }
+}
+
+/// By the kind of the device.
+std::unique_ptr<FrameSource> CameraInputs::source_of(Camera& camera) {
+    const Wanted& wanted = camera.wanted;
+    const std::chrono::milliseconds silence = silence_max(wanted.mode.rate_hz);
+    if (!rig::is_fed_device(wanted.device))
+        return std::make_unique<HelperFrames>(wanted.device, silence, std::nullopt, wanted.mode);
+    auto fed = std::make_unique<FedFrames>(
+        wanted.device, openni2::FrameSize{wanted.mode.width, wanted.mode.height}, silence);
+    camera.fed = fed.get();
+    return fed;
+}
+
+const CameraInputs::Camera* CameraInputs::find(const std::string& name) const {
+    const auto found =
+        std::ranges::find_if(cameras_, [&name](const auto& camera) { return camera->wanted.name == name; });
+    return found == cameras_.end() ? nullptr : found->get();
+}
+
+AppError CameraInputs::no_such_camera(const std::string& name) const {
+    const Camera* const other = find(name);
+    std::vector<std::string> fed;
+    for (const auto& camera : cameras_)
+        if (rig::is_fed_device(camera->wanted.device))
+            fed.push_back(camera->wanted.name.empty() ? "the camera without a name" : camera->wanted.name);
+    return {ExitCode::usage,
+            {.code = ErrorCode::unknown_name,
+             .what = other == nullptr ? "expected the name of a camera of the rig that a program feeds"
+                                      : camera_text(name) + " is not fed by a program: its device does not "
+                                                            "begin with ros:",
+             .value = "'" + (other == nullptr ? name : other->wanted.device) + "'",
+             .remedy = fed.empty() ? "a camera is fed if its device is ros:/TOPIC, without --no-camera"
+                                   : "there are: " + rig::joined(fed)}};
+}
+
+std::optional<AppError> CameraInputs::why_not_fed(const std::string& name) const {
+    const Camera* const camera = find(name);
+    if (camera == nullptr || !rig::is_fed_device(camera->wanted.device)) return no_such_camera(name);
+    if (camera->fed == nullptr)
+        return AppError{ExitCode::unavailable,
+                        {.code = ErrorCode::no_resources,
+                         .what = camera_text(name) + ": " + camera->missing.why,
+                         .remedy = "try again in a second"}};
+    const std::string feeder = camera->fed->feeder();
+    if (feeder.empty()) return std::nullopt;
+    return AppError{ExitCode::unavailable,
+                    {.code = ErrorCode::in_use,
+                     .what = camera_text(name) + " is fed already, by " + feeder,
+                     .remedy = "end one of the two programs"}};
+}
+
+bool CameraInputs::take_feeder(const std::string& name, int connection) {
+    const Camera* const camera = find(name);
+    return camera != nullptr && camera->fed != nullptr && camera->fed->take(connection);
+}
+
+openni2::FrameSize CameraInputs::size_of(const std::string& name) const {
+    const Camera* const camera = find(name);
+    assert(camera != nullptr);
+    return {camera->wanted.mode.width, camera->wanted.mode.height};
 }
 
 std::uint8_t CameraInputs::index_of(const Camera& camera) const {

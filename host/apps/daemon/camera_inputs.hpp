@@ -12,6 +12,8 @@
 #include "common/time.hpp"
 #include "host/apps/daemon/camera_feed.hpp"
 #include "host/apps/daemon/event_loop.hpp"
+#include "host/apps/daemon/fed_frames.hpp"
+#include "host/apps/recording/app_error.hpp"
 #include "host/core/depth/depth_frame.hpp"
 #include "host/core/rig/host_rig.hpp"
 #include "host/io/openni2/camera_mode.hpp"
@@ -38,6 +40,15 @@ class CameraInputs {
     /// Opens what is not open, once its device is released. If no thread is left, tries again in a second.
     void attend();
 
+    /// Takes over the connection of a program that feeds the camera of this name; empty: the camera without a
+    /// name. False: `why_not_fed` has the reason, and the connection stays the caller's.
+    [[nodiscard]] bool take_feeder(const std::string& name, int connection);
+    /// Why `take_feeder` refuses: no camera of this name is fed, the error names those that are; or it has a
+    /// feeder, or is not ready for one. Empty: it does not.
+    [[nodiscard]] std::optional<AppError> why_not_fed(const std::string& name) const;
+    /// Width and height that the images of this camera must have. It exists (asserted).
+    [[nodiscard]] openni2::FrameSize size_of(const std::string& name) const;
+
     /// In the rig's order; empty: none is wanted. Frames that `Take` refused count as `untimed`.
     [[nodiscard]] std::vector<CameraRecord> records() const;
 
@@ -51,6 +62,7 @@ class CameraInputs {
     struct Camera {
         Wanted wanted;
         std::unique_ptr<CameraFeed> feed = {};
+        FedFrames* fed = nullptr;  ///< the feed's source, if a program feeds it
         EventSource ready = {};
         CameraRecord missing = {};           ///< the record while no feed exists
         std::optional<HostTime> tried = {};  ///< last attempt to make one
@@ -62,6 +74,9 @@ class CameraInputs {
     };
     [[nodiscard]] static std::vector<Wanted> wanted_of(const std::vector<HostCamera>& cameras);
     void open(Camera& camera, HostTime now);
+    [[nodiscard]] static std::unique_ptr<FrameSource> source_of(Camera& camera);
+    [[nodiscard]] const Camera* find(const std::string& name) const;
+    [[nodiscard]] AppError no_such_camera(const std::string& name) const;
     [[nodiscard]] bool is_held(const std::string& device) const;
     [[nodiscard]] std::uint8_t index_of(const Camera& camera) const;
     void take_from(Camera& camera);

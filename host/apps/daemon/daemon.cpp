@@ -12,6 +12,7 @@
 #include "host/apps/daemon/daemon_parts.hpp"
 #include "host/apps/daemon/description.hpp"
 #include "host/apps/daemon/ending.hpp"
+#include "host/apps/daemon/feeder_request.hpp"
 #include "host/apps/daemon/unwinding_room.hpp"
 #include "host/apps/query/query_answer.hpp"
 
@@ -94,8 +95,9 @@ Status<AppError> Daemon::Parts::take_sockets() {
     control->answer_later([this](const std::string& line, std::uint64_t ticket,
                                  uid_t user) { return queries.take(line, ticket, user); },
                           [this](std::uint64_t ticket) { queries.forget(ticket); });
-    control->hand_over(
-        [this](const std::string& line, int connection) { return take_watcher(line, connection); });
+    control->hand_over([this](const std::string& line, int connection) {
+        return take_watcher(line, connection) || take_feeder(inputs.camera_inputs(), line, connection);
+    });
     return inputs.take_sockets(settings.host.rig);
 }
 
@@ -226,12 +228,13 @@ std::string Daemon::Parts::answer(const std::string& line) {
                                              .remedy = "there are: map, ranges, joints, status"}})
             .dump();
     }
+    if (const auto name = fed_camera_of(line)) return feeder_refusal(inputs.camera_inputs(), *name);
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
     return query_refused({ExitCode::usage,
                           {.code = ErrorCode::bad_argument,
                            .what = "unknown request",
-                           .remedy = "there are: hello, status, describe, record, query, watch"}})
+                           .remedy = "there are: hello, status, describe, record, query, watch, camera"}})
         .dump();
 }
 

@@ -71,6 +71,8 @@ class Inputs {
     /// Of each camera in the rig's order; empty without one. `untimed` includes the frames that came while
     /// another host's clock was not known.
     [[nodiscard]] std::vector<CameraRecord> cameras() const { return cameras_.records(); }
+    /// The cameras, for the programs that feed some of them.
+    [[nodiscard]] CameraInputs& camera_inputs() noexcept { return cameras_; }
     /// For readings that reached the map with a frame: the time since the arrival of that frame.
     [[nodiscard]] const LatencyHistogram& latency() const noexcept { return latency_; }
     /// For the same readings: the time since their capture.

@@ -340,7 +340,8 @@ constexpr std::array kStatusMeanings = {
             "files or ended; else empty"},
     Meaning{"cameras", "name", kText, "", "in the rig; empty for its only camera"},
     Meaning{"cameras", "link", kText, "", "the link that carries it; empty: it is beside the robot"},
-    Meaning{"cameras", "device", kText, "", "OpenNI2 URI or .oni file; empty: the first device"},
+    Meaning{"cameras", "device", kText, "",
+            "OpenNI2 URI, .oni file, or ros: and a topic: a program feeds it; empty: the first device"},
     Meaning{"cameras", "open", kFlag, "", "it is open"},
     Meaning{"cameras", "why", kText, "", "why it is not; empty if it is"},
     Meaning{"cameras", "frames", kCount, "", "frames received"},
@@ -348,7 +349,8 @@ constexpr std::array kStatusMeanings = {
             "frames displaced by newer ones, because the daemon was held up"},
     Meaning{"cameras", "untimed", kCount, "",
             "frames without a known capture time: over 0.5 s late, or the first ones, until five agree on "
-            "the camera's clock, for 5 s at most"},
+            "the camera's clock, for 5 s at most; of a camera that a program feeds also those over 0.05 s "
+            "ahead"},
     Meaning{"cameras", "repeated", kCount, "",
             "frames not used because all of the image, or at least half of it, equals bit by bit one from "
             "over 0.5 s before, and more than five have equalled earlier ones since: the camera hangs, or "

@@ -82,8 +82,9 @@ void add_run_command(CLI::App& app) {
     auto* const camera =
         command
             ->add_option("--camera", request->cameras,
-                         "[NAME=]DEVICE: OpenNI2 device, or an .oni file to play in a loop, not in step "
-                         "with a bus, of the rig's camera with that name; once for each (default: the "
+                         "[NAME=]DEVICE: OpenNI2 device, ros:/TOPIC if a program feeds it, or an .oni file "
+                         "to play in a loop, not in step with a bus, of the rig's camera with that name; "
+                         "once for each (default: the "
                          "rig's `device`, or the first camera)")
             ->allow_extra_args(false)
             ->type_name("[NAME=]DEVICE");
