@@ -40,7 +40,8 @@ def in_order(types):
 def struct(name, fields):
     package, message = name.split("/")
     members = "".join(f"    {member(field)}\n" for field in fields)
-    return f"module {package} {{ module msg {{ module dds_ {{\n@final\nstruct {message}_ {{\n{members}}};\n}}; }}; }};\n"
+    modules = f"module {package} {{ module msg {{ module dds_ {{"
+    return f"{modules}\n@final\nstruct {message}_ {{\n{members}}};\n}}; }}; }};\n"
 
 
 def idl(types):

@@ -105,7 +105,7 @@ class StandIn(unittest.TestCase):
                 self.assertEqual(self.apply(content, postures=[sphere(VOXEL_M)])[2], [collides])
 
     def test_full_data_hide_what_lies_in_an_inner_node_that_is_free(self):
-        """FCL does not descend into it: who publishes full data must set inner nodes to the maximum of their children."""
+        """FCL does not descend into it: in full data, inner nodes must be the maximum of their children."""
         content = scene(data=samples.full_octree(VOXEL_M, RESOLUTION_M, -0.1, 2.0), binary=False)
         self.assertEqual(self.apply(content, postures=[sphere(VOXEL_M)])[2], [False])
 

@@ -44,7 +44,8 @@ class Machines(unittest.TestCase):
             self.one.run("ip", "route", "get", "192.0.2.1")
 
     def test_unconfigured_programs_hear_each_other(self):
-        with self.programs(self.two).start_listening("--seconds", 20, "--count", 20, "/joint_states", JOINTS) as listening:
+        with self.programs(self.two).start_listening("--seconds", 20, "--count", 20, "/joint_states",
+                                                     JOINTS) as listening:
             before = self.packets()
             said = self.programs(self.one).say([joints(number) for number in range(20)], "--rate", 50)
             self.assertEqual(said.returncode, 0, said.stderr)

@@ -116,10 +116,10 @@ class OverDds(unittest.TestCase):
 
     def test_options_set_the_headers(self):
         scene = {"world": {"octomap": {"header": {"frame_id": "other"}}}}
-        heard = self.hear([line(JOINTS, {}), line("moveit_msgs/PlanningScene", scene)], "--frame", "base", "--stamp-now")
-        joints, scene = [event["fields"] for event in heard if event["event"] == "sample"]
-        if "world" in joints:
-            joints, scene = scene, joints
+        lines = [line(JOINTS, {}), line("moveit_msgs/PlanningScene", scene)]
+        heard = self.hear(lines, "--frame", "base", "--stamp-now")
+        fields = {event["type"]: event["fields"] for event in heard if event["event"] == "sample"}
+        joints, scene = fields[JOINTS], fields["moveit_msgs/PlanningScene"]
         for header in (joints["header"], scene["world"]["octomap"]["header"]):
             self.assertEqual(header["frame_id"], "base")
             self.assertGreater(header["stamp"]["sec"], 1_600_000_000)
@@ -141,8 +141,8 @@ class OverDds(unittest.TestCase):
     def test_images_count_in_their_first_pixel(self):
         for encoding, letter, depth in (("16UC1", "<H", 1500), ("32FC1", "<f", 1.5)):
             topic = "/depth_" + encoding.lower()
-            with self.subTest(encoding), PROGRAMS.start_listening("--all-bytes", "--seconds", 20, "--count", 40, "--depth",
-                                                                  40, *SURELY, topic, "sensor_msgs/Image") as listening:
+            options = ("--all-bytes", "--seconds", 20, "--count", 40, "--depth", 40, *SURELY)
+            with self.subTest(encoding), PROGRAMS.start_listening(*options, topic, "sensor_msgs/Image") as listening:
                 PROGRAMS.run("ros_say", *SURELY, "--depth", 40, "--images", "16x12", "--topic", topic, "--count", 40,
                              "--rate", 100, "--encoding", encoding, "--depth-m", 1.5)
                 images = [event["fields"] for event in listening.finish("sample")]
