@@ -23,6 +23,51 @@ const std::string& link_of(const std::string& link, const HostSetup& setup) {
     return link.empty() ? setup.frames.base_link : link;
 }
 
+Json vector_json(const Eigen::Vector3d& v) {
+    return Json::array({v.x(), v.y(), v.z()});
+}
+
+const char* kind_name(JointKind kind) {
+    switch (kind) {
+        case JointKind::fixed:
+            return "fixed";
+        case JointKind::revolute:
+            return "revolute";
+        case JointKind::continuous:
+            return "continuous";
+        case JointKind::prismatic:
+            return "prismatic";
+    }
+    return "";
+}
+
+Json joint_json(const JointDescription& joint) {
+    Json json = {{"name", joint.name},
+                 {"parent", joint.parent_link},
+                 {"child", joint.child_link},
+                 {"kind", kind_name(joint.kind)},
+                 {"T_parent_joint", pose_json(joint.T_parent_joint)},
+                 {"axis", vector_json(joint.axis)},
+                 {"min", joint.limits.min},
+                 {"max", joint.limits.max},
+                 {"mimic", nullptr}};
+    if (joint.mimic)
+        json["mimic"] = {{"joint", joint.mimic->joint},
+                         {"multiplier", joint.mimic->multiplier},
+                         {"offset", joint.mimic->offset}};
+    return json;
+}
+
+Json body_json(const HostRig& rig) {
+    Json body = Json::array();
+    for (const LinkCapsule& capsule : rig.body)
+        body.push_back({{"link", capsule.link},
+                        {"a", vector_json(capsule.p_link_a)},
+                        {"b", vector_json(capsule.p_link_b)},
+                        {"radius_m", capsule.radius_m}});
+    return body;
+}
+
 Json joint_sources_json(const HostRig& rig) {
     Json sources = Json::array();
     for (const HostJointSource& source : rig.joint_sources)
@@ -78,6 +123,8 @@ Json description_json(const HostSetup& setup, bool reads_cameras, std::uint64_t 
     if (reads_cameras)
         for (const HostCamera& camera : setup.rig.cameras) cameras.push_back(camera_json(camera, setup));
     const RobotFrames& frames = setup.frames;
+    Json joints = Json::array();
+    for (const JointDescription& joint : frames.joints) joints.push_back(joint_json(joint));
     return {{"ok", true},
             {"rig", setup.rig.name},
             {"rig_hash", fmt::format("{:08x}", setup.rig.rig_hash)},
@@ -87,6 +134,8 @@ Json description_json(const HostSetup& setup, bool reads_cameras, std::uint64_t 
             {"T_root_base", pose_json(frames.T_root_base)},
             {"T_root_map", pose_json(frames.T_root_base * setup.rig.T_map_base.inverse())},
             {"links", frames.links},
+            {"joints", std::move(joints)},
+            {"body", body_json(setup.rig)},
             {"joint_sources", joint_sources_json(setup.rig)},
             {"sensors", sensors_json(setup)},
             {"cameras", std::move(cameras)}};

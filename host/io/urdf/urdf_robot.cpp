@@ -160,8 +160,11 @@ Result<RobotFrames, Error> read_robot_frames(const FilePlace& urdf, const std::s
     if (!document) return unexpected(document.error());
     urdf::LinkConstSharedPtr at = document->model().getLink(base_link);
     if (!at) return no_base_link(*document, base_link);
+    auto joints = joints_below(*document, *at);
+    if (!joints) return unexpected(joints.error());
     RobotFrames frames;
     frames.base_link = base_link;
+    frames.joints = std::move(joints).value();
     frames.links = document->link_names();
     while (at->parent_joint && at->parent_joint->type == urdf::Joint::FIXED) {
         frames.T_root_base = origin_of(*at->parent_joint) * frames.T_root_base;

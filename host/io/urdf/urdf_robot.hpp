@@ -28,9 +28,11 @@ struct RobotFrames {
     std::string root_link;
     std::string base_link;
     Eigen::Isometry3d T_root_base = Eigen::Isometry3d::Identity();
-    std::vector<std::string> links;  ///< of the whole URDF, by name
+    std::vector<std::string> links;        ///< of the whole URDF, by name
+    std::vector<JointDescription> joints;  ///< below the base link, parents first
 };
-/// Errors name the file: an unreadable URDF, what urdfdom refuses, an unknown base link.
+/// Errors name the file: an unreadable URDF, what urdfdom refuses, an unknown base link, a joint below it
+/// that `read_robot_model` refuses.
 [[nodiscard]] Result<RobotFrames, Error> read_robot_frames(const FilePlace& urdf,
                                                            const std::string& base_link);
 

@@ -68,6 +68,25 @@ TEST_F(Description, has_the_frames_of_the_robot_from_its_root_on) {
     EXPECT_EQ(std::ranges::count(told["links"], "world"), 1);
 }
 
+TEST_F(Description, has_the_joints_and_the_body_from_which_the_kinematics_are_made) {
+    const Json told = read();
+    const auto& frames = settings_->host.frames;
+    ASSERT_EQ(told["joints"].size(), frames.joints.size());
+    ASSERT_EQ(told["joints"].size(), 8U);
+    EXPECT_EQ(told["joints"][3]["name"], "panda_joint4");
+    EXPECT_EQ(told["joints"][3]["parent"], "panda_link3");
+    EXPECT_EQ(told["joints"][3]["kind"], "revolute");
+    EXPECT_EQ(told["joints"][3]["min"], frames.joints[3].limits.min);
+    EXPECT_EQ(told["joints"][3]["axis"][2], frames.joints[3].axis.z());
+    EXPECT_EQ(told["joints"][7]["kind"], "fixed");
+    EXPECT_TRUE(told["joints"][3]["mimic"].is_null());
+    const auto& body = settings_->host.rig.body;
+    ASSERT_EQ(told["body"].size(), body.size());
+    EXPECT_EQ(told["body"][0]["link"], body[0].link);
+    EXPECT_EQ(told["body"][0]["radius_m"], body[0].radius_m);
+    EXPECT_EQ(told["body"][0]["b"][2], body[0].p_link_b.z());
+}
+
 TEST_F(Description, has_each_joint_source_and_sensor) {
     const Json told = read();
     ASSERT_EQ(told["joint_sources"].size(), 1U);
