@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "host/io/snapshot/brick_records.hpp"
 #include "host/io/watch/brick_form.hpp"
@@ -20,6 +22,12 @@ bool is_value(float value) {
 }
 bool is_value(std::uint16_t) {
     return true;
+}
+
+std::size_t known_in(const BrickView& brick) {
+    if (brick.values == nullptr) return brick.is_unknown() ? 0 : kBrickVoxels;
+    const auto is_known = [](float log_odds) { return !std::isnan(log_odds); };
+    return static_cast<std::size_t>(std::ranges::count_if(*brick.values, is_known));
 }
 
 template <class Value>
@@ -81,7 +89,21 @@ bool WatchedMap::take_brick(ByteReader& reader) {
     const std::uint64_t number = reader.get_count();
     if (!reader.is_sound() || number >= kBricks) return false;
     const MortonCode brick = number * kBrickVoxels;
-    return take_layer(reader, log_odds_, brick) && take_layer(reader, stamps_, brick);
+    known_voxels_ -= known_in(log_odds_.find(brick));
+    const bool is_taken = take_layer(reader, log_odds_, brick);
+    const BrickView now = log_odds_.find(brick);
+    known_voxels_ += known_in(now);
+    widen_clamps(now);
+    return is_taken && take_layer(reader, stamps_, brick);
+}
+
+void WatchedMap::widen_clamps(const BrickView& brick) {
+    const std::size_t values = brick.values == nullptr ? 1 : kBrickVoxels;
+    for (std::size_t cell = 0; cell < values; ++cell) {
+        const float log_odds = brick.at(cell);  // a NaN changes neither
+        lowest_ = log_odds < lowest_ ? log_odds : lowest_;
+        highest_ = log_odds > highest_ ? log_odds : highest_;
+    }
 }
 
 std::size_t WatchedMap::bytes() const noexcept {
@@ -93,6 +115,16 @@ Occupancy WatchedMap::occupancy(VoxelKey key) const noexcept {
     const float log_odds = log_odds_.find(brick_of(key)).at(cell_of(key));
     if (std::isnan(log_odds)) return Occupancy::unknown;
     return log_odds >= head_.occupied_from ? Occupancy::occupied : Occupancy::free;
+}
+
+FusedMap WatchedMap::map() const {
+    assert(is_whole_);
+    MapConfig config{.resolution_m = head_.resolution_m, .log_odds_occupied = head_.occupied_from};
+    config.log_odds_min = std::min(config.log_odds_min, lowest_);
+    config.log_odds_max = std::max(config.log_odds_max, highest_);
+    MapLayers layers{.log_odds = log_odds_, .counts = {}, .ages = {}, .known_voxels = known_voxels_};
+    layers.ages = VoxelAges({.has_begun = head_.has_begun, .now = head_.clock}, stamps_);
+    return {config, std::move(layers), false};
 }
 
 std::optional<Confirmation> WatchedMap::confirmation(VoxelKey key) const noexcept {

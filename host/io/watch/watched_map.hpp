@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "host/core/mapping/fused_map.hpp"
 #include "host/core/mapping/map_layers.hpp"
 #include "host/core/mapping/voxel_rules.hpp"
 #include "host/core/voxels/voxel_lattice.hpp"
@@ -32,12 +33,17 @@ class WatchedMap {
     [[nodiscard]] bool is_complete() const noexcept { return is_complete_; }
     [[nodiscard]] HostTime time() const noexcept { return time_; }
     [[nodiscard]] double resolution_m() const noexcept { return head_.resolution_m; }
+    /// Log-odds from which a voxel is occupied.
+    [[nodiscard]] float occupied_from() const noexcept { return head_.occupied_from; }
 
     [[nodiscard]] Occupancy occupancy(VoxelKey key) const noexcept;
     /// When and by which kind of sensor a known voxel was last seen; empty if unknown.
     [[nodiscard]] std::optional<Confirmation> confirmation(VoxelKey key) const noexcept;
     /// For a known voxel: no sensor has seen it for the mapping's `stale_after_s`.
     [[nodiscard]] bool is_stale(VoxelKey key) const noexcept;
+    /// A map of these voxels and ages, without counts. Its clamps are wide enough for every value. It shares
+    /// the bricks. O(1). Needs a whole map (asserted).
+    [[nodiscard]] FusedMap map() const;
     [[nodiscard]] const BrickTree& log_odds() const noexcept { return log_odds_; }
     [[nodiscard]] const StampTree& stamps() const noexcept { return stamps_; }
 
@@ -51,12 +57,16 @@ class WatchedMap {
     };
     [[nodiscard]] bool take_head(snapshot::ByteReader& reader, bool begins);
     [[nodiscard]] bool take_brick(snapshot::ByteReader& reader);
+    void widen_clamps(const BrickView& brick);
     [[nodiscard]] std::size_t bytes() const noexcept;
 
     std::size_t bytes_max_;
     Head head_;
     BrickTree log_odds_;
     StampTree stamps_;
+    std::size_t known_voxels_ = 0;
+    float lowest_ = 0.0F;  ///< no voxel is below it
+    float highest_ = 0.0F;
     HostTime time_{0};
     bool has_begun_ = false;
     bool is_whole_ = false;

@@ -49,6 +49,7 @@ MapConfig ageing() {
 /// Everything that the reader knows is so in the map, and the other way round.
 void expect_equal(const WatchedMap& watched, const FusedMap& map) {
     EXPECT_TRUE(watched.is_complete());
+    EXPECT_EQ(watched.map().known_voxels(), map.known_voxels());
     BrickCodes bricks = bricks_of(map);
     std::size_t there = 0;
     watched.log_odds().for_each([&](MortonCode, const BrickView&) { ++there; });
