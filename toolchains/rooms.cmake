@@ -53,15 +53,17 @@ set(OCTOSKIN_MAY_USE_host/io common host/core host/errors hw/mesh hw/rigfile hos
 # The product: it does not depend on the simulator or the laboratory.
 set(OCTOSKIN_MAY_USE_host/apps common firmware/drivers firmware/core hw/image hw/rigfile host/core host/errors host/io host/io/folder
     host/apps)
+# A program of its own, a client of the daemon.
+set(OCTOSKIN_MAY_USE_host/bridge common hw/rigfile host/core host/errors host/io host/io/folder host/apps host/bridge)
 set(OCTOSKIN_ALL_ROOMS common firmware/drivers firmware/core firmware/port hw/dbc hw/image hw/mesh hw/rigfile hw/sim host/core
-    host/errors host/io host/io/folder host/apps host/lab firmware/app tests)
+    host/errors host/io host/io/folder host/apps host/bridge host/lab firmware/app tests)
 set(OCTOSKIN_MAY_USE_host/lab ${OCTOSKIN_ALL_ROOMS})
 set(OCTOSKIN_MAY_USE_firmware/app ${OCTOSKIN_ALL_ROOMS})
 set(OCTOSKIN_MAY_USE_tests ${OCTOSKIN_ALL_ROOMS})
 
-set(OCTOSKIN_APP_ROOMS "host/(apps|lab)")
+set(OCTOSKIN_APP_ROOMS "host/(apps|bridge|lab)")
 if(OCTOSKIN_SANITIZE)  # the rooms that read and write files, too
-    set(OCTOSKIN_APP_ROOMS "host/(apps|io|io/folder|lab)|hw/(dbc|image|rigfile)|firmware/app")
+    set(OCTOSKIN_APP_ROOMS "host/(apps|bridge|io|io/folder|lab)|hw/(dbc|image|rigfile)|firmware/app")
 endif()
 
 function(octoskin_check_room target room)

@@ -67,8 +67,9 @@ std::size_t ControlSocket::clients_of_each_kind(std::uint64_t descriptors) noexc
 
 Result<std::unique_ptr<ControlSocket>, AppError> ControlSocket::open(const std::filesystem::path& file,
                                                                      EventLoop& loop, Answer answer,
-                                                                     std::chrono::milliseconds idle_max) {
-    auto bound = bind_unix_socket(file, SOCK_STREAM);
+                                                                     std::chrono::milliseconds idle_max,
+                                                                     const std::string& option) {
+    auto bound = bind_unix_socket(file, SOCK_STREAM, option);
     if (!bound) return unexpected(bound.error());
     return std::unique_ptr<ControlSocket>(
         new ControlSocket(*std::move(bound), loop, std::move(answer), idle_max));

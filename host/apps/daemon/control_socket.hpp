@@ -58,10 +58,11 @@ class ControlSocket {
     /// process has no descriptor left, no new client is accepted until the next check.
     static constexpr std::chrono::milliseconds kIdleMax{10'000};
 
-    /// Refuses descriptors that clients pass along (passed_descriptors.hpp).
+    /// Refuses descriptors that clients pass along (passed_descriptors.hpp). `option`: the command-line
+    /// option that names another place.
     [[nodiscard]] static Result<std::unique_ptr<ControlSocket>, AppError> open(
         const std::filesystem::path& file, EventLoop& loop, Answer answer,
-        std::chrono::milliseconds idle_max = kIdleMax);
+        std::chrono::milliseconds idle_max = kIdleMax, const std::string& option = "--socket");
     ~ControlSocket();
     ControlSocket(const ControlSocket&) = delete;
     ControlSocket& operator=(const ControlSocket&) = delete;

@@ -25,24 +25,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kSignOfLife = R"({"ok":true})";
 
-/// Whether JSON nests too deep for its reader and writer, which recurse for each level. A daemon's answers
-/// have fewer than ten levels.
-bool is_nested_too_deep(std::string_view json) {
-    constexpr int kLevelsMax = 64;
-    int level = 0;
-    bool is_text = false;
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        const char c = json[i];
-        if (is_text && c == '\\') ++i;  // an escaped quote ends no text
-        if (c == '"') is_text = !is_text;
-        if (is_text) continue;
-        if (c == '[' || c == '{') ++level;
-        if (c == ']' || c == '}') --level;
-        if (level > kLevelsMax) return true;
-    }
-    return false;
-}
-
 /// Whether there is something to read before `end`.
 bool is_readable(int descriptor, HostTime end) {
     while (true) {  // again after a signal
@@ -115,6 +97,22 @@ bool is_status(const Json& status) {
 }
 
 }  // namespace
+
+bool is_nested_too_deep(std::string_view json) {
+    constexpr int kLevelsMax = 64;
+    int level = 0;
+    bool is_text = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (is_text && c == '\\') ++i;  // an escaped quote ends no text
+        if (c == '"') is_text = !is_text;
+        if (is_text) continue;
+        if (c == '[' || c == '{') ++level;
+        if (c == ']' || c == '}') --level;
+        if (level > kLevelsMax) return true;
+    }
+    return false;
+}
 
 Result<std::string, AppError> ask_daemon(const std::filesystem::path& socket, const std::string& request,
                                          std::chrono::milliseconds patience) {

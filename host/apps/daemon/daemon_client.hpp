@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
 #include "common/result.hpp"
 #include "host/apps/recording/app_error.hpp"
@@ -22,6 +23,9 @@ inline constexpr std::chrono::milliseconds kLetInMax{5'000};
                                                        std::chrono::milliseconds patience = kLetInMax);
 /// The daemon's status: an answer with what `octoskin status` and `octoskin monitor` show first.
 [[nodiscard]] Result<nlohmann::ordered_json, AppError> ask_status(const std::filesystem::path& socket);
+/// True if JSON nests too deep for its reader and writer, which recurse for each level. A daemon's answers
+/// have fewer than ten levels. O(bytes).
+[[nodiscard]] bool is_nested_too_deep(std::string_view json);
 /// The error for an answer that no daemon of this version gives.
 [[nodiscard]] AppError foreign_answer(const std::filesystem::path& socket);
 

@@ -36,7 +36,8 @@ class FedFrames final : public FrameSource {
     [[nodiscard]] Result<std::unique_ptr<FrameStream>, std::string> open(int interrupt) override;
     [[nodiscard]] std::string why_at_first() const override { return device_ + ": no program feeds it"; }
     [[nodiscard]] std::string remedy() const override {
-        return "start `octoskin bridge`, the program that feeds it";
+        return "start `octoskin bridge`, the program that feeds it; if it runs, `octoskin bridge status` "
+               "says why no image comes";
     }
     [[nodiscard]] bool may_repeat() const override { return false; }
 

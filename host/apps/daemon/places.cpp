@@ -32,6 +32,16 @@ fs::path default_joint_socket() {
     return control.parent_path() / (is_of_service ? "joints" : "octoskin-joints");
 }
 
+fs::path default_bridge_socket() {
+    constexpr const char* kService = "/run/octoskin-bridge/status";
+    if (const fs::path own = directory_in("RUNTIME_DIRECTORY"); own.filename() == "octoskin-bridge")
+        return own / "status";
+    const fs::path user = directory_in("XDG_RUNTIME_DIR");
+    std::error_code error;
+    if (user.empty() || fs::exists(kService, error)) return kService;
+    return user / "octoskin-bridge";
+}
+
 fs::path default_map_folder() {
     if (const fs::path own = directory_in("STATE_DIRECTORY"); !own.empty()) return own;
     if (const fs::path user = directory_in("XDG_STATE_HOME"); !user.empty()) return user / "octoskin";

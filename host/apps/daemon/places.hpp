@@ -11,6 +11,10 @@ namespace octoskin {
 /// Beside the control socket.
 [[nodiscard]] std::filesystem::path default_joint_socket();
 
+/// Of `octoskin bridge`: in the service manager's directory for the bridge's service, else in the user's,
+/// else /run/octoskin-bridge/status.
+[[nodiscard]] std::filesystem::path default_bridge_socket();
+
 /// In the service manager's state directory for this service, else in the user's.
 [[nodiscard]] std::filesystem::path default_map_folder();
 

@@ -23,5 +23,6 @@ void add_black_box_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_command_command(CLI::App& app);
 void add_repair_command(CLI::App& app);
+void add_bridge_command(CLI::App& app);
 
 }  // namespace octoskin::app

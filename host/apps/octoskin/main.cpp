@@ -29,6 +29,7 @@ void add_commands(CLI::App& app) {
     add_calibrate_command(app);
     add_command_command(app);
     add_repair_command(app);
+    add_bridge_command(app);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/json_at.hpp"
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/places.hpp"
@@ -13,6 +14,8 @@
 
 namespace octoskin::app {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct StatusOptions {
     std::filesystem::path socket = default_control_socket();
@@ -43,10 +46,32 @@ void print_for_people(const nlohmann::ordered_json& status) {
     for (const auto& problem : status.at("problems")) print("! {}\n", problem.at("text").get<std::string>());
 }
 
+/// The bridge to ROS 2, if one runs at its default place.
+void print_bridge() {
+    constexpr std::chrono::milliseconds kPatience{500};
+    const fs::path socket = default_bridge_socket();
+    std::error_code error;
+    if (!fs::exists(socket, error)) return;
+    const auto answer = ask_daemon(socket, "status", kPatience);
+    const auto status = nlohmann::ordered_json::parse(answer ? *answer : std::string(), nullptr, false);
+    const auto& network = at(status, "network");
+    if (!at(network, "participants").is_number_unsigned() ||
+        !at(network, "matched_topics").is_number_unsigned())
+        return;
+    print("bridge: {} other ROS 2 participants, {} of its topics have readers (octoskin bridge status)\n",
+          network["participants"].get<std::uint64_t>(), network["matched_topics"].get<std::uint64_t>());
+    const auto& problems = at(status, "problems");
+    if (!problems.is_array()) return;
+    for (const auto& problem : problems)
+        if (problem.is_string()) print("! bridge: {}\n", problem.get<std::string>());
+}
+
 void show_status(const StatusOptions& options) {
     const auto status = ask_status(options.socket);
     if (!status) throw CommandFailure(status.error());
-    options.is_json ? print_json(status->dump(2) + "\n") : print_for_people(*status);
+    if (options.is_json) return print_json(status->dump(2) + "\n");
+    print_for_people(*status);
+    print_bridge();
 }
 
 }  // namespace

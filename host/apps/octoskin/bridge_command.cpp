@@ -1,0 +1,56 @@
+// octoskin bridge: becomes the program of the package octoskin-bridge.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/octoskin/commands.hpp"
+#include "host/io/openni2/helper_process.hpp"
+
+namespace octoskin::app {
+namespace {
+
+constexpr const char* kProgram = "octoskin-bridge";
+
+/// Without a command, or with options only, it is `run`.
+std::vector<std::string> with_command(std::vector<std::string> arguments) {
+    const bool has_command = !arguments.empty() && !arguments.front().starts_with('-');
+    const bool asks_help = !arguments.empty() && (arguments.front() == "--help" || arguments.front() == "-h");
+    if (!has_command && !asks_help) arguments.insert(arguments.begin(), "run");
+    return arguments;
+}
+
+[[noreturn]] void become_bridge(const std::vector<std::string>& arguments) {
+    const auto program = openni2::find_helper(kProgram);
+    if (!program)
+        throw CommandFailure(
+            ExitCode::unavailable,
+            {.code = ErrorCode::no_program,
+             .what = std::string(kProgram) + " is not installed",
+             .remedy = "install the package octoskin-bridge (in a build: its target of this name)"});
+    std::vector<std::string> words = with_command(arguments);
+    words.insert(words.begin(), kProgram);
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    ::execv(program->c_str(), pointers.data());
+    throw CommandFailure(ExitCode::unavailable,
+                         {.code = ErrorCode::no_program, .what = std::strerror(errno), .file = *program});
+}
+
+}  // namespace
+
+void add_bridge_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "bridge",
+        "Speak ROS 2: the map in MoveIt and RViz, joint states and depth images from topics (package "
+        "octoskin-bridge)");
+    command->set_help_flag();  // the program has its own
+    command->prefix_command();
+    command->callback([command] { become_bridge(command->remaining()); });
+}
+
+}  // namespace octoskin::app

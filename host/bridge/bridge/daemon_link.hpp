@@ -1,0 +1,72 @@
+// The bridge's connection to the daemon: watches its map, ranges, joints and status, and connects again when
+// the daemon comes back.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "common/time.hpp"
+#include "host/apps/daemon/event_loop.hpp"
+#include "host/bridge/robot/robot_facts.hpp"
+#include "host/io/watch/watched_map.hpp"
+
+namespace octoskin::bridge {
+
+/// Called from the loop.
+class DaemonListener {
+  public:
+    virtual ~DaemonListener() = default;
+    /// At each connection and after each reload of the daemon.
+    virtual void on_robot(RobotFacts robot) = 0;
+    /// The whole map has changed; `map` is valid during the call.
+    virtual void on_map(const watch::WatchedMap& map) = 0;
+    virtual void on_range(const watch::WatchedRange& range, HostTime captured) = 0;
+    virtual void on_joints(const watch::WatchedJoints& joints, HostTime sampled) = 0;
+    virtual void on_status(const nlohmann::ordered_json& status) = 0;
+    /// The daemon has gone or cannot be reached.
+    virtual void on_lost(const std::string& why) = 0;
+};
+
+class DaemonLink {
+  public:
+    /// `loop` and `listener` must outlive it.
+    DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener);
+    ~DaemonLink();
+    DaemonLink(const DaemonLink&) = delete;
+    DaemonLink& operator=(const DaemonLink&) = delete;
+
+    /// Connects if there is no connection. Call it about twice a second. Waits at most 0.6 s for a daemon
+    /// that hangs, and then not again for 2 s.
+    void attend();
+    [[nodiscard]] bool is_connected() const noexcept { return descriptor_ >= 0; }
+    /// Frames that the daemon left out because this program read too slowly.
+    [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
+
+  private:
+    void connect();
+    [[nodiscard]] Status<std::string> describe();
+    void read();
+    /// Takes the complete frames of `bytes_`; the error is a sentence.
+    [[nodiscard]] Status<std::string> take_frames();
+    [[nodiscard]] Status<std::string> take(const watch::FrameHeader& header, std::string_view payload);
+    [[nodiscard]] Status<std::string> take_status(std::string_view payload);
+    void lose(const std::string& why);
+
+    EventLoop& loop_;
+    std::filesystem::path socket_;
+    DaemonListener& listener_;
+    int descriptor_ = -1;
+    EventSource readable_;
+    std::string bytes_;
+    bool is_greeted_ = false;
+    watch::WatchedMap map_;
+    std::optional<std::uint64_t> reloads_;  ///< of the newest status
+    std::uint64_t lost_ = 0;
+    std::optional<HostTime> tried_;
+    Nanoseconds rest_{0};
+};
+
+}  // namespace octoskin::bridge
