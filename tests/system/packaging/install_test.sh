@@ -40,7 +40,8 @@ ldd "$folder/prefix/bin/octoskin-lab" > "$folder/libraries"
 if grep -q sdformat "$folder/libraries"; then exit 1; fi
 # The product has nothing of the laboratory.
 ldd "$folder/prefix/bin/octoskin" > "$folder/libraries"
-if grep -qE 'sdformat|embree|assimp' "$folder/libraries"; then exit 1; fi
+# Nor a network library: only the bridge, a program of its own, speaks DDS.
+if grep -qE 'sdformat|embree|assimp|ddsc|boost' "$folder/libraries"; then exit 1; fi
 simulate() {
     "$folder/prefix/bin/octoskin-lab" simulate "$folder/$1" --rig "$folder/prefix/share/octoskin/hw/rigs/bench_one_board.yaml" \
         --scenario "$folder/prefix/share/octoskin/hw/worlds/bench.scenario.yaml" > "$folder/log" 2>&1

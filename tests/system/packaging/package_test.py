@@ -25,6 +25,12 @@ OTHERS = {f"{HELPERS}/openni2/OpenNI2/Drivers/libOctoskinVirtual.so.0",
           "usr/share/doc/octoskin/changelog.gz", "usr/share/octoskin/hw/octoskin.dbc"}
 LAB_OTHERS = {f"{HELPERS}/octoskin-sdf.so", "usr/share/man/man1/octoskin-lab.1.gz", "usr/share/doc/octoskin-lab/copyright",
               "usr/share/doc/octoskin-lab/changelog.gz"}
+BRIDGE_PROGRAMS = {f"{HELPERS}/octoskin-bridge"}
+BRIDGE_SETTINGS = {"etc/default/octoskin-bridge"}
+BRIDGE_EXAMPLES = {f"usr/share/doc/octoskin-bridge/examples/{name}"
+                   for name in ("bridge.launch.py", "octoskin-bridge.override.conf", "octoskin-bridge.sysctl")}
+BRIDGE_OTHERS = {"usr/lib/systemd/system/octoskin-bridge.service", "usr/share/man/man1/octoskin-bridge.1.gz",
+                 "usr/share/doc/octoskin-bridge/copyright", "usr/share/doc/octoskin-bridge/changelog.gz"}
 LAB_FOLDERS = {"hw/worlds": "usr/share/octoskin/hw/worlds"}
 FOLDERS = {"docs": "usr/share/doc/octoskin/docs", "host/config": "usr/share/octoskin/config"} | {
     f"hw/{name}": f"usr/share/octoskin/hw/{name}" for name in ("boards", "rigs", "robots")}
@@ -53,8 +59,9 @@ class Package(unittest.TestCase):
         run(CPACK, "--config", f"{BUILD}/CPackConfig.cmake", "-B", folder / "made")
         (cls.package,) = (folder / "made").glob("octoskin_*.deb")
         (cls.lab,) = (folder / "made").glob("octoskin-lab_*.deb")
+        (cls.bridge,) = (folder / "made").glob("octoskin-bridge_*.deb")
         cls.root = folder / "root"
-        for package in (cls.package, cls.lab):
+        for package in (cls.package, cls.lab, cls.bridge):
             run("dpkg-deb", "-x", package, cls.root)
         # Its links lead to the library that it depends on.
         (triplet,) = {path.name for path in pathlib.Path("/usr/lib").glob("*-linux-gnu*")
@@ -84,13 +91,16 @@ class Package(unittest.TestCase):
         self.assertGreater(len(worlds), 5)
         self.assertEqual(self.names(self.lab, "-"), LAB_PROGRAMS | LAB_OTHERS | worlds)
         self.assertEqual(self.names(self.lab, "l"), set())
+        self.assertEqual(self.names(self.bridge, "-"),
+                         BRIDGE_PROGRAMS | BRIDGE_SETTINGS | BRIDGE_OTHERS | BRIDGE_EXAMPLES)
+        self.assertEqual(self.names(self.bridge, "l"), set())
 
     def test_belongs_to_root_who_alone_may_write(self):
-        for mode, owner, *_, name in self.listed(self.package) + self.listed(self.lab):
+        for mode, owner, *_, name in self.listed(self.package) + self.listed(self.lab) + self.listed(self.bridge):
             self.assertEqual(owner, "root/root", name)
             if mode[0] == "l":
                 continue
-            is_run = mode[0] == "d" or name.removeprefix("./") in PROGRAMS | LAB_PROGRAMS
+            is_run = mode[0] == "d" or name.removeprefix("./") in PROGRAMS | LAB_PROGRAMS | BRIDGE_PROGRAMS
             self.assertEqual(mode[1:], "rwxr-xr-x" if is_run else "rw-r--r--", name)
 
     def test_is_named_by_version_and_architecture(self):
@@ -98,7 +108,9 @@ class Package(unittest.TestCase):
         version = run(self.program, "--version").split()[1]
         self.assertEqual(self.package.name, f"octoskin_{version}_{architecture}.deb")
         self.assertEqual(self.lab.name, f"octoskin-lab_{version}_{architecture}.deb")
-        self.assertIn(f"octoskin (= {version})", self.field(self.lab, "Depends"))
+        self.assertEqual(self.bridge.name, f"octoskin-bridge_{version}_{architecture}.deb")
+        for package in (self.lab, self.bridge):
+            self.assertIn(f"octoskin (= {version})", self.field(package, "Depends"))
         changes = run("zcat", self.root / "usr/share/doc/octoskin/changelog.gz")
         self.assertTrue(changes.startswith(f"octoskin ({version}) "), changes)
 
@@ -107,7 +119,7 @@ class Package(unittest.TestCase):
         self.assertRegex(MAINTAINER, "^[^<>]+ <[^<>@]+@[^<>@]+>$")
 
     def test_depends_on_what_its_programs_load(self):
-        for file in PROGRAMS | LAB_PROGRAMS:
+        for file in PROGRAMS | LAB_PROGRAMS | BRIDGE_PROGRAMS:
             for line in run("ldd", self.root / file).splitlines():
                 self.assertNotIn("not found", line, file)
         # By hand, the other way round: the library each program cannot do without.
@@ -117,15 +129,19 @@ class Package(unittest.TestCase):
         for package in ("libsdformat12-12", "libembree3-3"):
             self.assertIn(package, lab)
             self.assertNotIn(package, depends)
+        self.assertIn("libddsc0debian", self.depends(self.bridge))
+        self.assertNotIn("libddsc0debian", depends)
         self.assertFalse({name for name in depends | lab if "unicorn" in name or name.endswith("-dev")})
 
     def test_keeps_settings_that_somebody_changed(self):
-        conffiles = run("dpkg-deb", "--info", self.package, "conffiles").split()
-        self.assertEqual(set(conffiles), {f"/{name}" for name in SETTINGS})
+        for package, settings in ((self.package, SETTINGS), (self.bridge, BRIDGE_SETTINGS)):
+            conffiles = run("dpkg-deb", "--info", package, "conffiles").split()
+            self.assertEqual(set(conffiles), {f"/{name}" for name in settings})
 
     def test_has_maintainer_scripts_that_parse(self):
-        for script in ("postinst", "prerm", "postrm"):
-            run("sh", "-n", input=run("dpkg-deb", "--info", self.package, script))
+        for package in (self.package, self.bridge):
+            for script in ("postinst", "prerm", "postrm"):
+                run("sh", "-n", input=run("dpkg-deb", "--info", package, script))
 
     def test_takes_away_what_systemctl_enable_made_when_it_is_purged(self):
         """Of a unit that somebody put there instead of ours, the link stays."""
@@ -143,7 +159,8 @@ class Package(unittest.TestCase):
                 self.assertEqual(len(list(wants.iterdir())), left, verb)
 
     def test_names_every_command_in_the_manual(self):
-        for program, least in ((self.program, 10), (self.lab_program, 3)):
+        for program, least in ((self.program, 10), (self.lab_program, 3),
+                               (self.root / HELPERS / "octoskin-bridge", 4)):
             said = run(program, "--help").split("Subcommands:")[1].split("Exit codes")[0]
             commands = re.findall(r"^  ([a-z-]+) ", said, re.MULTILINE)
             self.assertGreaterEqual(len(commands), least)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the commands of the three start pages.
+"""Runs the commands of the start pages.
 
 usage: start_pages_test.py SOURCES BUILD
 
@@ -98,6 +98,34 @@ PAGES = {
                 "octoskin query --own-space 0.1 --socket control && exit 0; sleep 0.2; done; exit 1", says="free"),
         "octoskin record /var/lib/octoskin/bench --seconds 60":
             Run("octoskin record $PWD/bench --seconds 1 --socket control"),
+    },
+    "moveit": {
+        "toolchains/install_packages product bridge": INSTALLS,
+        "cmake --preset host-release": BUILDS,
+        "cmake --build --preset host-release --target octoskin_package --parallel": BUILDS,
+        "sudo apt install ./build/host-release/octoskin_0.1.0_amd64.deb "
+        "./build/host-release/octoskin-bridge_0.1.0_amd64.deb": INSTALLS,
+        # tests/ros publishes a robot and saves it; here nothing publishes one.
+        "octoskin bridge robot arm.urdf":
+            Run("octoskin bridge robot arm.urdf --seconds 1 || test $? = 69"),
+        "octoskin rig my_rig.yaml": Run(f"octoskin rig {RIG}"),
+        "octoskin bridge": Run("(octoskin bridge --socket control --joints joints --status-socket bridge & "
+                               "sleep 3; kill $!; wait $!) 2>&1", says="daemon with rig"),
+        "sudo systemctl enable --now octoskin-bridge": SERVICE,
+        "octoskin bridge status":
+            Run("octoskin bridge --socket control --joints joints --status-socket bridge & sleep 3; "
+                "octoskin bridge status --socket bridge; ended=$?; kill $!; exit $ended", says="other participants"),
+    },
+    "ros-camera": {
+        "octoskin bridge pose camera_depth_optical_frame":
+            Run("octoskin bridge pose camera_depth_optical_frame --socket control --seconds 1 || test $? = 69"),
+        "sudo cp /usr/share/doc/octoskin-bridge/examples/octoskin-bridge.sysctl "
+        "/etc/sysctl.d/60-octoskin-bridge.conf": SERVICE,
+        "sudo sysctl --system": SERVICE,
+        "octoskin run --rig my_rig.yaml --can can0 --joints /run/user/1000/octoskin-joints": HARDWARE,
+        "octoskin bridge": SERVICE,
+        "octoskin bridge status": SERVICE,
+        "octoskin status": Run("octoskin status --socket control", says="map:"),
     },
 }
 
