@@ -28,7 +28,7 @@ class Machines(unittest.TestCase):
             self.skipTest(str(error))
 
     def programs(self, machine):
-        # A domain of their own is not needed: nobody else is in these networks.
+        # A domain of their own is not needed: no other program is in these networks.
         return Programs(FOLDER, domain=0, prefix=machine.prefix)
 
     def packets(self):

@@ -36,10 +36,6 @@ Difference difference(const watch::WatchedMap& now, const watch::WatchedMap& bef
     return found;
 }
 
-}  // namespace
-
-namespace {
-
 /// True if a point of a solid, within a metre of its origin, has moved by more than this.
 bool have_moved(const std::vector<Solid>& now, const std::vector<Solid>& before, double distance_m) {
     if (now.size() != before.size()) return true;

@@ -110,12 +110,6 @@ std::vector<Sample> Reader::take(std::size_t count) const {
     return samples;
 }
 
-std::uint32_t Reader::writers() const {
-    dds_subscription_matched_status_t status{};
-    (void)dds_get_subscription_matched_status(reader_.handle(), &status);
-    return status.current_count;
-}
-
 Result<std::unique_ptr<Participant>, Error> Participant::open(const Network& network) {
     std::unique_ptr<Participant> made(new Participant());
     made->signal_.event = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);

@@ -83,7 +83,6 @@ class Reader {
     [[nodiscard]] explicit operator bool() const noexcept { return reader_.handle() > 0; }
     /// The samples that wait, in order, at most `count`. Throws std::bad_alloc.
     [[nodiscard]] std::vector<Sample> take(std::size_t count) const;
-    [[nodiscard]] std::uint32_t writers() const;
 
   private:
     Entity topic_;

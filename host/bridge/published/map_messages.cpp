@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "host/bridge/published/float_cloud.hpp"
 #include "host/bridge/published/ros_values.hpp"
 #include "host/core/voxels/key_box.hpp"
 #include "host/io/mapfile/octomap_writer.hpp"
@@ -59,11 +60,6 @@ void add_cubes(const FusedMap& map, const MapBrick& brick, std::vector<OccupiedC
     }
 }
 
-ros::sensor_msgs::PointField float_field(const std::string& name, std::uint32_t index) {
-    using ros::sensor_msgs::PointField;
-    return {name, index * 4, PointField::kFloat32, 1};
-}
-
 /// As the colours of octomap_server: by height, blue below, red above.
 ros::std_msgs::ColorRGBA colour_at(double share) {
     const double hue = 4.0 * std::clamp(1.0 - share, 0.0, 1.0);  // red 0, yellow 1, green 2, cyan 3, blue 4
@@ -103,31 +99,18 @@ std::vector<OccupiedCube> occupied_cubes(const FusedMap& map) {
 }
 
 ros::sensor_msgs::PointCloud2 occupied_cloud(const FusedMap& map, const ros::std_msgs::Header& header) {
-    static constexpr std::array kNames = {"x", "y", "z", "size", "occupancy", "age_s", "kind"};
-    ros::sensor_msgs::PointCloud2 cloud;
-    cloud.header = header;
-    cloud.height = 1;
-    for (std::uint32_t i = 0; i < kNames.size(); ++i) cloud.fields.push_back(float_field(kNames[i], i));
-    cloud.point_step = 4 * kNames.size();
-    cloud.is_dense = true;
+    FloatCloud<7> cloud(header, {"x", "y", "z", "size", "occupancy", "age_s", "kind"});
     map.for_each_known([&](VoxelKey key, float log_odds) {
         if (!is_occupied(map, log_odds)) return;
         const Eigen::Vector3d centre = map.centre_of(key);
         const auto seen = map.confirmation(key);
-        const std::array<float, kNames.size()> point = {
-            static_cast<float>(centre.x()),
-            static_cast<float>(centre.y()),
-            static_cast<float>(centre.z()),
-            static_cast<float>(map.resolution_m()),
-            static_cast<float>(probability(log_odds)),
-            seen ? static_cast<float>(seen->age_s) : std::numeric_limits<float>::quiet_NaN(),
-            static_cast<float>(seen ? seen->kind : SensorKind::none)};
-        const auto* const bytes = reinterpret_cast<const std::uint8_t*>(point.data());
-        cloud.data.insert(cloud.data.end(), bytes, bytes + sizeof(point));
+        cloud.add({static_cast<float>(centre.x()), static_cast<float>(centre.y()),
+                   static_cast<float>(centre.z()), static_cast<float>(map.resolution_m()),
+                   static_cast<float>(probability(log_odds)),
+                   seen ? static_cast<float>(seen->age_s) : std::numeric_limits<float>::quiet_NaN(),
+                   static_cast<float>(seen ? seen->kind : SensorKind::none)});
     });
-    cloud.width = static_cast<std::uint32_t>(cloud.data.size() / cloud.point_step);
-    cloud.row_step = static_cast<std::uint32_t>(cloud.data.size());
-    return cloud;
+    return std::move(cloud).take();
 }
 
 ros::visualization_msgs::MarkerArray occupied_markers(const FusedMap& map,

@@ -1,10 +1,10 @@
 #include "host/bridge/published/sensor_messages.hpp"
 
-#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "host/bridge/published/float_cloud.hpp"
 #include "host/bridge/published/ros_values.hpp"
 
 namespace octoskin::bridge {
@@ -67,23 +67,13 @@ ros::sensor_msgs::Range range_message(const watch::WatchedRange& range, const Se
 
 ros::sensor_msgs::PointCloud2 points_message(std::span<const watch::WatchedRange> ranges,
                                              const ros::std_msgs::Header& header) {
-    static constexpr std::array kNames = {"x", "y", "z"};
-    ros::sensor_msgs::PointCloud2 cloud;
-    cloud.header = header;
-    cloud.height = 1;
-    for (std::uint32_t i = 0; i < kNames.size(); ++i)
-        cloud.fields.push_back({kNames[i], 4 * i, ros::sensor_msgs::PointField::kFloat32, 1});
-    cloud.point_step = 4 * kNames.size();
-    cloud.is_dense = true;
+    FloatCloud<3> cloud(header, {"x", "y", "z"});
     for (const watch::WatchedRange& range : ranges) {
         if (!range.range_m) continue;
         const Eigen::Vector3f end = (range.p_map_sensor + *range.range_m * range.direction_map).cast<float>();
-        const auto* const bytes = reinterpret_cast<const std::uint8_t*>(end.data());
-        cloud.data.insert(cloud.data.end(), bytes, bytes + cloud.point_step);
+        cloud.add({end.x(), end.y(), end.z()});
     }
-    cloud.width = static_cast<std::uint32_t>(cloud.data.size() / cloud.point_step);
-    cloud.row_step = static_cast<std::uint32_t>(cloud.data.size());
-    return cloud;
+    return std::move(cloud).take();
 }
 
 ros::tf2_msgs::TFMessage static_frames(const RobotFacts& robot, const std::string& prefix,

@@ -7,22 +7,9 @@
 #include <utility>
 
 #include "host/bridge/published/ros_values.hpp"
+#include "host/bridge/robot/first_names.hpp"
 
 namespace octoskin::bridge {
-namespace {
-
-/// The first few names.
-std::string listed(const std::vector<std::string>& names) {
-    constexpr std::size_t kShown = 4;
-    constexpr std::size_t kCharactersMax = 64;
-    std::vector<std::string> shown;
-    for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
-        shown.push_back(names[i].substr(0, kCharactersMax));
-    if (names.size() > kShown) shown.emplace_back("...");
-    return fmt::format("{}", fmt::join(shown, ", "));
-}
-
-}  // namespace
 
 bool JointStates::has_local_source() const noexcept {
     return std::ranges::any_of(sources_, &JointSourceFacts::is_local);
@@ -32,7 +19,7 @@ std::string JointStates::local_joints() const {
     std::vector<std::string> names;
     for (const JointSourceFacts& source : sources_)
         if (source.is_local) names.insert(names.end(), source.joints.begin(), source.joints.end());
-    return listed(names);
+    return first_names(names);
 }
 
 bool JointStates::takes_names(const ros::sensor_msgs::JointState& message, Positions& positions) {
@@ -57,7 +44,7 @@ bool JointStates::takes_names(const ros::sensor_msgs::JointState& message, Posit
     }
     if (positions.empty()) {
         ++counts_.other_joints;
-        other_names_ = listed(message.name);
+        other_names_ = first_names(message.name);
     }
     return !positions.empty();
 }

@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/bridge/robot/first_names.hpp"
+
 namespace octoskin::bridge {
 namespace {
 
@@ -88,16 +90,6 @@ std::string joint_difference(const Element& robot, const std::vector<JointDescri
     return {};
 }
 
-/// The first few, for a sentence.
-std::string first_of(const std::vector<std::string>& names) {
-    constexpr std::size_t kNamesShown = 3;
-    const std::size_t shown = std::min(names.size(), kNamesShown);
-    std::string text =
-        fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
-    if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
-    return text;
-}
-
 }  // namespace
 
 std::string description_differs(const std::string& urdf, const RobotFacts& robot) {
@@ -113,8 +105,8 @@ std::string description_differs(const std::string& urdf, const RobotFacts& robot
     std::ranges::set_difference(own, described, std::back_inserter(missing));
     std::ranges::set_difference(described, own, std::back_inserter(other));
     std::vector<std::string> differences;
-    if (!missing.empty()) differences.push_back("it lacks the links " + first_of(missing));
-    if (!other.empty()) differences.push_back("it has in addition " + first_of(other));
+    if (!missing.empty()) differences.push_back("it lacks the links " + first_names(missing));
+    if (!other.empty()) differences.push_back("it has in addition " + first_names(other));
     if (differences.empty())
         if (std::string joint = joint_difference(*element, robot.joints); !joint.empty())
             differences.push_back(std::move(joint));

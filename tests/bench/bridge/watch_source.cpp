@@ -1,4 +1,4 @@
-// Stands for the daemon before octoskin-bridge: the README.md of this folder.
+// In place of the daemon, for octoskin-bridge: the README.md of this folder.
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -189,7 +189,7 @@ int listen(const Options& options) {
 
 int main(int count, char** words) {
     octoskin::bridge_bench::Options options;
-    CLI::App app("Stands for the daemon: a map that changes, and a camera's images.");
+    CLI::App app("In place of the daemon: a map that changes, and a camera's images.");
     app.add_option("socket", options.socket, "control socket")->required();
     app.add_option("description", options.description, "JSON that answers 'describe'")->required();
     app.add_option("--occupied", options.occupied, "occupied voxels")->capture_default_str();
