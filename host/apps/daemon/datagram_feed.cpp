@@ -42,6 +42,18 @@ socketcan::StampedDatagram receive_one(int socket, std::span<char> room, std::st
 
 }  // namespace
 
+class DatagramFeed::Turn {
+  public:
+    explicit Turn(const DatagramFeed& feed) {
+        ++feed.callers_;
+        lock_ = std::unique_lock(feed.mutex_);
+        --feed.callers_;
+    }
+
+  private:
+    std::unique_lock<std::mutex> lock_;
+};
+
 DatagramFeed::DatagramFeed(int socket, std::size_t bytes_max)
     : socket_(socket),
       room_(bytes_max),
@@ -68,9 +80,7 @@ DatagramFeed::~DatagramFeed() {
 }
 
 std::optional<Datagram> DatagramFeed::take() {
-    ++takers_;
-    const std::lock_guard lock(mutex_);
-    --takers_;
+    const Turn turn(*this);
     if (waiting_.empty()) return receive();
     Datagram oldest = std::move(waiting_.front());
     waiting_.pop_front();
@@ -80,17 +90,17 @@ std::optional<Datagram> DatagramFeed::take() {
 }
 
 void DatagramFeed::keep(const Datagram& useful) {
-    const std::lock_guard lock(mutex_);
+    const Turn turn(*this);
     shares_.keep(useful.from, useful.read);
 }
 
 std::uint64_t DatagramFeed::displaced() const {
-    const std::lock_guard lock(mutex_);
+    const Turn turn(*this);
     return displaced_;
 }
 
 std::uint64_t DatagramFeed::surplus() const {
-    const std::lock_guard lock(mutex_);
+    const Turn turn(*this);
     return surplus_;
 }
 
@@ -100,7 +110,7 @@ void DatagramFeed::work() {
         (void)::poll(watched.data(), watched.size(), -1);
         if (watched[1].revents != 0) return;
         // In a flood this thread would get the lock again before a waiting thread wakes up.
-        while (takers_ > 0) std::this_thread::yield();
+        while (callers_ > 0) std::this_thread::yield();
         try {
             put_next();
         } catch (const std::bad_alloc&) {

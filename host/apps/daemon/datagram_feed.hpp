@@ -55,6 +55,9 @@ class DatagramFeed {
     [[nodiscard]] std::uint64_t surplus() const;
 
   private:
+    /// Holds the lock. The thread waits for those that wait for it.
+    class Turn;
+
     void work();
     void put_next();
     [[nodiscard]] std::optional<Datagram> receive();
@@ -69,7 +72,7 @@ class DatagramFeed {
     std::uint64_t displaced_ = 0;
     std::uint64_t surplus_ = 0;
     SenderShares shares_;
-    std::atomic<int> takers_ = 0;  ///< callers that wait for the lock: the thread lets them have it first
+    mutable std::atomic<int> callers_ = 0;  ///< that wait for the lock: the thread lets them have it first
     std::thread thread_;
 };
 
