@@ -58,13 +58,14 @@ Result<std::unique_ptr<Bridge>, AppError> Bridge::open(BridgeOptions options) {
     if (!network) return unexpected(AppError{ExitCode::usage, network.error()});
     auto participant = dds::Participant::open(*network);
     if (!participant) return failed(participant.error());
-    auto map = MapOutlets::open(**participant, options.topics);
+    auto topics = std::make_unique<dds::Topics>(**participant);
+    auto map = MapOutlets::open(*topics, options.topics);
     if (!map) return failed(map.error());
-    auto sensors = SensorOutlets::open(**participant, options.topics.prefix, options.topics.map_frame);
+    auto sensors = SensorOutlets::open(*topics, options.topics.prefix, options.topics.map_frame);
     if (!sensors) return failed(sensors.error());
     std::unique_ptr<Bridge> bridge(new Bridge(std::move(options), std::move(network).value(),
-                                              std::move(participant).value(), std::move(map).value(),
-                                              std::move(sensors).value()));
+                                              std::move(participant).value(), std::move(topics),
+                                              std::move(map).value(), std::move(sensors).value()));
     auto socket = ControlSocket::open(
         bridge->options_.status_socket, bridge->loop_,
         [raw = bridge.get()](const std::string& line) { return raw->answer(line); }, ControlSocket::kIdleMax,
@@ -75,10 +76,11 @@ Result<std::unique_ptr<Bridge>, AppError> Bridge::open(BridgeOptions options) {
 }
 
 Bridge::Bridge(BridgeOptions options, dds::Network network, std::unique_ptr<dds::Participant> participant,
-               MapOutlets map, SensorOutlets sensors)
+               std::unique_ptr<dds::Topics> topics, MapOutlets map, SensorOutlets sensors)
     : options_(std::move(options)),
       network_(std::move(network)),
       participant_(std::move(participant)),
+      topics_(std::move(topics)),
       map_(std::move(map)),
       sensors_(std::move(sensors)),
       joint_topic_(*participant_, options_.joint_states, ros::sensor_msgs::JointState::kType,

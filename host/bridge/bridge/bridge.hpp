@@ -16,9 +16,10 @@
 #include "host/bridge/bridge/daemon_link.hpp"
 #include "host/bridge/bridge/image_inlet.hpp"
 #include "host/bridge/bridge/inlet.hpp"
-#include "host/bridge/bridge/map_outlets.hpp"
-#include "host/bridge/bridge/sensor_outlets.hpp"
+#include "host/bridge/dds/dds_topics.hpp"
 #include "host/bridge/dds/participant.hpp"
+#include "host/bridge/outlets/map_outlets.hpp"
+#include "host/bridge/outlets/sensor_outlets.hpp"
 #include "host/bridge/received/joint_states.hpp"
 #include "host/bridge/received/recent.hpp"
 #include "host/bridge/received/scene_objects.hpp"
@@ -56,7 +57,7 @@ class Bridge final : public DaemonListener {
 
   private:
     Bridge(BridgeOptions options, dds::Network network, std::unique_ptr<dds::Participant> participant,
-           MapOutlets map, SensorOutlets sensors);
+           std::unique_ptr<dds::Topics> topics, MapOutlets map, SensorOutlets sensors);
     void on_dds();
     void attend_network();
     void attend_interfaces();
@@ -80,6 +81,7 @@ class Bridge final : public DaemonListener {
     dds::Network network_;
     EventLoop loop_;
     std::unique_ptr<dds::Participant> participant_;
+    std::unique_ptr<dds::Topics> topics_;
     MapOutlets map_;
     SensorOutlets sensors_;
     std::optional<DaemonLink> daemon_;

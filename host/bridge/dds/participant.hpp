@@ -14,6 +14,7 @@
 #include "common/time.hpp"
 #include "host/bridge/cdr/cdr_writer.hpp"
 #include "host/bridge/dds/network.hpp"
+#include "host/bridge/messages/qos.hpp"
 #include "host/bridge/messages/type_name.hpp"
 #include "host/errors/error.hpp"
 
@@ -21,14 +22,9 @@ struct ddsi_sertype;
 
 namespace octoskin::dds {
 
-enum class Reliability : std::uint8_t { best_effort, reliable };
-enum class Durability : std::uint8_t { volatile_, transient_local };
-
-struct Qos {
-    Reliability reliability = Reliability::reliable;
-    Durability durability = Durability::volatile_;
-    std::int32_t keep_last = 1;
-};
+using ros::Durability;
+using ros::Qos;
+using ros::Reliability;
 
 /// An entity of Cyclone DDS; deleted with this object.
 class Entity {

@@ -79,7 +79,7 @@ def read(path):
         if base not in CPP and base not in messages:
             sys.exit(f"{path}:{number}: unknown type {base}")
         if value:
-            message.constants.append((CPP[base], name, value))
+            message.constants.append((CPP[base], name, value, base))
         else:
             message.fields.append(Field(name, base, length))
     return messages
@@ -104,6 +104,18 @@ def type_hash(message, messages):
     return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
 
 
+def definition(message, messages):
+    """The text of a schema of encoding ros2msg: https://mcap.dev/spec/registry#ros2msg"""
+    parts = [message] + [messages[name] for name in types_in(message, messages)]
+    texts = []
+    for part in parts:
+        lines = [] if part is message else ["=" * 80, f"MSG: {part.name}"]
+        lines += [f"{ros} {name}={value}" for _, name, value, ros in part.constants]
+        lines += [f"{one.base}{one.length} {one.name}" for one in part.fields]
+        texts.append("\n".join(lines) + "\n")
+    return "".join(texts)
+
+
 def constant_name(name):
     return "k" + "".join(part.capitalize() for part in name.split("_"))
 
@@ -112,13 +124,14 @@ def struct(message, messages):
     package, name = message.name.split("/")
     lines = [f"namespace {package} {{", f"struct {name} {{"]
     lines += [f"    static constexpr {cpp} {constant_name(constant)} = {value};"
-              for cpp, constant, value in message.constants]
+              for cpp, constant, value, _ in message.constants]
     lines += [f"    {one.cpp()} {one.name}{one.default()};" for one in message.fields]
     names = ", ".join(one.name for one in message.fields)
     lines += [
         "",
         f"    static constexpr TypeName kType{{\"{package}::msg::dds_::{name}_\",",
-        f"        \"{type_hash(message, messages)}\"}};",
+        f"        \"{type_hash(message, messages)}\", \"{wire_name(message.name)}\",",
+        f"        R\"msg({definition(message, messages)})msg\"}};",
         f"    [[nodiscard]] auto all_fields() noexcept {{ return std::tie({names}); }}",
         f"    [[nodiscard]] auto all_fields() const noexcept {{ return std::tie({names}); }}",
         "};",

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/bridge/bridge/outlet.hpp"
+#include "host/bridge/outlets/outlet.hpp"
 #include "host/bridge/robot/robot_facts.hpp"
 #include "host/core/rig/sensor_id.hpp"
 #include "host/io/watch/watch_frame.hpp"
@@ -20,8 +20,8 @@ class SensorOutlets {
     /// Readings of one round arrive within this time.
     static constexpr Nanoseconds kRound{50'000'000};
     /// The errors of `on_robot` and of `open` name the topic. `prefix`: "/octoskin".
-    [[nodiscard]] static Result<SensorOutlets, Error> open(const dds::Participant& participant,
-                                                           std::string prefix, std::string map_frame);
+    [[nodiscard]] static Result<SensorOutlets, Error> open(TopicSink& sink, std::string prefix,
+                                                           std::string map_frame);
 
     /// Opens a topic for each sensor and publishes the frames.
     [[nodiscard]] Status<Error> on_robot(const RobotFacts& robot, WallTime wall);
@@ -39,12 +39,12 @@ class SensorOutlets {
     [[nodiscard]] std::vector<const Outlet*> outlets() const;
 
   private:
-    SensorOutlets(const dds::Participant& participant, std::string prefix, std::string map_frame)
-        : participant_(&participant), prefix_(std::move(prefix)), map_frame_(std::move(map_frame)) {}
+    SensorOutlets(TopicSink& sink, std::string prefix, std::string map_frame)
+        : sink_(&sink), prefix_(std::move(prefix)), map_frame_(std::move(map_frame)) {}
     [[nodiscard]] std::string frame_prefix() const;
     void end_round();
 
-    const dds::Participant* participant_;
+    TopicSink* sink_;
     std::string prefix_;
     std::string map_frame_;
     std::optional<Outlet> frames_;

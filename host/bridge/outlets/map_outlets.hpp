@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "host/bridge/bridge/outlet.hpp"
+#include "host/bridge/outlets/outlet.hpp"
 #include "host/bridge/published/binary_octree.hpp"
 #include "host/bridge/published/map_view.hpp"
 #include "host/bridge/robot/robot_facts.hpp"
@@ -26,8 +26,7 @@ struct MapTopics {
 
 class MapOutlets {
   public:
-    [[nodiscard]] static Result<MapOutlets, Error> open(const dds::Participant& participant,
-                                                        MapTopics topics);
+    [[nodiscard]] static Result<MapOutlets, Error> open(TopicSink& sink, MapTopics topics);
 
     void on_robot(const RobotFacts& robot);
     void on_map(const watch::WatchedMap& map);

@@ -1,4 +1,4 @@
-#include "host/bridge/bridge/map_outlets.hpp"
+#include "host/bridge/outlets/map_outlets.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,7 +46,7 @@ bool have_moved(const std::vector<Solid>& now, const std::vector<Solid>& before,
 
 }  // namespace
 
-Result<MapOutlets, Error> MapOutlets::open(const dds::Participant& participant, MapTopics topics) {
+Result<MapOutlets, Error> MapOutlets::open(TopicSink& sink, MapTopics topics) {
     MapOutlets made(std::move(topics));
     const std::string& prefix = made.options_.prefix;
     const auto add = [&](Form form, Result<Outlet, Error> outlet, const Pace& pace) -> Status<Error> {
@@ -57,20 +57,20 @@ Result<MapOutlets, Error> MapOutlets::open(const dds::Participant& participant, 
     using ros::octomap_msgs::Octomap;
     const std::array added = {
         add(Form::scene,
-            Outlet::open<ros::moveit_msgs::PlanningScene>(participant, made.options_.scene, kLastMessage),
+            Outlet::open<ros::moveit_msgs::PlanningScene>(sink, made.options_.scene, kLastMessage),
             {500ms, 100ms, 2s}),
-        add(Form::binary, Outlet::open<Octomap>(participant, prefix + "/octomap_binary", kLastMessage),
+        add(Form::binary, Outlet::open<Octomap>(sink, prefix + "/octomap_binary", kLastMessage),
             {100ms, 100ms}),
-        add(Form::full, Outlet::open<Octomap>(participant, prefix + "/octomap_full", kLastMessage), {1s, 1s}),
+        add(Form::full, Outlet::open<Octomap>(sink, prefix + "/octomap_full", kLastMessage), {1s, 1s}),
         add(Form::cloud,
-            Outlet::open<ros::sensor_msgs::PointCloud2>(participant, prefix + "/occupied", kLastMessage),
+            Outlet::open<ros::sensor_msgs::PointCloud2>(sink, prefix + "/occupied", kLastMessage),
             {500ms, 500ms}),
         add(Form::markers,
-            Outlet::open<ros::visualization_msgs::MarkerArray>(
-                participant, prefix + "/occupied_cells_vis_array", kLastMessage),
+            Outlet::open<ros::visualization_msgs::MarkerArray>(sink, prefix + "/occupied_cells_vis_array",
+                                                               kLastMessage),
             {1s, 1s}),
         add(Form::grid,
-            Outlet::open<ros::nav_msgs::OccupancyGrid>(participant, prefix + "/projected_map", kLastMessage),
+            Outlet::open<ros::nav_msgs::OccupancyGrid>(sink, prefix + "/projected_map", kLastMessage),
             {1s, 1s})};
     for (const auto& one : added)
         if (!one) return unexpected(one.error());
@@ -129,19 +129,21 @@ void MapOutlets::send(Topic& topic, const FusedMap& view, WallTime wall) {
     switch (topic.form) {
         case Form::scene: {
             const ros::std_msgs::Header in_root = ros_header(wall, root_link_);
-            return topic.outlet.send(planning_scene(
-                in_root, T_root_map_, octomap_binary(scene_octree_of(view), view.resolution_m(), in_root)));
+            return topic.outlet.send(
+                planning_scene(in_root, T_root_map_,
+                               octomap_binary(scene_octree_of(view), view.resolution_m(), in_root)),
+                wall);
         }
         case Form::binary:
-            return topic.outlet.send(octomap_binary(octree_of(view), view.resolution_m(), in_map));
+            return topic.outlet.send(octomap_binary(octree_of(view), view.resolution_m(), in_map), wall);
         case Form::full:
-            return topic.outlet.send(octomap_full(view, in_map));
+            return topic.outlet.send(octomap_full(view, in_map), wall);
         case Form::cloud:
-            return topic.outlet.send(occupied_cloud(view, in_map));
+            return topic.outlet.send(occupied_cloud(view, in_map), wall);
         case Form::markers:
-            return topic.outlet.send(occupied_markers(view, in_map));
+            return topic.outlet.send(occupied_markers(view, in_map), wall);
         case Form::grid:
-            return topic.outlet.send(projected_map(view, in_map));
+            return topic.outlet.send(projected_map(view, in_map), wall);
     }
 }
 

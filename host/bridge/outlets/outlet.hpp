@@ -2,55 +2,50 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "common/time.hpp"
 #include "host/bridge/cdr/cdr_writer.hpp"
-#include "host/bridge/dds/participant.hpp"
+#include "host/bridge/topics/topic_sink.hpp"
 
 namespace octoskin::bridge {
 
 /// A late reader gets the last message.
-inline constexpr dds::Qos kLastMessage{dds::Reliability::reliable, dds::Durability::transient_local, 1};
+inline constexpr ros::Qos kLastMessage{ros::Reliability::reliable, ros::Durability::transient_local, 1};
 
 class Outlet {
   public:
-    /// The error names the topic.
+    /// Of messages `M`. The error names the topic.
     template <cdr::Message M>
-    [[nodiscard]] static Result<Outlet, Error> open(const dds::Participant& participant, std::string topic,
-                                                    const dds::Qos& qos) {
-        auto writer = participant.writer(topic, M::kType, qos);
+    [[nodiscard]] static Result<Outlet, Error> open(TopicSink& sink, std::string topic, const ros::Qos& qos) {
+        auto writer = sink.writer(topic, M::kType, qos);
         if (!writer) return unexpected(writer.error());
-        Outlet outlet(std::move(topic), std::move(writer).value());
-        outlet.open_again_ = [&participant, name = outlet.topic_, qos] {
-            return participant.writer(name, M::kType, qos);
-        };
-        return outlet;
+        return Outlet(std::move(topic), std::move(writer).value());
     }
 
     [[nodiscard]] const std::string& topic() const noexcept { return topic_; }
-    [[nodiscard]] std::uint32_t readers() const { return writer_.readers(); }
+    [[nodiscard]] std::uint32_t readers() const { return writer_->readers(); }
     [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
-    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
+    [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }  ///< by the sink
 
     /// A late reader gets none of the messages sent so far.
-    void forget_messages() {
-        writer_ = {};  // two writers of one topic would be two publishers
-        if (auto writer = open_again_()) writer_ = std::move(writer).value();
+    void forget_messages() { writer_->forget_messages(); }
+    /// `when`: the time of the message's content.
+    void send(const cdr::Message auto& message, WallTime when) {
+        ++(writer_->write(cdr::write(message), when) ? sent_ : refused_);
     }
-    void send(const cdr::Message auto& message) { ++(writer_.write(cdr::write(message)) ? sent_ : refused_); }
 
   private:
-    Outlet(std::string topic, dds::Writer writer) : topic_(std::move(topic)), writer_(std::move(writer)) {}
+    Outlet(std::string topic, std::unique_ptr<TopicWriter> writer)
+        : topic_(std::move(topic)), writer_(std::move(writer)) {}
 
     std::string topic_;
-    dds::Writer writer_;
+    std::unique_ptr<TopicWriter> writer_;
     std::uint64_t sent_ = 0;
-    std::uint64_t refused_ = 0;  ///< by Cyclone DDS
-    std::function<Result<dds::Writer, Error>()> open_again_;
+    std::uint64_t refused_ = 0;
 };
 
 /// When the map is due on a topic.

@@ -1,4 +1,4 @@
-#include "host/bridge/bridge/sensor_outlets.hpp"
+#include "host/bridge/outlets/sensor_outlets.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -9,18 +9,16 @@
 namespace octoskin::bridge {
 namespace {
 
-constexpr dds::Qos kStream{dds::Reliability::reliable, dds::Durability::volatile_, 5};
-constexpr dds::Qos kDiagnostics{dds::Reliability::reliable, dds::Durability::volatile_, 10};
+constexpr ros::Qos kStream{ros::Reliability::reliable, ros::Durability::volatile_, 5};
+constexpr ros::Qos kDiagnostics{ros::Reliability::reliable, ros::Durability::volatile_, 10};
 
 }  // namespace
 
-Result<SensorOutlets, Error> SensorOutlets::open(const dds::Participant& participant, std::string prefix,
-                                                 std::string map_frame) {
-    SensorOutlets made(participant, std::move(prefix), std::move(map_frame));
-    auto frames = Outlet::open<ros::tf2_msgs::TFMessage>(participant, "/tf_static", kLastMessage);
-    auto points = Outlet::open<ros::sensor_msgs::PointCloud2>(participant, made.prefix_ + "/points", kStream);
-    auto problems =
-        Outlet::open<ros::diagnostic_msgs::DiagnosticArray>(participant, "/diagnostics", kDiagnostics);
+Result<SensorOutlets, Error> SensorOutlets::open(TopicSink& sink, std::string prefix, std::string map_frame) {
+    SensorOutlets made(sink, std::move(prefix), std::move(map_frame));
+    auto frames = Outlet::open<ros::tf2_msgs::TFMessage>(sink, "/tf_static", kLastMessage);
+    auto points = Outlet::open<ros::sensor_msgs::PointCloud2>(sink, made.prefix_ + "/points", kStream);
+    auto problems = Outlet::open<ros::diagnostic_msgs::DiagnosticArray>(sink, "/diagnostics", kDiagnostics);
     for (const auto* one : {&frames, &points, &problems})
         if (!*one) return unexpected(one->error());
     made.frames_ = std::move(frames).value();
@@ -44,15 +42,15 @@ Status<Error> SensorOutlets::on_robot(const RobotFacts& robot, WallTime wall) {
             ranges.insert(std::move(before));
             continue;
         }
-        auto outlet = Outlet::open<ros::sensor_msgs::Range>(*participant_,
-                                                            prefix_ + "/range/" + sensor.label(), kStream);
+        auto outlet =
+            Outlet::open<ros::sensor_msgs::Range>(*sink_, prefix_ + "/range/" + sensor.label(), kStream);
         if (!outlet) return unexpected(outlet.error());
         ranges.emplace(id, std::move(outlet).value());
     }
     ranges_ = std::move(ranges);
     robot_ = robot;
     const bool has_parent = robot.has_link(map_frame_);  // named as a problem
-    if (!has_parent) frames_->send(static_frames(robot, frame_prefix(), map_frame_, wall));
+    if (!has_parent) frames_->send(static_frames(robot, frame_prefix(), map_frame_, wall), wall);
     return Done{};
 }
 
@@ -63,7 +61,8 @@ void SensorOutlets::on_range(const watch::WatchedRange& range, HostTime now, Wal
     // One cone a message: a sensor with zones has a message for each.
     if (outlet->second.readers() > 0)
         outlet->second.send(
-            range_message(range, *sensor, ros_header(captured, range_frame(frame_prefix(), *sensor))));
+            range_message(range, *sensor, ros_header(captured, range_frame(frame_prefix(), *sensor))),
+            captured);
     const auto is_again = [&range](const watch::WatchedRange& one) { return one.source == range.source; };
     if (std::ranges::any_of(round_, is_again)) end_round();
     if (round_.empty()) {
@@ -74,7 +73,8 @@ void SensorOutlets::on_range(const watch::WatchedRange& range, HostTime now, Wal
 }
 
 void SensorOutlets::end_round() {
-    if (points_->readers() > 0) points_->send(points_message(round_, ros_header(round_time_, map_frame_)));
+    if (points_->readers() > 0)
+        points_->send(points_message(round_, ros_header(round_time_, map_frame_)), round_time_);
     round_.clear();
 }
 
@@ -91,7 +91,7 @@ void SensorOutlets::attend(HostTime now, WallTime wall) {
     if (diagnostics_->readers() == 0) return;
     auto array = status_ ? diagnostics(*status_, wall) : diagnostics_without_daemon(lost_, wall);
     array.status.insert(array.status.end(), notes_.begin(), notes_.end());
-    diagnostics_->send(array);
+    diagnostics_->send(array, wall);
 }
 
 std::vector<const Outlet*> SensorOutlets::outlets() const {
