@@ -15,6 +15,7 @@
 #include "host/apps/daemon/feeder_request.hpp"
 #include "host/apps/daemon/unwinding_room.hpp"
 #include "host/apps/query/query_answer.hpp"
+#include "host/apps/query/voxel_answer.hpp"
 
 namespace octoskin {
 namespace {
@@ -139,6 +140,7 @@ void Daemon::Parts::watch() {
     depth_threads.grow_to(settings.host.rig.cameras.size());
     pipeline.work_beside(depth_threads.workers());
     pipeline.observe(&watchers);
+    watchers.give_robot(settings.recorded.robot);
     sources.push_back(loop.every(kWatchPeriod, [this] { give_map_to_watchers(); }));
     sources.push_back(loop.on_readable(queries.descriptor(), [this] {
         const HostTime now = monotonic_now();
@@ -214,27 +216,33 @@ std::string Daemon::Parts::answer(const std::string& line) {
     if (line == "describe")
         return description_json(settings.host, request.has_camera, reloads.count)
             .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    if (is_voxel_request(line)) {
+        FusedMap now = pipeline.map().copy();
+        now.advance_time(inputs.reckoned_bus_now(monotonic_now()));
+        return answer_voxel(line, now).dump();
+    }
     if (WatchServer::is_request(line)) {
         const bool is_known = WatchServer::parse(line).has_value();
-        return query_refused(is_known
-                                 ? AppError{ExitCode::unavailable,
-                                            {.code = ErrorCode::limit_exceeded,
-                                             .what = fmt::format("too many watchers: {} are served at once",
-                                                                 WatchServer::kWatchersMax),
-                                             .remedy = "end one of them"}}
-                                 : AppError{ExitCode::usage,
-                                            {.code = ErrorCode::bad_argument,
-                                             .what = "unknown kind of frames to watch",
-                                             .remedy = "there are: map, ranges, joints, status"}})
+        return query_refused(
+                   is_known ? AppError{ExitCode::unavailable,
+                                       {.code = ErrorCode::limit_exceeded,
+                                        .what = fmt::format("too many watchers: {} are served at once",
+                                                            WatchServer::kWatchersMax),
+                                        .remedy = "end one of them"}}
+                            : AppError{ExitCode::usage,
+                                       {.code = ErrorCode::bad_argument,
+                                        .what = "unknown kind of frames to watch",
+                                        .remedy = "there are: map, ranges, joints, status, images, robot"}})
             .dump();
     }
     if (const auto name = fed_camera_of(line)) return feeder_refusal(inputs.camera_inputs(), *name);
     if (RecordRequests::is_one(line))
         return recordings.answer(line, settings.recorded, pipeline, monotonic_now());
-    return query_refused({ExitCode::usage,
-                          {.code = ErrorCode::bad_argument,
-                           .what = "unknown request",
-                           .remedy = "there are: hello, status, describe, record, query, watch, camera"}})
+    return query_refused(
+               {ExitCode::usage,
+                {.code = ErrorCode::bad_argument,
+                 .what = "unknown request",
+                 .remedy = "there are: hello, status, describe, record, query, voxel, watch, camera"}})
         .dump();
 }
 

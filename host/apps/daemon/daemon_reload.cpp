@@ -77,6 +77,7 @@ bool Daemon::Parts::resume_with(Next& next) {
     pipeline.work_beside(depth_threads.workers());
     pipeline.observe(&watchers);
     watchers.change_rig(settings.host.rig);
+    watchers.give_robot(settings.recorded.robot);
     inputs.change_rig(settings.host.rig);
     queries.change_robot(settings.host, miss_units(settings.mapping));
     reload_error.clear();

@@ -26,8 +26,8 @@ std::uint8_t bit_of(watch::FrameKind kind) noexcept {
 
 std::uint8_t bits_of(const WatchWants& wants) noexcept {
     std::uint8_t bits = 0;
-    for (const auto kind :
-         {watch::FrameKind::map, watch::FrameKind::range, watch::FrameKind::joints, watch::FrameKind::status})
+    for (const auto kind : {watch::FrameKind::map, watch::FrameKind::range, watch::FrameKind::joints,
+                            watch::FrameKind::status, watch::FrameKind::image, watch::FrameKind::robot})
         if (wants.has(kind)) bits |= bit_of(kind);
     return bits;
 }
@@ -85,6 +85,8 @@ std::optional<WatchWants> WatchServer::parse(const std::string& line) {
                              : word == "ranges" ? &wants.ranges
                              : word == "joints" ? &wants.joints
                              : word == "status" ? &wants.status
+                             : word == "images" ? &wants.images
+                             : word == "robot"  ? &wants.robot
                                                 : nullptr;
         if (wanted == nullptr) return std::nullopt;
         *wanted = true;
@@ -122,6 +124,10 @@ void WatchServer::give_status(std::string json) {
     give(watch::FrameKind::status, HostTime{0}, std::move(json));
 }
 
+void WatchServer::give_robot(const std::string& urdf) {
+    if (urdf.size() <= watch::kPayloadMax) give(watch::FrameKind::robot, HostTime{0}, urdf);
+}
+
 void WatchServer::on_sample(const JointMeasurement& joints) noexcept try {
     if (wants(watch::FrameKind::joints))
         give(watch::FrameKind::joints, joints.sampled,
@@ -133,6 +139,18 @@ void WatchServer::on_sample(const JointMeasurement& joints) noexcept try {
 void WatchServer::on_beam(const Beam& beam) noexcept try {
     if (wants(watch::FrameKind::range))
         give(watch::FrameKind::range, beam.captured, watch::range_payload(beam));
+} catch (const std::bad_alloc&) {
+    ++lost_;
+}
+
+void WatchServer::on_image(const DepthFrame& frame) noexcept try {
+    if (!wants(watch::FrameKind::image)) return;
+    if (images_given_.size() <= frame.camera) images_given_.resize(frame.camera + std::size_t{1});
+    std::optional<HostTime>& newest = images_given_[frame.camera];
+    const Nanoseconds since = newest ? frame.captured - *newest : kImagePeriod;
+    if (since >= Nanoseconds{0} && since < kImagePeriod) return;  // a clock may step back
+    newest = frame.captured;
+    give(watch::FrameKind::image, frame.captured, watch::image_payload(frame));
 } catch (const std::bad_alloc&) {
     ++lost_;
 }
@@ -186,10 +204,13 @@ WatchServer::Given WatchServer::taken() {
 void WatchServer::spread(Given given) {
     for (auto& client : given.clients) {
         if (map_) client->output.on_map(*map_, {});
+        if (robot_) client->output.on_event(*robot_);
         clients_.push_back(std::move(client));
     }
-    for (const WatchEvent& event : given.events)
+    for (const WatchEvent& event : given.events) {
+        if (event.kind == watch::FrameKind::robot) robot_ = event;
         for (const auto& client : clients_) client->output.on_event(event);
+    }
     if (!given.map) return;
     const watch::BrickCodes changed =
         map_ ? watch::changed_bricks(given.map->map, map_->map) : watch::BrickCodes{};

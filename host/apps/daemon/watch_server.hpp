@@ -34,7 +34,7 @@ class WatchServer final : public MeasurementObserver {
     WatchServer(const WatchServer&) = delete;
     WatchServer& operator=(const WatchServer&) = delete;
 
-    /// "watch", or "watch map ranges joints status" with at least one of these words.
+    /// "watch", which is "watch map ranges joints status", or some of these words, `images` and `robot`.
     [[nodiscard]] static bool is_request(const std::string& line);
     /// Empty: another word.
     [[nodiscard]] static std::optional<WatchWants> parse(const std::string& line);
@@ -51,8 +51,13 @@ class WatchServer final : public MeasurementObserver {
     /// The map as it is now, with its time on the bus; 0: not known.
     void give_map(FusedMap copy, HostTime time);
     void give_status(std::string json);
+    /// The robot's URDF, or another one: late watchers get the newest.
+    void give_robot(const std::string& urdf);
     void on_sample(const JointMeasurement& joints) noexcept override;
     void on_beam(const Beam& beam) noexcept override;
+    /// Of each camera one image in kImagePeriod goes to the watchers, reduced.
+    void on_image(const DepthFrame& frame) noexcept override;
+    static constexpr Nanoseconds kImagePeriod{200'000'000};
     /// The numbers of joints of another rig's sources.
     void change_rig(const HostRig& rig) { joint_counts_ = rig.joint_counts(); }
 
@@ -82,6 +87,7 @@ class WatchServer final : public MeasurementObserver {
 
     Nanoseconds stalled_max_;
     std::vector<std::size_t> joint_counts_;
+    std::vector<std::optional<HostTime>> images_given_;  ///< by camera: capture of the newest
     WakeEvent wake_;
     mutable std::mutex mutex_;
     Given given_;
@@ -92,6 +98,7 @@ class WatchServer final : public MeasurementObserver {
     std::atomic<bool> is_ending_ = false;
     // Of the thread.
     std::optional<MapNow> map_;
+    std::optional<WatchEvent> robot_;
     std::vector<std::unique_ptr<Client>> clients_;
     std::thread thread_;  ///< the last member: it uses all others
 };

@@ -14,6 +14,10 @@ bool WatchWants::has(watch::FrameKind kind) const noexcept {
             return joints;
         case watch::FrameKind::status:
             return status;
+        case watch::FrameKind::image:
+            return images;
+        case watch::FrameKind::robot:
+            return robot;
     }
     return false;
 }

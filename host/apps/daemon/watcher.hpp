@@ -33,6 +33,8 @@ struct WatchWants {
     bool ranges = false;
     bool joints = false;
     bool status = false;
+    bool images = false;
+    bool robot = false;
     [[nodiscard]] bool has(watch::FrameKind kind) const noexcept;
 };
 

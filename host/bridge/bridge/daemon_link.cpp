@@ -28,8 +28,9 @@ constexpr int kReadsPerTurn = 32;
 
 }  // namespace
 
-DaemonLink::DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener)
-    : loop_(loop), socket_(std::move(socket)), listener_(listener) {}
+DaemonLink::DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener,
+                       std::string request)
+    : loop_(loop), socket_(std::move(socket)), listener_(listener), request_(std::move(request) + '\n') {}
 
 DaemonLink::~DaemonLink() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -50,9 +51,8 @@ void DaemonLink::connect() {
     if (!connected) return listener_.on_lost(connected.error().message());
     descriptor_ = *connected;
     if (const auto described = describe(); !described) return lose(described.error());
-    constexpr std::string_view kRequest = "watch\n";
-    if (::send(descriptor_, kRequest.data(), kRequest.size(), MSG_NOSIGNAL | MSG_DONTWAIT) !=
-        static_cast<ssize_t>(kRequest.size()))
+    if (::send(descriptor_, request_.data(), request_.size(), MSG_NOSIGNAL | MSG_DONTWAIT) !=
+        static_cast<ssize_t>(request_.size()))
         return lose("the daemon does not accept the request");
     bytes_.clear();
     is_greeted_ = false;
@@ -128,6 +128,15 @@ Status<std::string> DaemonLink::take(const watch::FrameHeader& header, std::stri
         }
         case watch::FrameKind::status:
             return take_status(payload);
+        case watch::FrameKind::image: {
+            const auto image = watch::parse_image(payload);
+            if (!image) return malformed;
+            listener_.on_image(*image, header.time);
+            return Done{};
+        }
+        case watch::FrameKind::robot:
+            listener_.on_urdf(std::string(payload));
+            return Done{};
     }
     return malformed;
 }

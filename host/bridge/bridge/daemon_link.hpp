@@ -26,14 +26,21 @@ class DaemonListener {
     virtual void on_range(const watch::WatchedRange& range, HostTime captured) = 0;
     virtual void on_joints(const watch::WatchedJoints& joints, HostTime sampled) = 0;
     virtual void on_status(const nlohmann::ordered_json& status) = 0;
+    virtual void on_image(const watch::WatchedImage&, HostTime /*captured*/) {}
+    virtual void on_urdf(const std::string& /*text*/) {}
     /// The daemon has gone or cannot be reached.
     virtual void on_lost(const std::string& why) = 0;
 };
 
 class DaemonLink {
   public:
+    /// The words of `watch` for map, ranges, joints and status; with images and the URDF, too.
+    static constexpr const char* kUsualFrames = "watch";
+    static constexpr const char* kAllFrames = "watch map ranges joints status images robot";
+
     /// `loop` and `listener` must outlive it.
-    DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener);
+    DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener,
+               std::string request = kUsualFrames);
     ~DaemonLink();
     DaemonLink(const DaemonLink&) = delete;
     DaemonLink& operator=(const DaemonLink&) = delete;
@@ -58,6 +65,7 @@ class DaemonLink {
     EventLoop& loop_;
     std::filesystem::path socket_;
     DaemonListener& listener_;
+    std::string request_;  ///< with its line feed
     int descriptor_ = -1;
     EventSource readable_;
     std::string bytes_;

@@ -308,6 +308,7 @@ void MapBuilder::add_depth(const DepthWork& depth) {
         listener_->on_depth(depth.frame, depth.updates->terms);
         listener_->on_maps(maps_);
     }
+    if (observer_ != nullptr) observer_->on_image(depth.frame);
 }
 
 }  // namespace octoskin

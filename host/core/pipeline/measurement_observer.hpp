@@ -2,6 +2,7 @@
 #pragma once
 
 #include "host/core/beams/beam.hpp"
+#include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 
 namespace octoskin {
@@ -12,6 +13,7 @@ class MeasurementObserver {
     virtual ~MeasurementObserver() = default;
     virtual void on_sample(const JointMeasurement& joints) noexcept = 0;
     virtual void on_beam(const Beam& beam) noexcept = 0;
+    virtual void on_image(const DepthFrame& frame) noexcept = 0;
 };
 
 }  // namespace octoskin

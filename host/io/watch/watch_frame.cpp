@@ -1,8 +1,10 @@
 #include "host/io/watch/watch_frame.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "host/io/snapshot/bytes.hpp"
 
@@ -18,8 +20,16 @@ bool has_flags(FrameKind kind, std::uint8_t flags) {
 }
 
 bool is_kind(std::uint8_t kind) {
-    return kind >= static_cast<std::uint8_t>(FrameKind::map) &&
-           kind <= static_cast<std::uint8_t>(FrameKind::status);
+    switch (static_cast<FrameKind>(kind)) {
+        case FrameKind::map:
+        case FrameKind::range:
+        case FrameKind::joints:
+        case FrameKind::status:
+        case FrameKind::image:
+        case FrameKind::robot:
+            return true;
+    }
+    return false;
 }
 
 void put(ByteWriter& writer, const Eigen::Vector3d& vector) {
@@ -115,6 +125,36 @@ std::optional<WatchedJoints> parse_joints(std::string_view payload) {
         if (!std::isfinite(joints.position.back())) reader.fail();
     }
     return reader.is_sound() && reader.is_over() ? std::optional(joints) : std::nullopt;
+}
+
+std::string image_payload(const DepthFrame& frame) {
+    const auto step_to = [](std::uint32_t pixels, std::uint32_t max) { return (pixels + max - 1) / max; };
+    const std::uint32_t step =
+        std::max({1U, step_to(frame.width, kImageWidthMax), step_to(frame.height, kImageHeightMax)});
+    const std::uint32_t width = frame.width / step;
+    const std::uint32_t height = frame.height / step;
+    std::string bytes;
+    ByteWriter writer(bytes);
+    writer.put(frame.camera);
+    writer.put(static_cast<std::uint16_t>(width));
+    writer.put(static_cast<std::uint16_t>(height));
+    for (std::uint32_t v = 0; v < height; ++v)
+        for (std::uint32_t u = 0; u < width; ++u)
+            writer.put(frame.depth_mm[std::size_t{v} * step * frame.width + std::size_t{u} * step]);
+    return bytes;
+}
+
+std::optional<WatchedImage> parse_image(std::string_view payload) {
+    ByteReader reader(payload);
+    WatchedImage image;
+    image.camera = reader.get<std::uint8_t>();
+    image.width = reader.get<std::uint16_t>();
+    image.height = reader.get<std::uint16_t>();
+    if (!reader.is_sound() || image.width > kImageWidthMax || image.height > kImageHeightMax)
+        return std::nullopt;
+    image.depth_mm.resize(std::size_t{image.width} * image.height);
+    for (std::uint16_t& depth : image.depth_mm) depth = reader.get<std::uint16_t>();
+    return reader.is_sound() && reader.is_over() ? std::optional(std::move(image)) : std::nullopt;
 }
 
 }  // namespace octoskin::watch

@@ -17,6 +17,7 @@
 
 #include "common/time.hpp"
 #include "host/core/beams/beam.hpp"
+#include "host/core/depth/depth_frame.hpp"
 #include "host/core/ingest/can_intake.hpp"
 
 namespace octoskin::watch {
@@ -31,6 +32,8 @@ enum class FrameKind : std::uint8_t {
     range = 2,   ///< a reading that is in the map
     joints = 3,  ///< a sample of one source of joint states
     status = 4,  ///< the status as JSON, as `status` answers it
+    image = 6,   ///< a reduced depth image that is in the map
+    robot = 7,   ///< the robot's URDF as text
 };
 
 /// A frame of a map: nothing that was sent before holds; an empty map begins.
@@ -73,5 +76,18 @@ struct WatchedJoints {
 /// `count`: joints of the source.
 [[nodiscard]] std::string joints_payload(const JointMeasurement& joints, std::size_t count);
 [[nodiscard]] std::optional<WatchedJoints> parse_joints(std::string_view payload);
+
+/// A depth image with every n-th pixel of every n-th row.
+struct WatchedImage {
+    std::uint8_t camera = 0;  ///< index in the rig's list
+    std::uint16_t width = 0;
+    std::uint16_t height = 0;
+    std::vector<std::uint16_t> depth_mm;  ///< row-major; 0: no value
+};
+inline constexpr std::uint32_t kImageWidthMax = 160;
+inline constexpr std::uint32_t kImageHeightMax = 120;
+/// The smallest n by which the image fits into kImageWidthMax x kImageHeightMax. O(pixels left).
+[[nodiscard]] std::string image_payload(const DepthFrame& frame);
+[[nodiscard]] std::optional<WatchedImage> parse_image(std::string_view payload);
 
 }  // namespace octoskin::watch

@@ -110,9 +110,45 @@ TEST(WatchServer, accepts_the_words_that_it_knows) {
     EXPECT_FALSE(WatchServer::is_request("watcher"));
     const auto all = WatchServer::parse("watch");
     EXPECT_TRUE(all && all->map && all->ranges && all->joints && all->status);
+    EXPECT_FALSE(all->images || all->robot);
     const auto some = WatchServer::parse("watch map joints");
     EXPECT_TRUE(some && some->map && !some->ranges && some->joints && !some->status);
+    const auto views = WatchServer::parse("watch images robot");
+    EXPECT_TRUE(views && views->images && views->robot && !views->map);
     EXPECT_FALSE(WatchServer::parse("watch maps"));
+}
+
+TEST(WatchServer, gives_an_image_of_each_camera_in_a_period_and_the_newest_robot) {
+    WatchServer server(rig_of_two_joints());
+    server.give_robot("<robot/>");
+    Reader reader(server, {.images = true, .robot = true});
+    (void)reader.line();
+    ASSERT_TRUE(reader.read());
+    EXPECT_EQ(reader.header.kind, watch::FrameKind::robot);
+    EXPECT_EQ(reader.payload, "<robot/>");
+    constexpr std::int64_t kTenth_ns = 100'000'000;
+    for (std::int64_t i = 1; i <= 10; ++i)
+        for (const std::uint8_t camera : {std::uint8_t{0}, std::uint8_t{1}})
+            server.on_image({.captured = {i * kTenth_ns},
+                             .width = 2,
+                             .height = 1,
+                             .depth_mm = {1, 2},
+                             .T_map_camera = std::nullopt,
+                             .camera = camera});
+    for (std::int64_t i = 1; i <= 10; i += 2) {
+        for (const std::uint8_t camera : {std::uint8_t{0}, std::uint8_t{1}}) {
+            ASSERT_TRUE(reader.read());
+            EXPECT_EQ(reader.header.time, HostTime{i * kTenth_ns});
+            EXPECT_EQ(watch::parse_image(reader.payload)->camera, camera);
+        }
+    }
+    server.give_robot("<other/>");
+    ASSERT_TRUE(reader.read());
+    EXPECT_EQ(reader.payload, "<other/>");
+    Reader late(server, {.robot = true});
+    (void)late.line();
+    ASSERT_TRUE(late.read());
+    EXPECT_EQ(late.payload, "<other/>");
 }
 
 TEST(WatchServer, gives_each_watcher_what_it_wants_and_the_whole_map_first) {

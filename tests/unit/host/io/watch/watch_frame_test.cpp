@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 #include "tests/support/cases.hpp"
@@ -70,6 +71,31 @@ TEST(WatchFrame, has_ranges_and_joints_that_read_back_and_refuses_every_cut) {
     EXPECT_FALSE(parse_joints(sample + 'x'));
     beam.p_map_sensor.x() = std::nan("");
     EXPECT_FALSE(parse_range(range_payload(beam)));
+}
+
+TEST(WatchFrame, has_images_reduced_to_whole_pixels_that_read_back_and_refuses_every_cut) {
+    for (const auto& [width, height, step] : {std::array{640U, 480U, 4U}, std::array{160U, 120U, 1U},
+                                              std::array{161U, 4U, 2U}, std::array{3U, 250U, 3U}}) {
+        DepthFrame frame;
+        frame.width = width;
+        frame.height = height;
+        frame.camera = 2;
+        for (std::uint32_t i = 0; i < width * height; ++i)
+            frame.depth_mm.push_back(static_cast<std::uint16_t>(i));
+        const std::string bytes = image_payload(frame);
+        const auto image = parse_image(bytes);
+        ASSERT_TRUE(image);
+        EXPECT_EQ(image->camera, 2);
+        EXPECT_EQ(image->width, width / step);
+        EXPECT_EQ(image->height, height / step);
+        for (std::uint32_t v = 0; v < image->height; ++v)
+            for (std::uint32_t u = 0; u < image->width; ++u)
+                ASSERT_EQ(image->depth_mm[v * image->width + u], frame.depth_mm[v * step * width + u * step]);
+        EXPECT_FALSE(parse_image(bytes + "x"));
+        for (std::size_t cut = 0; cut < bytes.size(); cut += 97)
+            EXPECT_FALSE(parse_image(bytes.substr(0, cut)));
+    }
+    EXPECT_FALSE(parse_image(std::string("\0\xff\xff\xff\xff", 5)));
 }
 
 }  // namespace
