@@ -24,7 +24,7 @@ constexpr Nanoseconds kAtOnce{1'000'000'000};
 /// Four bytes a pixel, in rows with some bytes more.
 std::size_t image_bytes_max(const CameraFacts& camera) {
     constexpr std::size_t kMore = std::size_t{256} << 10U;
-    return std::size_t{camera.width} * camera.height * 8 + kMore;
+    return std::size_t{camera.intrinsics.width} * camera.intrinsics.height * 8 + kMore;
 }
 
 ros::TypeName image_type(const std::string& topic) {
@@ -60,7 +60,7 @@ bool ImageInlet::has_rival(std::uint64_t publisher, HostTime now) {
 
 void ImageInlet::take_info(const dds::Sample& sample) {
     const auto info = cdr::read<ros::sensor_msgs::CameraInfo>(sample.bytes);
-    info_problem_ = info ? differs_from_rig(*info, camera_, images_.topic())
+    info_problem_ = info ? differs_from_rig(*info, camera_.intrinsics, images_.topic())
                          : std::string("its camera_info ") + cdr::describe(info.error());
     is_info_right_ = info_problem_.empty();
 }
@@ -88,7 +88,7 @@ void ImageInlet::take_image(const dds::Sample& sample, const Arrival& arrival) {
             return std::nullopt;
         }
         stamp = wall_time_of(message->header.stamp);
-        auto pixels = depth_pixels(*message, camera_.width, camera_.height);
+        auto pixels = depth_pixels(*message, camera_.intrinsics.width, camera_.intrinsics.height);
         if (pixels) return std::move(pixels).value();
         count(pixels.error());
         return std::nullopt;
@@ -147,7 +147,7 @@ std::vector<std::string> ImageInlet::problems(HostTime now) const {
         problems.push_back(
             on + fmt::format("the images of {} have another size than the rig's {} x {}: correct the "
                              "rig's camera, or set the driver to this size",
-                             images_.topic(), camera_.width, camera_.height));
+                             images_.topic(), camera_.intrinsics.width, camera_.intrinsics.height));
     if (lately_.gained(&ImageCounts::encoding) > 0)
         problems.push_back(on +
                            fmt::format("the images of {} are no depth images: 16UC1, mono16 or 32FC1 (or "

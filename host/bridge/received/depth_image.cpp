@@ -136,7 +136,7 @@ Result<DepthPixels, ImageFault> depth_pixels(const ros::sensor_msgs::CompressedI
     return read_png(std::span(image.data).subspan(kParameters), width, height);
 }
 
-std::string differs_from_rig(const ros::sensor_msgs::CameraInfo& info, const CameraFacts& camera,
+std::string differs_from_rig(const ros::sensor_msgs::CameraInfo& info, const CameraIntrinsics& camera,
                              const std::string& topic) {
     if (info.width != camera.width || info.height != camera.height)
         return fmt::format("its camera_info says {} x {} pixels, the rig {} x {}: correct the rig's camera",

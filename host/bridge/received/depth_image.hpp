@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/result.hpp"
-#include "host/bridge/robot/robot_facts.hpp"
+#include "host/core/rig/host_rig.hpp"
 #include "ros_messages.hpp"
 
 namespace octoskin::bridge {
@@ -37,7 +37,7 @@ struct DepthPixels {
 /// empty if it is. `topic`: of the images. If its last part contains "rect", the images are rectified, and P
 /// counts; else K, and the distortion must be zero. The rig's principal point is half a pixel larger.
 [[nodiscard]] std::string differs_from_rig(const ros::sensor_msgs::CameraInfo& info,
-                                           const CameraFacts& camera, const std::string& topic);
+                                           const CameraIntrinsics& camera, const std::string& topic);
 
 /// True for a topic of compressed images: ".../compressedDepth".
 [[nodiscard]] bool is_compressed(const std::string& topic) noexcept;

@@ -42,12 +42,12 @@ CameraFacts camera_of(const Json& camera) {
             .device = camera.at("device").get<std::string>(),
             .link = camera.at("link").get<std::string>(),
             .T_link_camera = pose_of(camera.at("T_link_camera")),
-            .width = camera.at("width").get<std::uint32_t>(),
-            .height = camera.at("height").get<std::uint32_t>(),
-            .fx = camera.at("fx").get<double>(),
-            .fy = camera.at("fy").get<double>(),
-            .cx = camera.at("cx").get<double>(),
-            .cy = camera.at("cy").get<double>(),
+            .intrinsics = {.width = camera.at("width").get<std::uint32_t>(),
+                           .height = camera.at("height").get<std::uint32_t>(),
+                           .fx = camera.at("fx").get<double>(),
+                           .fy = camera.at("fy").get<double>(),
+                           .cx = camera.at("cx").get<double>(),
+                           .cy = camera.at("cy").get<double>()},
             .rate_hz = camera.at("rate_hz").get<double>()};
 }
 

@@ -37,12 +37,7 @@ struct CameraFacts {
     std::string device;  ///< "ros:/topic" if a program feeds it
     std::string link;
     Eigen::Isometry3d T_link_camera = Eigen::Isometry3d::Identity();
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    double fx = 0.0;
-    double fy = 0.0;
-    double cx = 0.0;
-    double cy = 0.0;
+    CameraIntrinsics intrinsics = {};  ///< without its lens distortion
     double rate_hz = 0.0;
 
     /// The topic without "ros:"; empty for another device.

@@ -131,8 +131,8 @@ TEST(DepthImage, as_a_png_that_is_cut_or_of_another_kind_is_refused) {
     EXPECT_EQ(depth_pixels(image, kWidth, kHeight).error(), ImageFault::encoding);
 }
 
-CameraFacts rig_camera() {
-    CameraFacts camera;
+CameraIntrinsics rig_camera() {
+    CameraIntrinsics camera;
     camera.width = 640;
     camera.height = 480;
     camera.fx = 600.0;
