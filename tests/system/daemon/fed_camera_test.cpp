@@ -183,24 +183,24 @@ TEST_F(FedCamera, is_described_and_follows_a_reload) {
     folder_.write("film.oni", "not yet");
     start({}, write_rig(film));
     ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return is_ranging(now); }, 20s)) << daemon_->log();
-    Json told = describe();
-    ASSERT_TRUE(told.is_object() && told["ok"] == true) << told.dump();
-    EXPECT_EQ(told["rig"], "experiment");
-    EXPECT_EQ(told["base_link"], "panda_link0");
-    EXPECT_EQ(told["sensors"].size(), 34U);
-    EXPECT_EQ(told["cameras"][0]["is_fed"], false);
-    EXPECT_EQ(told["reloads"], daemon_->status()["reloads"]["count"]);
+    Json described = describe();
+    ASSERT_TRUE(described.is_object() && described["ok"] == true) << described.dump();
+    EXPECT_EQ(described["rig"], "experiment");
+    EXPECT_EQ(described["base_link"], "panda_link0");
+    EXPECT_EQ(described["sensors"].size(), 34U);
+    EXPECT_EQ(described["cameras"][0]["is_fed"], false);
+    EXPECT_EQ(described["reloads"], daemon_->status()["reloads"]["count"]);
     EXPECT_EQ(Feeder(control(), "camera").answer["error"]["code"], "unknown_name");
 
     (void)write_rig("ros:/camera/depth");
     daemon_->signal(SIGHUP);
-    ASSERT_TRUE(
-        daemon_->wait_until([&](const Json& now) { return now["reloads"]["count"] != told["reloads"]; }, 10s))
+    ASSERT_TRUE(daemon_->wait_until(
+        [&](const Json& now) { return now["reloads"]["count"] != described["reloads"]; }, 10s))
         << daemon_->log();
-    told = describe();
-    EXPECT_EQ(told["reloads"], daemon_->status()["reloads"]["count"]);
-    EXPECT_EQ(told["cameras"][0]["is_fed"], true);
-    EXPECT_EQ(told["cameras"][0]["device"], "ros:/camera/depth");
+    described = describe();
+    EXPECT_EQ(described["reloads"], daemon_->status()["reloads"]["count"]);
+    EXPECT_EQ(described["cameras"][0]["is_fed"], true);
+    EXPECT_EQ(described["cameras"][0]["device"], "ros:/camera/depth");
     Json answer = Json::object();
     std::unique_ptr<Feeder> feeder;
     for (int i = 0; i < 20 && !answer.value("ok", false); ++i, std::this_thread::sleep_for(100ms)) {

@@ -53,51 +53,51 @@ class Description : public testing::Test {
 };
 
 TEST_F(Description, has_the_frames_of_the_robot_from_its_root_on) {
-    const Json told = read();
-    EXPECT_EQ(told["ok"], true);
-    EXPECT_EQ(told["rig"], "turned");
-    EXPECT_EQ(told["rig_hash"], fmt::format("{:08x}", settings_->recorded.rig_hash));
-    EXPECT_EQ(told["reloads"], 3);
-    EXPECT_EQ(told["root_link"], "world");
-    EXPECT_EQ(told["base_link"], "panda_link0");
+    const Json described = read();
+    EXPECT_EQ(described["ok"], true);
+    EXPECT_EQ(described["rig"], "turned");
+    EXPECT_EQ(described["rig_hash"], fmt::format("{:08x}", settings_->recorded.rig_hash));
+    EXPECT_EQ(described["reloads"], 3);
+    EXPECT_EQ(described["root_link"], "world");
+    EXPECT_EQ(described["base_link"], "panda_link0");
     const double half = std::numbers::sqrt2 / 2.0;
-    expect_pose(told["T_root_base"], {0, 0, 1, 0, 0, half, half});
+    expect_pose(described["T_root_base"], {0, 0, 1, 0, 0, half, half});
     // The map's origin is 2 m behind the base, whose x is the root's y.
-    expect_pose(told["T_root_map"], {0, -2, 1, 0, 0, half, half});
-    EXPECT_EQ(told["links"].size(), 10U) << told["links"].dump();
-    EXPECT_EQ(std::ranges::count(told["links"], "world"), 1);
+    expect_pose(described["T_root_map"], {0, -2, 1, 0, 0, half, half});
+    EXPECT_EQ(described["links"].size(), 10U) << described["links"].dump();
+    EXPECT_EQ(std::ranges::count(described["links"], "world"), 1);
 }
 
 TEST_F(Description, has_the_joints_and_the_body_from_which_the_kinematics_are_made) {
-    const Json told = read();
+    const Json described = read();
     const auto& frames = settings_->host.frames;
-    ASSERT_EQ(told["joints"].size(), frames.joints.size());
-    ASSERT_EQ(told["joints"].size(), 8U);
-    EXPECT_EQ(told["joints"][3]["name"], "panda_joint4");
-    EXPECT_EQ(told["joints"][3]["parent"], "panda_link3");
-    EXPECT_EQ(told["joints"][3]["kind"], "revolute");
-    EXPECT_EQ(told["joints"][3]["min"], frames.joints[3].limits.min);
-    EXPECT_EQ(told["joints"][3]["axis"][2], frames.joints[3].axis.z());
-    EXPECT_EQ(told["joints"][7]["kind"], "fixed");
-    EXPECT_TRUE(told["joints"][3]["mimic"].is_null());
+    ASSERT_EQ(described["joints"].size(), frames.joints.size());
+    ASSERT_EQ(described["joints"].size(), 8U);
+    EXPECT_EQ(described["joints"][3]["name"], "panda_joint4");
+    EXPECT_EQ(described["joints"][3]["parent"], "panda_link3");
+    EXPECT_EQ(described["joints"][3]["kind"], "revolute");
+    EXPECT_EQ(described["joints"][3]["min"], frames.joints[3].limits.min);
+    EXPECT_EQ(described["joints"][3]["axis"][2], frames.joints[3].axis.z());
+    EXPECT_EQ(described["joints"][7]["kind"], "fixed");
+    EXPECT_TRUE(described["joints"][3]["mimic"].is_null());
     const auto& body = settings_->host.rig.body;
-    ASSERT_EQ(told["body"].size(), body.size());
-    EXPECT_EQ(told["body"][0]["link"], body[0].link);
-    EXPECT_EQ(told["body"][0]["radius_m"], body[0].radius_m);
-    EXPECT_EQ(told["body"][0]["b"][2], body[0].p_link_b.z());
+    ASSERT_EQ(described["body"].size(), body.size());
+    EXPECT_EQ(described["body"][0]["link"], body[0].link);
+    EXPECT_EQ(described["body"][0]["radius_m"], body[0].radius_m);
+    EXPECT_EQ(described["body"][0]["b"][2], body[0].p_link_b.z());
 }
 
 TEST_F(Description, has_each_joint_source_and_sensor) {
-    const Json told = read();
-    ASSERT_EQ(told["joint_sources"].size(), 1U);
-    const Json& joints = told["joint_sources"][0];
+    const Json described = read();
+    ASSERT_EQ(described["joint_sources"].size(), 1U);
+    const Json& joints = described["joint_sources"][0];
     EXPECT_EQ(joints["node"], 3);
     EXPECT_EQ(joints["via"], "can");
     EXPECT_EQ(joints["rate_hz"], 100.0);
     EXPECT_EQ(joints["joints"].size(), 7U);
     EXPECT_EQ(joints["joints"][6], "panda_joint7");
-    ASSERT_EQ(told["sensors"].size(), 34U);
-    const Json& sensor = told["sensors"][9];
+    ASSERT_EQ(described["sensors"].size(), 34U);
+    const Json& sensor = described["sensors"][9];
     EXPECT_EQ(sensor["node"], 1);
     EXPECT_EQ(sensor["sensor"], 9);
     EXPECT_EQ(sensor["name"], "ring1_1");
@@ -114,14 +114,14 @@ TEST_F(Description, has_each_joint_source_and_sensor) {
     EXPECT_NEAR(turned.norm(), 1.0, 1e-15);
     EXPECT_TRUE(turned.toRotationMatrix().isApprox(pose.linear(), 1e-12));
     EXPECT_EQ(sensor["T_link_sensor"]["p"][0].get<double>(), pose.translation().x()) << "to the last bit";
-    EXPECT_EQ(Json::parse(told.dump())["sensors"][9], sensor) << "the text has all digits";
+    EXPECT_EQ(Json::parse(described.dump())["sensors"][9], sensor) << "the text has all digits";
     EXPECT_EQ(read("", true, true)["joint_sources"][0]["via"], "socket") << "with --joints";
 }
 
 TEST_F(Description, has_the_cameras_and_which_of_them_are_fed) {
-    const Json told = read("camera: {device: \"ros:/camera/depth/image_rect_raw\"}\n");
-    ASSERT_EQ(told["cameras"].size(), 1U);
-    const Json& camera = told["cameras"][0];
+    const Json described = read("camera: {device: \"ros:/camera/depth/image_rect_raw\"}\n");
+    ASSERT_EQ(described["cameras"].size(), 1U);
+    const Json& camera = described["cameras"][0];
     const HostCamera& of_rig = settings_->host.rig.cameras[0];
     EXPECT_EQ(camera["name"], "");
     EXPECT_EQ(camera["device"], "ros:/camera/depth/image_rect_raw");
