@@ -14,6 +14,7 @@ constexpr std::size_t kBytesMax = std::size_t{4} << 20U;
 void take(WatchedMap& map, const FrameHeader& header, std::string_view payload) {
     if (header.kind == FrameKind::range) (void)parse_range(payload);
     if (header.kind == FrameKind::joints) (void)parse_joints(payload);
+    if (header.kind == FrameKind::reload) (void)parse_reload(payload);
     if (header.kind != FrameKind::map || map.take(header, payload) != WatchedMap::Taken::all) return;
     map.log_odds().for_each([&](MortonCode brick, const BrickView&) {
         const VoxelKey key = key_of_morton(brick);

@@ -75,8 +75,8 @@ bool Daemon::Parts::resume_with(Next& next) {
     settings = std::move(next.settings);
     pipeline = std::move(next.pipeline);
     pipeline.work_beside(depth_threads.workers());
+    watchers.change_rig(settings.host.rig, reloads.count);
     pipeline.observe(&watchers);
-    watchers.change_rig(settings.host.rig);
     watchers.give_robot(settings.recorded.robot);
     inputs.change_rig(settings.host.rig);
     queries.change_robot(settings.host, miss_units(settings.mapping));

@@ -32,6 +32,11 @@ std::uint8_t bits_of(const WatchWants& wants) noexcept {
     return bits;
 }
 
+WatchEvent reload_event(std::uint64_t reloads) {
+    return {watch::FrameKind::reload, HostTime{0},
+            std::make_shared<const std::string>(watch::reload_payload(reloads))};
+}
+
 }  // namespace
 
 /// A watcher with its connection.
@@ -166,6 +171,22 @@ void WatchServer::give(watch::FrameKind kind, HostTime time, std::string payload
     wake_.wake();
 }
 
+void WatchServer::change_rig(const HostRig& rig, std::uint64_t reloads) {
+    joint_counts_ = rig.joint_counts();
+    const WatchEvent reload = reload_event(reloads);
+    std::optional<MapNow> before;  // released without the lock
+    {
+        const std::lock_guard lock(mutex_);
+        before = std::exchange(given_.map, std::nullopt);
+        given_.reloads = reloads;
+        // Of reloads one after the other the last one counts: no more than one is beyond the limit.
+        std::vector<WatchEvent>& events = given_.events;
+        if (!events.empty() && events.back().kind == watch::FrameKind::reload) events.pop_back();
+        events.push_back(reload);
+    }
+    wake_.wake();
+}
+
 WatchServer::Record WatchServer::record() const {
     return {watchers_, stalled_, lost_};
 }
@@ -198,23 +219,35 @@ void WatchServer::wait_for_work() {
 
 WatchServer::Given WatchServer::taken() {
     const std::lock_guard lock(mutex_);
-    return std::exchange(given_, {});
+    Given taken = std::exchange(given_, {});
+    given_.reloads = taken.reloads;
+    return taken;
 }
 
+/// A client begins after the events: those before a reload would follow the frame that it begins with.
 void WatchServer::spread(Given given) {
-    for (auto& client : given.clients) {
-        if (map_) client->output.on_map(*map_, {});
-        if (robot_) client->output.on_event(*robot_);
-        clients_.push_back(std::move(client));
-    }
-    for (const WatchEvent& event : given.events) {
-        if (event.kind == watch::FrameKind::robot) robot_ = event;
-        for (const auto& client : clients_) client->output.on_event(event);
-    }
-    if (!given.map) return;
-    const watch::BrickCodes changed =
-        map_ ? watch::changed_bricks(given.map->map, map_->map) : watch::BrickCodes{};
-    map_ = std::move(given.map);
+    for (const WatchEvent& event : given.events) spread(event);
+    for (auto& client : given.clients) welcome(std::move(client), given.reloads);
+    if (given.map) spread(std::move(*given.map));
+}
+
+void WatchServer::spread(const WatchEvent& event) {
+    if (event.kind == watch::FrameKind::reload) is_map_old_ = true;
+    if (event.kind == watch::FrameKind::robot) robot_ = event;
+    for (const auto& client : clients_) client->output.on_event(event);
+}
+
+void WatchServer::welcome(std::unique_ptr<Client> client, std::uint64_t reloads) {
+    client->output.on_event(reload_event(reloads));
+    if (robot_) client->output.on_event(*robot_);
+    if (map_ && !is_map_old_) client->output.on_map(*map_, {});
+    clients_.push_back(std::move(client));
+}
+
+void WatchServer::spread(MapNow map) {
+    const watch::BrickCodes changed = map_ ? watch::changed_bricks(map.map, map_->map) : watch::BrickCodes{};
+    map_ = std::move(map);
+    is_map_old_ = false;
     for (const auto& client : clients_) client->output.on_map(*map_, changed);
 }
 

@@ -25,7 +25,7 @@ class WatchServer final : public MeasurementObserver {
     static constexpr std::size_t kWatchersMax = 8;
     /// A watcher that takes nothing for this long, although something waits for it, is dropped.
     static constexpr Nanoseconds kStalledMax{30'000'000'000};
-    /// Events that wait for the thread; beyond this the newest are lost for all.
+    /// Events that wait for the thread; beyond this the newest are lost for all, but for a reload.
     static constexpr std::size_t kEventsMax = 8192;
 
     /// Throws std::system_error if there is no thread or descriptor left.
@@ -58,8 +58,9 @@ class WatchServer final : public MeasurementObserver {
     /// Of each camera one image in kImagePeriod goes to the watchers, reduced.
     void on_image(const DepthFrame& frame) noexcept override;
     static constexpr Nanoseconds kImagePeriod{200'000'000};
-    /// The numbers of joints of another rig's sources.
-    void change_rig(const HostRig& rig) { joint_counts_ = rig.joint_counts(); }
+    /// Another rig. Each watcher gets a frame that says so, after all that was given before and ahead of all
+    /// that is given later. `reloads`: since the daemon's start.
+    void change_rig(const HostRig& rig, std::uint64_t reloads);
 
     struct Record {
         std::size_t watchers = 0;
@@ -75,11 +76,15 @@ class WatchServer final : public MeasurementObserver {
         std::optional<MapNow> map;
         std::vector<WatchEvent> events;
         std::vector<std::unique_ptr<Client>> clients;
+        std::uint64_t reloads = 0;  ///< so far; `map` is of their newest rig
     };
     void give(watch::FrameKind kind, HostTime time, std::string payload);
     void run();
     [[nodiscard]] Given taken();
     void spread(Given given);
+    void spread(const WatchEvent& event);
+    void spread(MapNow map);
+    void welcome(std::unique_ptr<Client> client, std::uint64_t reloads);
     void wait_for_work();
     void serve();
     [[nodiscard]] bool serve(Client& client, HostTime now);
@@ -99,6 +104,7 @@ class WatchServer final : public MeasurementObserver {
     // Of the thread.
     std::optional<MapNow> map_;
     std::optional<WatchEvent> robot_;
+    bool is_map_old_ = false;  ///< of the rig before a reload
     std::vector<std::unique_ptr<Client>> clients_;
     std::thread thread_;  ///< the last member: it uses all others
 };

@@ -18,6 +18,8 @@ bool WatchWants::has(watch::FrameKind kind) const noexcept {
             return images;
         case watch::FrameKind::robot:
             return robot;
+        case watch::FrameKind::reload:
+            return true;
     }
     return false;
 }
@@ -32,9 +34,27 @@ void Watcher::on_map(const MapNow& now, const watch::BrickCodes& changed) {
 void Watcher::on_event(const WatchEvent& event) {
     if (!wants_.has(event.kind)) return;
     events_.push_back(event);
-    if (events_.size() <= kEventsMax) return;
+    if (event.kind == watch::FrameKind::reload) {
+        ++reloads_waiting_;
+        is_behind_ = false;
+    }
+    if (events_.size() > kEventsMax) drop_oldest();
+}
+
+/// A reload or a robot is never lost: of several that are overdue, the newest one goes out.
+void Watcher::drop_oldest() {
+    WatchEvent oldest = std::move(events_.front());
     events_.pop_front();
-    ++lost_;
+    if (oldest.kind == watch::FrameKind::robot) {
+        overdue_robot_ = std::move(oldest);
+        return;
+    }
+    if (oldest.kind != watch::FrameKind::reload) {
+        ++lost_;
+        return;
+    }
+    if (overdue_reload_) --reloads_waiting_;
+    overdue_reload_ = std::move(oldest);
 }
 
 std::string_view Watcher::pending(const MapNow* now) {
@@ -42,7 +62,7 @@ std::string_view Watcher::pending(const MapNow* now) {
         bytes_.clear();
         sent_ = 0;
         put_events();
-        if (now != nullptr && is_behind_) put_map(*now);
+        if (now != nullptr && is_behind_ && reloads_waiting_ == 0) put_map(*now);
     }
     return std::string_view(bytes_).substr(sent_);
 }
@@ -52,11 +72,18 @@ void Watcher::on_sent(std::size_t bytes) {
 }
 
 void Watcher::put_events() {
+    if (overdue_reload_) put(*std::exchange(overdue_reload_, std::nullopt));
+    if (overdue_robot_) put(*std::exchange(overdue_robot_, std::nullopt));
     while (!events_.empty() && bytes_.size() < kChunkBytes) {
         const WatchEvent event = std::move(events_.front());
         events_.pop_front();
-        put(event.kind, 0, event.time, *event.payload);
+        put(event);
     }
+}
+
+void Watcher::put(const WatchEvent& event) {
+    put(event.kind, 0, event.time, *event.payload);
+    if (event.kind == watch::FrameKind::reload) --reloads_waiting_;
 }
 
 void Watcher::put_map(const MapNow& now) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -40,7 +41,7 @@ struct WatchWants {
 
 class Watcher {
   public:
-    /// Events that wait; beyond this the oldest is dropped and counted.
+    /// Events that wait; beyond this the oldest is dropped and counted, but for a reload.
     static constexpr std::size_t kEventsMax = 1024;
     /// Bytes that are made at once.
     static constexpr std::size_t kChunkBytes = std::size_t{64} << 10U;
@@ -52,7 +53,8 @@ class Watcher {
     /// Another map is there; `changed`: against the one before. The first time, all of its bricks are
     /// missing.
     void on_map(const MapNow& now, const watch::BrickCodes& changed);
-    /// Does nothing if the watcher does not want the kind.
+    /// Does nothing if the watcher does not want the kind; each wants a reload. The map that waits is of the
+    /// rig before the reload and does not go out any more; one that is given later follows the reload.
     void on_event(const WatchEvent& event);
 
     /// The next bytes to send; empty: there are none. `now`: the newest map, null if there is none yet.
@@ -63,7 +65,9 @@ class Watcher {
     [[nodiscard]] const WatchWants& wants() const noexcept { return wants_; }
 
   private:
+    void drop_oldest();
     void put_events();
+    void put(const WatchEvent& event);
     void put_map(const MapNow& now);
     void put(watch::FrameKind kind, std::uint8_t flags, HostTime time, std::string_view payload);
 
@@ -73,6 +77,9 @@ class Watcher {
     std::uint64_t number_ = 0;
     std::uint64_t lost_ = 0;
     std::deque<WatchEvent> events_;
+    std::optional<WatchEvent> overdue_reload_;  ///< older than all of events_
+    std::optional<WatchEvent> overdue_robot_;   ///< the same
+    std::size_t reloads_waiting_ = 0;           ///< in events_ and overdue
     watch::MissingBricks missing_;
     bool has_map_ = false;    ///< it was given one
     bool has_begun_ = false;  ///< the first frame of a map was made

@@ -26,6 +26,10 @@ constexpr std::string_view kGreeting = R"({"ok":true,"watch":1})";
 /// Read in one turn of the loop: others get their turn.
 constexpr int kReadsPerTurn = 32;
 
+Unexpected<std::string> malformed() {
+    return unexpected(std::string("a frame of 'watch' is malformed"));
+}
+
 }  // namespace
 
 DaemonLink::DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener,
@@ -68,6 +72,7 @@ Status<std::string> DaemonLink::describe() {
     if (!facts)
         return unexpected("the daemon has another version: its answer to 'describe' is not understood (" +
                           facts.error() + "): install the same version of both, and restart them");
+    described_ = facts->reloads;
     listener_.on_robot(std::move(facts).value());
     return Done{};
 }
@@ -107,51 +112,78 @@ Status<std::string> DaemonLink::take_frames() {
 
 Status<std::string> DaemonLink::take(const watch::FrameHeader& header, std::string_view payload) {
     lost_ = header.lost;
-    const Unexpected<std::string> malformed = unexpected(std::string("a frame of 'watch' is malformed"));
+    if (!reloads_ && header.kind != watch::FrameKind::reload) return malformed();
     switch (header.kind) {
         case watch::FrameKind::map:
-            if (map_.take(header, payload) != watch::WatchedMap::Taken::all)
-                return unexpected(std::string("the map is malformed, or larger than 2 GiB"));
-            if (map_.is_complete()) listener_.on_map(map_);
-            return Done{};
-        case watch::FrameKind::range: {
-            const auto range = watch::parse_range(payload);
-            if (!range) return malformed;
-            listener_.on_range(*range, header.time);
-            return Done{};
-        }
-        case watch::FrameKind::joints: {
-            const auto joints = watch::parse_joints(payload);
-            if (!joints) return malformed;
-            listener_.on_joints(*joints, header.time);
-            return Done{};
-        }
+            return take_map(header, payload);
+        case watch::FrameKind::range:
+            return take_range(header, payload);
+        case watch::FrameKind::joints:
+            return take_joints(header, payload);
         case watch::FrameKind::status:
             return take_status(payload);
-        case watch::FrameKind::image: {
-            const auto image = watch::parse_image(payload);
-            if (!image) return malformed;
-            listener_.on_image(*image, header.time);
-            return Done{};
-        }
+        case watch::FrameKind::image:
+            return take_image(header, payload);
         case watch::FrameKind::robot:
             listener_.on_urdf(std::string(payload));
             return Done{};
+        case watch::FrameKind::reload:
+            return take_reload(payload);
     }
-    return malformed;
+    return malformed();
+}
+
+/// What follows is placed with the rig that it was made with: the listener has it before the next frame.
+Status<std::string> DaemonLink::take_reload(std::string_view payload) {
+    reloads_ = watch::parse_reload(payload);
+    if (!reloads_) return malformed();
+    if (*reloads_ > described_)
+        if (auto described = describe(); !described) return described;
+    if (*reloads_ <= described_) return Done{};
+    return unexpected(std::string("the daemon describes a rig that it does not have any more"));
+}
+
+/// The daemon reloads again while a frame waits here: then the description is newer than the frame.
+bool DaemonLink::is_current() {
+    if (*reloads_ == described_) return true;
+    ++outdated_;
+    return false;
+}
+
+/// The map itself goes on across a reload.
+Status<std::string> DaemonLink::take_map(const watch::FrameHeader& header, std::string_view payload) {
+    if (map_.take(header, payload) != watch::WatchedMap::Taken::all)
+        return unexpected(std::string("the map is malformed, or larger than 2 GiB"));
+    if (map_.is_complete() && is_current()) listener_.on_map(map_);
+    return Done{};
+}
+
+Status<std::string> DaemonLink::take_range(const watch::FrameHeader& header, std::string_view payload) {
+    const auto range = watch::parse_range(payload);
+    if (!range) return malformed();
+    if (is_current()) listener_.on_range(*range, header.time);
+    return Done{};
+}
+
+Status<std::string> DaemonLink::take_joints(const watch::FrameHeader& header, std::string_view payload) {
+    const auto joints = watch::parse_joints(payload);
+    if (!joints) return malformed();
+    if (is_current()) listener_.on_joints(*joints, header.time);
+    return Done{};
+}
+
+Status<std::string> DaemonLink::take_image(const watch::FrameHeader& header, std::string_view payload) {
+    const auto image = watch::parse_image(payload);
+    if (!image) return malformed();
+    if (is_current()) listener_.on_image(*image, header.time);
+    return Done{};
 }
 
 Status<std::string> DaemonLink::take_status(std::string_view payload) {
     const Json status = is_nested_too_deep(payload) ? Json() : Json::parse(payload, nullptr, false);
-    const Json& counted = at(at(status, "reloads"), "count");
-    if (!counted.is_number_unsigned() || !at(status, "problems").is_array())
+    if (!at(status, "problems").is_array())
         return unexpected(std::string("the daemon's status is malformed"));
-    const auto count = counted.get<std::uint64_t>();
-    const bool is_reloaded = reloads_ && *reloads_ != count;
-    reloads_ = count;
-    if (is_reloaded)
-        if (auto described = describe(); !described) return described;
-    listener_.on_status(status);
+    if (is_current()) listener_.on_status(status);
     return Done{};
 }
 

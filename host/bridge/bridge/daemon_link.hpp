@@ -51,6 +51,8 @@ class DaemonLink {
     [[nodiscard]] bool is_connected() const noexcept { return descriptor_ >= 0; }
     /// Frames that the daemon left out because this program read too slowly.
     [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
+    /// Frames of the rig before a reload that came after the description of the next rig: not handed on.
+    [[nodiscard]] std::uint64_t outdated() const noexcept { return outdated_; }
 
   private:
     void connect();
@@ -59,7 +61,14 @@ class DaemonLink {
     /// Takes the complete frames of `bytes_`; the error is a sentence.
     [[nodiscard]] Status<std::string> take_frames();
     [[nodiscard]] Status<std::string> take(const watch::FrameHeader& header, std::string_view payload);
+    [[nodiscard]] Status<std::string> take_reload(std::string_view payload);
+    [[nodiscard]] Status<std::string> take_map(const watch::FrameHeader& header, std::string_view payload);
+    [[nodiscard]] Status<std::string> take_range(const watch::FrameHeader& header, std::string_view payload);
+    [[nodiscard]] Status<std::string> take_joints(const watch::FrameHeader& header, std::string_view payload);
+    [[nodiscard]] Status<std::string> take_image(const watch::FrameHeader& header, std::string_view payload);
     [[nodiscard]] Status<std::string> take_status(std::string_view payload);
+    /// True if the frames that come now are of the described rig; else one more is outdated.
+    [[nodiscard]] bool is_current();
     void lose(const std::string& why);
 
     EventLoop& loop_;
@@ -71,8 +80,10 @@ class DaemonLink {
     std::string bytes_;
     bool is_greeted_ = false;
     watch::WatchedMap map_;
-    std::optional<std::uint64_t> reloads_;  ///< of the newest status
+    std::optional<std::uint64_t> reloads_;  ///< of the rig of the frames that come now
+    std::uint64_t described_ = 0;           ///< of the rig that the listener has
     std::uint64_t lost_ = 0;
+    std::uint64_t outdated_ = 0;
     std::optional<HostTime> tried_;
     Nanoseconds rest_{0};
 };

@@ -120,6 +120,7 @@ Result<RobotFacts, std::string> robot_facts(const Json& described) {
     try {
         return RobotFacts{
             .rig = described.at("rig").get<std::string>(),
+            .reloads = described.at("reloads").get<std::uint64_t>(),
             .root_link = described.at("root_link").get<std::string>(),
             .base_link = described.at("base_link").get<std::string>(),
             .T_root_base = pose_of(described.at("T_root_base")),

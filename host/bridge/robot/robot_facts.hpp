@@ -46,7 +46,8 @@ struct CameraFacts {
 
 struct RobotFacts {
     std::string rig;
-    std::string root_link;  ///< of the URDF
+    std::uint64_t reloads = 0;  ///< since the daemon's start: which rig this is
+    std::string root_link;      ///< of the URDF
     std::string base_link;
     Eigen::Isometry3d T_root_base = Eigen::Isometry3d::Identity();
     Eigen::Isometry3d T_root_map = Eigen::Isometry3d::Identity();

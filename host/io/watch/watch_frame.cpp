@@ -25,6 +25,7 @@ bool is_kind(std::uint8_t kind) {
         case FrameKind::range:
         case FrameKind::joints:
         case FrameKind::status:
+        case FrameKind::reload:
         case FrameKind::image:
         case FrameKind::robot:
             return true;
@@ -125,6 +126,18 @@ std::optional<WatchedJoints> parse_joints(std::string_view payload) {
         if (!std::isfinite(joints.position.back())) reader.fail();
     }
     return reader.is_sound() && reader.is_over() ? std::optional(joints) : std::nullopt;
+}
+
+std::string reload_payload(std::uint64_t reloads) {
+    std::string bytes;
+    ByteWriter(bytes).put(reloads);
+    return bytes;
+}
+
+std::optional<std::uint64_t> parse_reload(std::string_view payload) {
+    ByteReader reader(payload);
+    const auto reloads = reader.get<std::uint64_t>();
+    return reader.is_sound() && reader.is_over() ? std::optional(reloads) : std::nullopt;
 }
 
 std::string image_payload(const DepthFrame& frame) {

@@ -32,6 +32,7 @@ enum class FrameKind : std::uint8_t {
     range = 2,   ///< a reading that is in the map
     joints = 3,  ///< a sample of one source of joint states
     status = 4,  ///< the status as JSON, as `status` answers it
+    reload = 5,  ///< what follows is of the rig that `describe` answers with this number of reloads
     image = 6,   ///< a reduced depth image that is in the map
     robot = 7,   ///< the robot's URDF as text
 };
@@ -76,6 +77,10 @@ struct WatchedJoints {
 /// `count`: joints of the source.
 [[nodiscard]] std::string joints_payload(const JointMeasurement& joints, std::size_t count);
 [[nodiscard]] std::optional<WatchedJoints> parse_joints(std::string_view payload);
+
+/// `reloads`: how often the daemon has taken another rig since its start (`reloads` of `describe`).
+[[nodiscard]] std::string reload_payload(std::uint64_t reloads);
+[[nodiscard]] std::optional<std::uint64_t> parse_reload(std::string_view payload);
 
 /// A depth image with every n-th pixel of every n-th row.
 struct WatchedImage {

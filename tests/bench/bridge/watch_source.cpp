@@ -80,6 +80,7 @@ class Watched {
         Clock::time_point next_status = next;
         bool is_there = send_all(connection_, R"({"ok":true,"watch":1})"
                                               "\n") &&
+                        send_frame({.kind = watch::FrameKind::reload}, watch::reload_payload(0)) &&
                         send_map(true);
         while (is_there) {
             if (next >= next_status) {

@@ -1,12 +1,15 @@
 // A client that watches a daemon on a bus that is alive.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,7 +52,13 @@ class WatchClient {
             EXPECT_EQ(map.take(header, payload), watch::WatchedMap::Taken::all);
         }
         if (header.kind == watch::FrameKind::range) {
-            EXPECT_TRUE(watch::parse_range(payload));
+            const auto parsed_range = watch::parse_range(payload);
+            EXPECT_TRUE(parsed_range);
+            range = parsed_range.value_or(watch::WatchedRange{});
+        }
+        if (header.kind == watch::FrameKind::reload) {
+            reloads = watch::parse_reload(payload);
+            EXPECT_TRUE(reloads);
         }
         if (header.kind == watch::FrameKind::joints) {
             EXPECT_EQ(watch::parse_joints(payload).value().position.size(), 7U);
@@ -67,6 +76,8 @@ class WatchClient {
     std::uint64_t frames = 0;
     std::map<watch::FrameKind, int> of_kind;
     watch::WatchedMap map;
+    watch::WatchedRange range;             ///< the newest
+    std::optional<std::uint64_t> reloads;  ///< of the newest reload
 
   private:
     std::string receive(std::size_t bytes) const {
@@ -123,9 +134,66 @@ TEST_F(WatchTest, gets_only_what_it_asks_for) {
     WatchClient client(control(), "watch joints\n");
     client.read_for(500ms);
     EXPECT_GT(client.of_kind[watch::FrameKind::joints], 10);
-    EXPECT_EQ(client.of_kind.size(), 1U);
+    EXPECT_EQ(client.of_kind.size(), 2U);
+    EXPECT_EQ(client.of_kind[watch::FrameKind::reload], 1);
+    EXPECT_EQ(client.reloads, 0U);
     WatchClient unknown(control(), "watch everything\n");
     EXPECT_NE(unknown.greeting.find("map, ranges, joints, status"), std::string::npos) << unknown.greeting;
+}
+
+/// The experiment with its base so many metres above the map's origin.
+std::string rig_at(double height_m) {
+    return fmt::format("extends: {}\nname: high\nT_map_base: {{xyz_m: [0, 0, {}], rpy_deg: [0, 0, 0]}}\n",
+                       kExperiment, height_m);
+}
+
+/// Of the highest brick in which something is known; 0: of the map's origin.
+double top_m(const watch::WatchedMap& map) {
+    constexpr int kOrigin = 32'768;
+    int top = 0;
+    map.log_odds().for_each([&](MortonCode brick, const BrickView&) {
+        top = std::max(top, int{key_of_morton(brick).z} - kOrigin);
+    });
+    return top * map.resolution_m();
+}
+
+// With each reload the base is 20 m higher, so that a range and a voxel show the rig that they are of.
+TEST_F(WatchTest, sees_nothing_of_another_rig_before_its_reload_and_no_range_of_the_one_before_after_it) {
+    constexpr double kStep_m = 20.0;
+    constexpr double kReach_m = 8.0;  // of the arm and its ranges
+    constexpr std::uint64_t kReloads = 3;
+    const auto rig_file = folder_.write("rig.yaml", rig_at(0));
+    start({"--no-camera"}, rig_file, make_log(rig::read_rig(rig_file).value(), 3));
+    ASSERT_TRUE(daemon_->wait_until([](const Json& now) { return is_ranging(now); }, 20s)) << daemon_->log();
+    WatchClient client(control(), "watch map ranges\n");
+    WatchClient idle(control(), "watch joints\n");  // reads nothing until the end
+    ASSERT_TRUE(client.read());
+    EXPECT_EQ(client.reloads, 0U);
+    for (std::uint64_t reload = 0; reload <= kReloads; ++reload) {
+        if (reload > 0) {
+            folder_.write("rig.yaml", rig_at(kStep_m * static_cast<double>(reload)));
+            daemon_->signal(SIGHUP);
+        }
+        int ranges = 0;
+        bool is_seen = false;
+        const auto end = std::chrono::steady_clock::now() + 15s;
+        while ((ranges < 200 || !is_seen) && std::chrono::steady_clock::now() < end && client.read()) {
+            const double base_m = kStep_m * static_cast<double>(client.reloads.value());
+            if (client.header.kind == watch::FrameKind::range) {
+                ASSERT_NEAR(client.range.p_map_sensor.z(), base_m, kReach_m);
+                ranges += *client.reloads == reload ? 1 : 0;
+            }
+            if (client.header.kind == watch::FrameKind::map) {
+                ASSERT_LT(top_m(client.map), base_m + kReach_m);
+                is_seen = client.map.is_complete() && top_m(client.map) > base_m - kReach_m;
+            }
+        }
+        ASSERT_EQ(client.reloads, reload) << daemon_->log();
+        EXPECT_GE(ranges, 200) << reload;
+        EXPECT_TRUE(is_seen) << reload;
+    }
+    while (idle.reloads != kReloads && idle.read()) continue;
+    EXPECT_EQ(idle.reloads, kReloads);
 }
 
 TEST_F(WatchTest, takes_no_place_of_a_query_and_eight_at_most) {

@@ -5,9 +5,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -64,6 +66,11 @@ class Reader {
         while (read())
             if (map.is_complete() && map.time() == time) return true;
         return false;
+    }
+    /// The number of the next frame, which is a reload; empty if it is another one.
+    std::optional<std::uint64_t> next_reload() {
+        if (!read() || header.kind != watch::FrameKind::reload) return std::nullopt;
+        return watch::parse_reload(payload);
     }
     bool is_taken = false;
     watch::FrameHeader header;
@@ -203,9 +210,94 @@ TEST(WatchServer, drops_the_oldest_events_of_one_that_stalls_and_catches_it_up) 
     EXPECT_EQ(same, map.known_voxels());
 }
 
+TEST(WatchServer, says_first_which_rig_a_watcher_sees_and_then_when_another_one_follows) {
+    WatchServer server(rig_of_two_joints());
+    server.change_rig(rig_of_two_joints(), 6);
+    Reader reader(server, {.joints = true});
+    (void)reader.line();
+    EXPECT_EQ(reader.next_reload(), 6U);
+    server.on_sample({.sampled = {1}, .position_rad = {0.5, 0.25}});
+    HostRig other;
+    other.joint_sources = {{.node_id = 9, .joints = {"a", "b", "c"}}};
+    server.change_rig(other, 7);
+    server.on_sample({.sampled = {2}, .position_rad = {0.5, 0.25, 1.0}});
+    ASSERT_TRUE(reader.read());
+    EXPECT_EQ(reader.header.time, HostTime{1});
+    EXPECT_EQ(reader.next_reload(), 7U);
+    ASSERT_TRUE(reader.read());
+    EXPECT_EQ(reader.header.time, HostTime{2});
+    EXPECT_EQ(watch::parse_joints(reader.payload).value().position.size(), 3U);
+}
+
+// The map that waits at a reload is of the rig before it, whichever thread has it and however much of it went
+// out.
+TEST(WatchServer, sends_no_map_of_the_rig_before_a_reload_after_it) {
+    WatchServer server(rig_of_two_joints());
+    FusedMap map{MapConfig{}};
+    Reader slow(server);
+    Reader quick(server, {.map = true});
+    (void)slow.line();
+    (void)quick.line();
+    std::int64_t given = 0;
+    for (std::uint64_t reload = 1; reload <= 40; ++reload) {
+        for (int step = 0; step < 4; ++step) {
+            change(map, static_cast<int>(4 * reload) + step);
+            server.give_map(map.copy(), {++given});
+            server.on_sample({.sampled = {given}, .position_rad = {1.0, 2.0}});
+            std::this_thread::sleep_for(std::chrono::microseconds(given * 97 % 3'000));
+        }
+        server.change_rig(rig_of_two_joints(), reload);
+        Reader late(server, {.map = true});
+        (void)late.line();
+        EXPECT_EQ(late.next_reload(), reload);
+        server.give_map(map.copy(), {++given});
+        ASSERT_TRUE(late.read());
+        EXPECT_EQ(late.header.time, HostTime{given}) << "not the one before the reload";
+    }
+    for (Reader* reader : {&slow, &quick}) {
+        EXPECT_EQ(reader->next_reload(), 0U);
+        std::int64_t newest = 0;
+        std::uint64_t reloads = 0;
+        while (newest < given && reader->read()) {
+            newest = std::max(newest, reader->header.time.ns);
+            if (reader->header.kind == watch::FrameKind::reload)
+                reloads = watch::parse_reload(reader->payload).value();
+            else  // five times are given from one reload to the next, the first of them at once
+                EXPECT_EQ(reader->header.time.ns / 5, static_cast<std::int64_t>(reloads));
+        }
+        EXPECT_EQ(reloads, 40U);
+        EXPECT_TRUE(reader->map.is_complete() || reader->read_to({given}));
+    }
+}
+
+TEST(WatchServer, loses_no_reload_of_one_that_stalls) {
+    WatchServer server(rig_of_two_joints());
+    Reader reader(server, {.joints = true});
+    (void)reader.line();
+    EXPECT_EQ(reader.next_reload(), 0U);
+    constexpr std::int64_t kOfEach = 3'000;  // more than what waits for a watcher
+    for (std::uint64_t reload = 0; reload < 20; ++reload) {
+        if (reload > 0) server.change_rig(rig_of_two_joints(), reload);
+        for (std::int64_t i = 0; i < kOfEach; ++i)
+            server.on_sample(
+                {.sampled = {static_cast<std::int64_t>(reload) * kOfEach + i}, .position_rad = {1.0, 2.0}});
+        std::this_thread::sleep_for(2ms);
+    }
+    std::uint64_t reloads = 0;
+    while (reader.header.time.ns != 20 * kOfEach - 1 && reader.read()) {
+        if (reader.header.kind == watch::FrameKind::reload)
+            reloads = watch::parse_reload(reader.payload).value();
+        else
+            EXPECT_EQ(reader.header.time.ns / kOfEach, static_cast<std::int64_t>(reloads));
+    }
+    EXPECT_EQ(reloads, 19U);
+    EXPECT_GT(reader.header.lost, 10'000U);
+}
+
 TEST(WatchServer, ends_the_connection_of_one_that_reads_nothing_for_long) {
     WatchServer server(rig_of_two_joints(), Nanoseconds{200'000'000});
     Reader reader(server, {.status = true});
+    (void)reader.line();
     EXPECT_EQ(server.record().watchers, 1U);
     for (int i = 0; i < 100; ++i) server.give_status(std::string(100'000, ' '));
     EXPECT_TRUE(wait_until([&] {
@@ -229,6 +321,7 @@ TEST(WatchServer, serves_eight_and_another_one_when_one_of_them_has_gone) {
     server.end();
     EXPECT_FALSE(Reader(server).is_taken);
     (void)readers.front()->line();
+    EXPECT_EQ(readers.front()->next_reload(), 0U);
     EXPECT_FALSE(readers.front()->read()) << "closed";
 }
 

@@ -33,13 +33,22 @@ TEST(WatchFrame, has_a_header_of_32_bytes_that_reads_back) {
 
 TEST(WatchFrame, refuses_another_version_kind_or_flag_and_a_payload_that_is_too_long) {
     EXPECT_FALSE(parse_header(bytes_of({.kind = static_cast<FrameKind>(0)})));
-    EXPECT_FALSE(parse_header(bytes_of({.kind = static_cast<FrameKind>(5)})));
+    EXPECT_FALSE(parse_header(bytes_of({.kind = static_cast<FrameKind>(6)})));
     EXPECT_FALSE(parse_header(bytes_of({.kind = FrameKind::map, .flags = 4})));
     EXPECT_FALSE(parse_header(bytes_of({.kind = FrameKind::range, .flags = kBegins})));
+    EXPECT_FALSE(parse_header(bytes_of({.kind = FrameKind::reload, .flags = kBegins})));
     EXPECT_FALSE(parse_header(bytes_of({.bytes = kPayloadMax + 1})));
     std::string other = bytes_of({});
     other[4] = 2;
     EXPECT_FALSE(parse_header(other));
+}
+
+TEST(WatchFrame, has_the_number_of_a_reload_that_reads_back_and_refuses_every_cut) {
+    const std::string reload = reload_payload(0x0102030405060708U);
+    EXPECT_EQ(reload, "\x08\x07\x06\x05\x04\x03\x02\x01");
+    EXPECT_EQ(parse_reload(reload), 0x0102030405060708U);
+    for (std::size_t cut = 0; cut < reload.size(); ++cut) EXPECT_FALSE(parse_reload(reload.substr(0, cut)));
+    EXPECT_FALSE(parse_reload(reload + 'x'));
 }
 
 TEST(WatchFrame, has_ranges_and_joints_that_read_back_and_refuses_every_cut) {
