@@ -88,8 +88,13 @@ CameraNoise read_noise(const Value& value, const std::string& path) {
 std::string read_device(const Table& table) {
     const Value& value = table.require(keys::camera::kDevice);
     std::string device = table.text(keys::camera::kDevice);
+    std::error_code error;
     if (!is_good_device(device))
         table.fail(keys::camera::kDevice, {ErrorCode::bad_value, kGoodDevice, fmt::format("'{}'", device)});
+    if (is_topic(device) && !std::filesystem::exists(device, error))
+        table.fail(keys::camera::kDevice,
+                   {ErrorCode::bad_value, "expected `ros:` before the topic of a camera's images",
+                    fmt::format("'{}'", device), fmt::format("write ros:{}", device)});
     if (!device.ends_with(".oni")) return device;
     return std::filesystem::absolute(existing_file(value, table.path_of(keys::camera::kDevice)).shown())
         .lexically_normal()

@@ -121,6 +121,8 @@ const Broken kBroken[] = {
      "give rpy_deg instead"},
     {"camera-topic-without-its-slash.yaml", 10, "camera.device", ErrorCode::bad_value, "'ros:depth/image'",
      "which begins with /"},
+    {"camera-topic-without-ros.yaml", 10, "camera.device", ErrorCode::bad_value, "'/depth/image'",
+     "write ros:/depth/image"},
     {"camera-depth-reversed.yaml", 11, "camera.depth_max_m", ErrorCode::out_of_range, "4",
      "more than depth_min_m"},
     {"camera-depth-beyond-its-images.yaml", 10, "camera.depth_max_m", ErrorCode::out_of_range, "'70'",

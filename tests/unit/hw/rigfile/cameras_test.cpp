@@ -105,6 +105,11 @@ TEST_F(Cameras, may_be_fed_by_a_program_under_the_name_of_a_topic) {
     EXPECT_FALSE(is_fed_device("/ros:/a"));
 }
 
+TEST_F(Cameras, need_ros_before_a_topic_and_not_before_a_file) {
+    EXPECT_EQ(refused(item("name: a, device: /dev/octoskin_none")).code, ErrorCode::bad_value);
+    EXPECT_TRUE(read(item("name: a, device: /dev/null")));
+}
+
 TEST_F(Cameras, are_refused_with_a_bad_name_or_a_shared_device_or_in_both_forms) {
     for (const char* name : {"''", "-a", ".a", "a/b", "..", "'a b'", "123456789012345678901234567890123"})
         EXPECT_EQ(refused(item(std::string("name: ") + name)).code, ErrorCode::bad_name) << name;
