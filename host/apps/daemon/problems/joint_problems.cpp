@@ -25,6 +25,10 @@ std::string refused_lines(const JointSocket& socket) {
     return text;
 }
 
+/// For samples that come through the socket.
+constexpr const char* kSendThem =
+    "send them with `octoskin joints`, or start `octoskin bridge`, which takes them from ROS 2";
+
 /// "node 61" or "nodes 61, 62".
 std::string nodes_text(const HostRig& rig) {
     std::vector<int> nodes;
@@ -58,7 +62,7 @@ Problem no_joints(const DaemonView& view) {
         problem.key = "joint_no_host_time";
     } else {
         problem.what = "no joint states: none comes through the socket";
-        problem.remedy = "send them with `octoskin joints`";
+        problem.remedy = kSendThem;
     }
     return problem;
 }
@@ -209,6 +213,7 @@ void add_cause(const DaemonView& view, std::size_t source, Problem& problem) {
         problem.remedy = fmt::format("expected is {}", kJointTextWanted);
         return;
     }
+    if (is_local(view, source)) problem.remedy = kSendThem;
     const auto& joints = view.pipeline->inputs().joint_samples;
     if (joints.rejected() > 0) problem.what += "; of all sources " + see_counters("joint samples", joints);
 }

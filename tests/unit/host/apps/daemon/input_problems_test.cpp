@@ -73,7 +73,8 @@ TEST_F(JointProblemsTest, have_joint_states_that_are_not_there_or_of_no_use) {
     const auto with_socket = inputs_with_joint_socket();
     view_.inputs = with_socket.get();
     EXPECT_THAT(reported(ProblemCode::joints_missing),
-                Optional(AllOf(what_has("socket"), remedy_has("`octoskin joints`"))));
+                Optional(AllOf(what_has("socket"), remedy_has("`octoskin joints`"),
+                               remedy_has("`octoskin bridge`"))));
     send_joints("half a turn");
     send_joints("1 2 3 4");
     with_socket->catch_up();
