@@ -83,7 +83,7 @@ inline constexpr TableKey kPose{.path = "camera.pose",
                                 .expected = "a [pose](#poses)",
                                 .meaning =
                                     "T_link_camera of the optical frame: z forward, x right, y down. "
-                                    "Images are never mirrored"};
+                                    "Images are never mirrored. `tf`: to be taken [from ROS 2](#pose-tf)"};
 }  // namespace camera
 
 /// The same values as `depth_denoiser` of a mapping.

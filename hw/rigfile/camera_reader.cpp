@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <utility>
 
+#include "hw/rigfile/camera_pose_edit.hpp"
 #include "hw/rigfile/fed_device.hpp"
 #include "hw/rigfile/joined.hpp"
 #include "hw/rigfile/pose.hpp"
 #include "hw/rigfile/rig_keys.hpp"
+#include "hw/rigfile/shell_word.hpp"
 #include "hw/rigfile/table.hpp"
 
 namespace octoskin::rig {
@@ -127,6 +129,23 @@ void read_depths(const Table& table, Camera& camera) {
                                              fmt::format("{}", camera.depth_max_m)});
 }
 
+/// A rig says all that a map is made from: a pose is not taken from the network while a map is made.
+void refuse_pose_of_frames(const Value& pose, const std::string& path) {
+    if (pose.kind != Value::Kind::scalar || pose.text != kPoseOfFrames) return;
+    fail(pose, path,
+         {ErrorCode::bad_value, "expected a pose, not the word with which it is taken from ROS 2",
+          fmt::format("'{}'", pose.text),
+          fmt::format("octoskin bridge pose --rig {} prints the rig with the pose",
+                      shell_word(pose.file->shown().string()))});
+}
+
+Eigen::Isometry3d read_camera_pose(const Table& table) {
+    const Value& pose = table.require(keys::camera::kPose);
+    const std::string path = table.path_of(keys::camera::kPose);
+    refuse_pose_of_frames(pose, path);
+    return read_pose(pose, path, {.reach_m = keys::kRoomReach_m, .may_look_at_point = true});
+}
+
 Camera read_camera(const Table& table, const Body& body) {
     Camera camera;
     camera.width = table.integer<std::uint32_t>(keys::camera::kWidth);
@@ -146,8 +165,7 @@ Camera read_camera(const Table& table, const Body& body) {
         camera.data_set = read_data_set(*data_set, table.path_of(keys::camera::kDataSet));
     if (table.find(keys::camera::kDevice) != nullptr) camera.device = read_device(table);
     camera.link = read_link(table, body);
-    camera.T_link_camera = read_pose(table.require(keys::camera::kPose), table.path_of(keys::camera::kPose),
-                                     {.reach_m = keys::kRoomReach_m, .may_look_at_point = true});
+    camera.T_link_camera = read_camera_pose(table);
     return camera;
 }
 

@@ -23,8 +23,9 @@ struct RobotOptions {
 };
 
 void save_robot(const RobotOptions& options) {
+    const auto participant = take_part();
     const auto urdf = wait_for<ros::std_msgs::String>(
-        options.topic, std::chrono::seconds(options.seconds),
+        *participant, options.topic, std::chrono::steady_clock::now() + std::chrono::seconds(options.seconds),
         [](const ros::std_msgs::String& message) { return std::optional(message.data); });
     if (!urdf)
         throw CommandFailure(

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "hw/rigfile/camera_pose_edit.hpp"
+#include "hw/rigfile/key_hint.hpp"
 
 namespace octoskin::bridge {
 
@@ -47,13 +51,14 @@ std::string FrameTree::why(const std::string& frame) const {
     return fmt::format("the frame '{}' hangs from '{}', which is no link of the rig's robot", frame, top);
 }
 
+std::optional<std::string> FrameTree::nearest(const std::string& frame) const {
+    std::vector<std::string> frames;
+    for (const auto& [child, edge] : edges_) frames.push_back(child);
+    return rig::nearest_word(frame, frames);
+}
+
 std::string rig_text(const FrameOnLink& pose) {
-    const Eigen::Vector3d p = pose.T_link_frame.translation();
-    const Eigen::Quaterniond q(pose.T_link_frame.linear());
-    return fmt::format(
-        "link: \"{}\"\npose: {{xyz_m: [{:.6f}, {:.6f}, {:.6f}], quaternion_wxyz: [{:.9f}, {:.9f}, {:.9f}, "
-        "{:.9f}]}}\n",
-        pose.link, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    return fmt::format("link: \"{}\"\npose: {}\n", pose.link, rig::pose_text(pose.T_link_frame));
 }
 
 }  // namespace octoskin::bridge

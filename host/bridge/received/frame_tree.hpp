@@ -27,6 +27,8 @@ class FrameTree {
                                                        std::span<const std::string> links) const;
     /// Why `from_link` is empty, in words.
     [[nodiscard]] std::string why(const std::string& frame) const;
+    /// A known frame that differs from this name by a typing error. O(frames).
+    [[nodiscard]] std::optional<std::string> nearest(const std::string& frame) const;
 
   private:
     struct Edge {

@@ -117,12 +117,15 @@ PAGES = {
                 "octoskin bridge status --socket bridge; ended=$?; kill $!; exit $ended", says="other participants"),
     },
     "ros-camera": {
-        "octoskin bridge pose camera_depth_optical_frame":
-            Run("octoskin bridge pose camera_depth_optical_frame --socket control --seconds 1 || test $? = 69"),
+        # tests/ros publishes images and frames; here nothing publishes them.
+        "octoskin bridge pose --rig my_rig.yaml > my_cell.yaml":
+            Run(f"printf 'extends: {SOURCES}/hw/rigs/experiment.yaml\ncamera: {{device: \"ros:/depth\", pose: tf}}\n' "
+                "> my_rig.yaml; octoskin bridge pose --rig my_rig.yaml --seconds 1 > my_cell.yaml || test $? = 69"),
+        "octoskin rig my_cell.yaml": Run(f"octoskin rig {RIG}"),
         "sudo cp /usr/share/doc/octoskin-bridge/examples/octoskin-bridge.sysctl "
         "/etc/sysctl.d/60-octoskin-bridge.conf": SERVICE,
         "sudo sysctl --system": SERVICE,
-        "octoskin run --rig my_rig.yaml --can can0 --joints /run/user/1000/octoskin-joints": HARDWARE,
+        "octoskin run --rig my_cell.yaml --can can0 --joints /run/user/1000/octoskin-joints": HARDWARE,
         "octoskin bridge": SERVICE,
         "octoskin bridge status": SERVICE,
         "octoskin status": Run("octoskin status --socket control", says="map:"),

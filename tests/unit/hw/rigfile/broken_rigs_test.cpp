@@ -123,6 +123,8 @@ const Broken kBroken[] = {
      "which begins with /"},
     {"camera-topic-without-ros.yaml", 10, "camera.device", ErrorCode::bad_value, "'/depth/image'",
      "write ros:/depth/image"},
+    {"camera-pose-of-frames.yaml", 11, "camera.pose", ErrorCode::bad_value, "'tf'",
+     "octoskin bridge pose --rig "},
     {"camera-depth-reversed.yaml", 11, "camera.depth_max_m", ErrorCode::out_of_range, "4",
      "more than depth_min_m"},
     {"camera-depth-beyond-its-images.yaml", 10, "camera.depth_max_m", ErrorCode::out_of_range, "'70'",
