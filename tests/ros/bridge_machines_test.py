@@ -26,28 +26,31 @@ class Machines(unittest.TestCase):
         return self.enterContext(World(FOLDER, bridge_options=options, prefix=self.one.prefix, domain=0,
                                        environment=environment))
 
-    def scenes(self, machine, seconds, count=3):
-        with Programs(FOLDER, domain=0, prefix=machine.prefix).start_listening(
-                "--seconds", seconds, "--count", count, *SCENE) as listening:
-            return len(listening.finish("sample"))
+    def listen(self, machine, *options):
+        return self.enterContext(Programs(FOLDER, domain=0, prefix=machine.prefix).start_listening(*options, *SCENE))
+
+    def scenes_of_both(self, seconds, count=3):
+        """On the two machines at once."""
+        listening = [self.listen(machine, "--seconds", seconds, "--count", count) for machine in (self.one, self.two)]
+        return tuple(len(one.finish("sample")) for one in listening)
 
     def test_by_default_both_machines_find_it(self):
         self.bridge()
-        self.assertEqual((self.scenes(self.one, 15), self.scenes(self.two, 15)), (3, 3))
+        self.assertEqual(self.scenes_of_both(15), (3, 3))
 
     def test_loopback_only_is_found_by_neither(self):
         """An unconfigured program on the same machine uses the cable's address."""
         self.bridge(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
-        self.assertEqual((self.scenes(self.one, 5), self.scenes(self.two, 5)), (0, 0))
+        self.assertEqual(self.scenes_of_both(5), (0, 0))
 
     def test_this_machine_only_is_found_here_and_sends_nothing_there(self):
         world = self.bridge("--this-machine-only")
-        self.assertEqual(self.scenes(self.one, 15), 3)
-        time.sleep(2)  # the listener has said goodbye
-        with Programs(FOLDER, domain=0, prefix=self.two.prefix).start_listening("--seconds", 8, *SCENE) as listening:
-            before = self.one.counts()["tx"]
-            self.assertEqual(listening.finish("sample"), [])
-            after = self.one.counts()["tx"]
+        self.assertEqual(len(self.listen(self.one, "--seconds", 15, "--count", 3).finish("sample")), 3)
+        self.assertTrue(wait_for(lambda: world.bridge_status()["network"]["participants"] == 0), "it said goodbye")
+        listening = self.listen(self.two, "--seconds", 8)
+        before = self.one.counts()["tx"]
+        self.assertEqual(listening.finish("sample"), [])
+        after = self.one.counts()["tx"]
         # The kernel's own packets: which multicast groups it is in, and who has an address.
         self.assertLess(after["packets"] - before["packets"], 12)
         self.assertLess(after["bytes"] - before["bytes"], 1200)

@@ -51,7 +51,7 @@ class Figures:
         self.programs = Programs(self.bin)
         self.environment = {**os.environ, "ROS_DOMAIN_ID": str(DOMAIN)}
         (folder / "rig.yaml").write_text(bridge_test.RIG)
-        with World(self.bin, rig=folder / "rig.yaml", plays=False, daemon_options=[]) as world:
+        with World(self.bin, rig=folder / "rig.yaml", is_mapped=False, daemon_options=[]) as world:
             (folder / "describe.json").write_text(json.dumps(world.ask("describe")))
 
     def start(self, *command):
