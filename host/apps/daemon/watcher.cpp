@@ -25,10 +25,7 @@ bool WatchWants::has(watch::FrameKind kind) const noexcept {
 }
 
 void Watcher::on_map(const MapNow& now, const watch::BrickCodes& changed) {
-    if (!wants_.map) return;
-    missing_.add(has_map_ ? changed : watch::bricks_of(now.map));
-    has_map_ = true;
-    is_behind_ = true;
+    if (wants_.map) map_.on_map(now.map, changed);
 }
 
 void Watcher::on_event(const WatchEvent& event) {
@@ -36,7 +33,7 @@ void Watcher::on_event(const WatchEvent& event) {
     events_.push_back(event);
     if (event.kind == watch::FrameKind::reload) {
         ++reloads_waiting_;
-        is_behind_ = false;
+        map_.wait_for_next();
     }
     if (events_.size() > kEventsMax) drop_oldest();
 }
@@ -62,7 +59,9 @@ std::string_view Watcher::pending(const MapNow* now) {
         bytes_.clear();
         sent_ = 0;
         put_events();
-        if (now != nullptr && is_behind_ && reloads_waiting_ == 0) put_map(*now);
+        const bool may_follow = now != nullptr && reloads_waiting_ == 0;
+        const auto piece = may_follow ? map_.next(now->map, kChunkBytes) : std::nullopt;
+        if (piece) put(watch::FrameKind::map, piece->flags, now->time, piece->payload);
     }
     return std::string_view(bytes_).substr(sent_);
 }
@@ -84,14 +83,6 @@ void Watcher::put_events() {
 void Watcher::put(const WatchEvent& event) {
     put(event.kind, 0, event.time, *event.payload);
     if (event.kind == watch::FrameKind::reload) --reloads_waiting_;
-}
-
-void Watcher::put_map(const MapNow& now) {
-    const std::string payload = missing_.take(now.map, kChunkBytes);
-    is_behind_ = !missing_.empty();
-    std::uint8_t flags = is_behind_ ? 0 : watch::kComplete;
-    if (!std::exchange(has_begun_, true)) flags |= watch::kBegins;
-    put(watch::FrameKind::map, flags, now.time, payload);
 }
 
 void Watcher::put(watch::FrameKind kind, std::uint8_t flags, HostTime time, std::string_view payload) {

@@ -68,7 +68,6 @@ class Watcher {
     void drop_oldest();
     void put_events();
     void put(const WatchEvent& event);
-    void put_map(const MapNow& now);
     void put(watch::FrameKind kind, std::uint8_t flags, HostTime time, std::string_view payload);
 
     WatchWants wants_;
@@ -80,10 +79,7 @@ class Watcher {
     std::optional<WatchEvent> overdue_reload_;  ///< older than all of events_
     std::optional<WatchEvent> overdue_robot_;   ///< the same
     std::size_t reloads_waiting_ = 0;           ///< in events_ and overdue
-    watch::MissingBricks missing_;
-    bool has_map_ = false;    ///< it was given one
-    bool has_begun_ = false;  ///< the first frame of a map was made
-    bool is_behind_ = false;  ///< the newest map was not completed
+    watch::MapReader map_;
 };
 
 }  // namespace octoskin

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "host/io/snapshot/brick_records.hpp"
 #include "host/io/watch/brick_form.hpp"
+#include "host/io/watch/watch_frame.hpp"
 
 namespace octoskin::watch {
 namespace {
@@ -78,6 +80,21 @@ std::string MissingBricks::take(const FusedMap& map, std::size_t bytes_max) {
     next_ = last == codes_.end() ? 0 : *last;
     codes_.erase(first, last);
     return payload;
+}
+
+void MapReader::on_map(const FusedMap& now, const BrickCodes& changed) {
+    missing_.add(has_map_ ? changed : bricks_of(now));
+    has_map_ = true;
+    is_behind_ = true;
+}
+
+std::optional<MapReader::Piece> MapReader::next(const FusedMap& now, std::size_t bytes_max) {
+    if (!is_behind_) return std::nullopt;
+    Piece piece{0, missing_.take(now, bytes_max)};
+    is_behind_ = !missing_.empty();
+    if (!is_behind_) piece.flags |= kComplete;
+    if (!std::exchange(has_begun_, true)) piece.flags |= kBegins;
+    return piece;
 }
 
 }  // namespace octoskin::watch

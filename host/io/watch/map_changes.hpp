@@ -9,6 +9,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +43,33 @@ class MissingBricks {
   private:
     BrickCodes codes_;
     MortonCode next_ = 0;
+};
+
+/// What one reader lacks of a map that changes: the whole map first, then the bricks that changed, however
+/// slowly it reads.
+class MapReader {
+  public:
+    /// Another map is there; `changed`: against the one before. The first time, all of its bricks are
+    /// missing.
+    void on_map(const FusedMap& now, const BrickCodes& changed);
+    /// The next map has nothing to do with those before.
+    void begin_again() { *this = MapReader(); }
+    /// No piece goes out before another map is there. What the reader lacks, it still lacks then.
+    void wait_for_next() noexcept { is_behind_ = false; }
+
+    struct Piece {
+        std::uint8_t flags = 0;  ///< kBegins, kComplete (watch_frame.hpp)
+        std::string payload;
+    };
+    /// The next piece of `now`, of about `bytes_max`; empty: the reader has all of the newest map. Throws
+    /// std::bad_alloc.
+    [[nodiscard]] std::optional<Piece> next(const FusedMap& now, std::size_t bytes_max);
+
+  private:
+    MissingBricks missing_;
+    bool has_map_ = false;    ///< it was given one
+    bool has_begun_ = false;  ///< the first piece of a map was made
+    bool is_behind_ = false;  ///< the newest map was not completed
 };
 
 }  // namespace octoskin::watch

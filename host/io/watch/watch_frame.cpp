@@ -75,18 +75,26 @@ std::optional<FrameHeader> parse_header(std::string_view bytes) {
     return has_flags(header.kind, header.flags) ? std::optional(header) : std::nullopt;
 }
 
-std::string range_payload(const Beam& beam) {
+std::string range_payload(const WatchedRange& range) {
     std::string bytes;
     ByteWriter writer(bytes);
-    writer.put(beam.source.node_id);
-    writer.put(beam.source.sensor);
-    writer.put(beam.source.zone);
-    writer.put_flag(beam.range_m.has_value());
-    writer.put(beam.range_m.value_or(0.0));
-    writer.put(beam.sigma_m);
-    put(writer, beam.p_map_sensor);
-    put(writer, beam.direction_map);
+    writer.put(range.source.node_id);
+    writer.put(range.source.sensor);
+    writer.put(range.source.zone);
+    writer.put_flag(range.range_m.has_value());
+    writer.put(range.range_m.value_or(0.0));
+    writer.put(range.sigma_m);
+    put(writer, range.p_map_sensor);
+    put(writer, range.direction_map);
     return bytes;
+}
+
+std::string range_payload(const Beam& beam) {
+    return range_payload(WatchedRange{.source = beam.source,
+                                      .range_m = beam.range_m,
+                                      .sigma_m = beam.sigma_m,
+                                      .p_map_sensor = beam.p_map_sensor,
+                                      .direction_map = beam.direction_map});
 }
 
 std::optional<WatchedRange> parse_range(std::string_view payload) {

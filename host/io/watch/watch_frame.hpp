@@ -66,6 +66,7 @@ struct WatchedRange {
     Eigen::Vector3d p_map_sensor = Eigen::Vector3d::Zero();
     Eigen::Vector3d direction_map = Eigen::Vector3d::UnitZ();
 };
+[[nodiscard]] std::string range_payload(const WatchedRange& range);
 [[nodiscard]] std::string range_payload(const Beam& beam);
 [[nodiscard]] std::optional<WatchedRange> parse_range(std::string_view payload);
 

@@ -117,11 +117,19 @@ Occupancy WatchedMap::occupancy(VoxelKey key) const noexcept {
     return log_odds >= head_.occupied_from ? Occupancy::occupied : Occupancy::free;
 }
 
+/// The inverse of VoxelAges::stamp_before.
+std::uint32_t WatchedMap::stale_after_s() const noexcept {
+    constexpr unsigned kKindBits = 2;
+    const auto newest_stale = static_cast<std::uint32_t>(head_.stale_stamp >> kKindBits);
+    return head_.stale_stamp == 0 || newest_stale > head_.clock ? 0 : head_.clock + 1 - newest_stale;
+}
+
 FusedMap WatchedMap::map() const {
     assert(is_whole_);
     MapConfig config{.resolution_m = head_.resolution_m, .log_odds_occupied = head_.occupied_from};
     config.log_odds_min = std::min(config.log_odds_min, lowest_);
     config.log_odds_max = std::max(config.log_odds_max, highest_);
+    config.age.stale_after_s = stale_after_s();
     MapLayers layers{.log_odds = log_odds_, .counts = {}, .ages = {}, .known_voxels = known_voxels_};
     layers.ages = VoxelAges({.has_begun = head_.has_begun, .now = head_.clock}, stamps_);
     return {config, std::move(layers), false};

@@ -41,8 +41,8 @@ class WatchedMap {
     [[nodiscard]] std::optional<Confirmation> confirmation(VoxelKey key) const noexcept;
     /// For a known voxel: no sensor has seen it for the mapping's `stale_after_s`.
     [[nodiscard]] bool is_stale(VoxelKey key) const noexcept;
-    /// A map of these voxels and ages, without counts. Its clamps are wide enough for every value. It shares
-    /// the bricks. O(1). Needs a whole map (asserted).
+    /// A map of these voxels and ages, without counts; the same voxels are stale. Its clamps are wide enough
+    /// for every value. It shares the bricks. O(1). Needs a whole map (asserted).
     [[nodiscard]] FusedMap map() const;
     [[nodiscard]] const BrickTree& log_odds() const noexcept { return log_odds_; }
     [[nodiscard]] const StampTree& stamps() const noexcept { return stamps_; }
@@ -57,6 +57,7 @@ class WatchedMap {
     };
     [[nodiscard]] bool take_head(snapshot::ByteReader& reader, bool begins);
     [[nodiscard]] bool take_brick(snapshot::ByteReader& reader);
+    [[nodiscard]] std::uint32_t stale_after_s() const noexcept;
     void widen_clamps(const BrickView& brick);
     [[nodiscard]] std::size_t bytes() const noexcept;
 

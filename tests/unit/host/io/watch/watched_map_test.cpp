@@ -50,6 +50,7 @@ MapConfig ageing() {
 void expect_equal(const WatchedMap& watched, const FusedMap& map) {
     EXPECT_TRUE(watched.is_complete());
     EXPECT_EQ(watched.map().known_voxels(), map.known_voxels());
+    EXPECT_EQ(watched.map().stale_stamp(), map.stale_stamp());
     BrickCodes bricks = bricks_of(map);
     std::size_t there = 0;
     watched.log_odds().for_each([&](MortonCode, const BrickView&) { ++there; });
@@ -74,22 +75,20 @@ void expect_equal(const WatchedMap& watched, const FusedMap& map) {
 class Reader {
   public:
     void on_map(const FusedMap& now, const FusedMap* before) {
-        missing_.add(before == nullptr ? bricks_of(now) : changed_bricks(now, *before));
+        lacks_.on_map(now, before == nullptr ? BrickCodes{} : changed_bricks(now, *before));
     }
     /// False if it lacks nothing.
     bool read(const FusedMap& now, std::size_t bytes_max) {
-        const std::string payload = missing_.take(now, bytes_max);
-        FrameHeader header{.kind = FrameKind::map};
-        if (!std::exchange(has_begun_, true)) header.flags |= kBegins;
-        if (missing_.empty()) header.flags |= kComplete;
-        EXPECT_EQ(map.take(header, payload), WatchedMap::Taken::all);
-        return !missing_.empty();
+        const auto piece = lacks_.next(now, bytes_max);
+        if (!piece) return false;
+        EXPECT_EQ(map.take({.kind = FrameKind::map, .flags = piece->flags}, piece->payload),
+                  WatchedMap::Taken::all);
+        return (piece->flags & kComplete) == 0;
     }
     WatchedMap map;
 
   private:
-    MissingBricks missing_;
-    bool has_begun_ = false;
+    MapReader lacks_;
 };
 
 // A reader that reads all, one that reads a little of each, and one that stalls and begins anew.
