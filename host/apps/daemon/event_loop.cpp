@@ -106,6 +106,22 @@ int EventLoop::run() {
     return outcome;
 }
 
+int EventLoop::descriptor() const noexcept {
+    return sd_event_get_fd(loop_);
+}
+
+EventLoop::Turn EventLoop::turn() {
+    constexpr int kCallsMax = 16;
+    for (int i = 0; i < kCallsMax; ++i) {
+        const int done = sd_event_run(loop_, 0);
+        if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+        check(done, "the event loop failed");
+        if (sd_event_get_state(loop_) == SD_EVENT_FINISHED) return Turn::over;
+        if (done == 0) return Turn::idle;  // its timers are set
+    }
+    return Turn::more;
+}
+
 void EventLoop::fail(std::exception_ptr thrown) {
     thrown_ = std::move(thrown);
     (void)sd_event_exit(loop_, 1);

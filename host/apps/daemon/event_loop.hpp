@@ -53,6 +53,14 @@ class EventLoop {
 
     /// Runs until `stop`, and returns its argument. Throws the exception of a callback, if one threw.
     int run();
+    /// For a program that waits in another loop: readable when `turn` has something to do. It belongs to this
+    /// object, and reports nothing before the first `turn`.
+    [[nodiscard]] int descriptor() const noexcept;
+    enum class Turn : std::uint8_t { idle, more, over };
+    /// Does what is due, without waiting: `more`: not all of it, so that others have their turn; `over`: it
+    /// was ended by `stop`. Throws the exception of a callback, if one threw. Call it again after `idle` when
+    /// `descriptor` is readable, and after `more` at once.
+    [[nodiscard]] Turn turn();
     /// Ends the loop: `run` throws this exception.
     void fail(std::exception_ptr thrown);
     void stop(int outcome);
