@@ -41,6 +41,7 @@ pkg_check_modules(FUSE3 QUIET IMPORTED_TARGET fuse3)      # optional: for the I2
 pkg_check_modules(GPIOD QUIET IMPORTED_TARGET libgpiod)   # optional: for the node of a Linux board only
 find_package(fcl QUIET)                                   # optional: for the oracle of a test only
 pkg_check_modules(CYCLONEDDS QUIET IMPORTED_TARGET CycloneDDS)  # optional: for octoskin-bridge only
+find_package(Boost 1.74 QUIET)                            # optional: for octoskin-bridge only; headers alone
 find_package(Threads REQUIRED)
 pkg_check_modules(OPENNI2 REQUIRED IMPORTED_TARGET libopenni2)
 pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)

@@ -1,9 +1,10 @@
-// octoskin bridge: becomes the program of the package octoskin-bridge.
+// octoskin bridge, octoskin view: become the program of the package octoskin-bridge.
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/apps/command_line/command_failure.hpp"
@@ -23,7 +24,7 @@ std::vector<std::string> with_command(std::vector<std::string> arguments) {
     return arguments;
 }
 
-[[noreturn]] void become_bridge(const std::vector<std::string>& arguments) {
+[[noreturn]] void become_bridge(std::vector<std::string> words) {
     const auto program = openni2::find_helper(kProgram);
     if (!program)
         throw CommandFailure(
@@ -31,7 +32,6 @@ std::vector<std::string> with_command(std::vector<std::string> arguments) {
             {.code = ErrorCode::no_program,
              .what = std::string(kProgram) + " is not installed",
              .remedy = "install the package octoskin-bridge (in a build: its target of this name)"});
-    std::vector<std::string> words = with_command(arguments);
     words.insert(words.begin(), kProgram);
     std::vector<char*> pointers;
     for (std::string& word : words) pointers.push_back(word.data());
@@ -50,7 +50,19 @@ void add_bridge_command(CLI::App& app) {
         "octoskin-bridge)");
     command->set_help_flag();  // the program has its own
     command->prefix_command();
-    command->callback([command] { become_bridge(command->remaining()); });
+    command->callback([command] { become_bridge(with_command(command->remaining())); });
+}
+
+void add_view_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "view", "Show the map live in a browser, and to Foxglove and Lichtblick (package octoskin-bridge)");
+    command->set_help_flag();  // the program has its own
+    command->prefix_command();
+    command->callback([command] {
+        std::vector<std::string> words = command->remaining();
+        words.insert(words.begin(), "view");
+        become_bridge(std::move(words));
+    });
 }
 
 }  // namespace octoskin::app

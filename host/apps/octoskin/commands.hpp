@@ -24,5 +24,6 @@ void add_calibrate_command(CLI::App& app);
 void add_command_command(CLI::App& app);
 void add_repair_command(CLI::App& app);
 void add_bridge_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 
 }  // namespace octoskin::app

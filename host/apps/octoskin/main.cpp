@@ -30,6 +30,7 @@ void add_commands(CLI::App& app) {
     add_command_command(app);
     add_repair_command(app);
     add_bridge_command(app);
+    add_view_command(app);
 }
 
 }  // namespace

@@ -41,15 +41,6 @@ Arrival arrival_of(const dds::Sample& sample) {
     return {sample.arrived, WallTime{taken.wall.ns - waited.count()}};
 }
 
-/// A time of the bus as wall time. The bus has this machine's clock, unless another host sends SYNC: then the
-/// message is from now.
-WallTime wall_of(HostTime bus, const Arrival& arrival) {
-    constexpr Nanoseconds kOwnClock{10'000'000'000};
-    const Nanoseconds age = arrival.monotonic - bus;
-    const bool is_own = age < kOwnClock && age > -kOwnClock;
-    return is_own ? WallTime{arrival.wall.ns - age.count()} : arrival.wall;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Bridge>, AppError> Bridge::open(BridgeOptions options) {

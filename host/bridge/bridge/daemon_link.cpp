@@ -68,11 +68,13 @@ void DaemonLink::connect() {
 Status<std::string> DaemonLink::describe() {
     const auto answer = ask_daemon(socket_, "describe", kAnswerPatience);
     if (!answer) return unexpected(answer.error().message());
-    auto facts = robot_facts(Json::parse(*answer, nullptr, false));
+    const Json described = Json::parse(*answer, nullptr, false);
+    auto facts = robot_facts(described);
     if (!facts)
         return unexpected("the daemon has another version: its answer to 'describe' is not understood (" +
                           facts.error() + "): install the same version of both, and restart them");
     described_ = facts->reloads;
+    listener_.on_described(described);
     listener_.on_robot(std::move(facts).value());
     return Done{};
 }

@@ -19,6 +19,8 @@ namespace octoskin::bridge {
 class DaemonListener {
   public:
     virtual ~DaemonListener() = default;
+    /// The daemon's answer to `describe` as it is, before `on_robot`.
+    virtual void on_described(const nlohmann::ordered_json&) {}
     /// At each connection and after each reload of the daemon.
     virtual void on_robot(RobotFacts robot) = 0;
     /// The whole map has changed; `map` is valid during the call.

@@ -9,5 +9,6 @@ void add_run_command(CLI::App& app);
 void add_status_command(CLI::App& app);
 void add_pose_command(CLI::App& app);
 void add_robot_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 
 }  // namespace octoskin::bridge

@@ -11,6 +11,7 @@ void add_commands(CLI::App& app) {
     add_status_command(app);
     add_pose_command(app);
     add_robot_command(app);
+    add_view_command(app);
 }
 
 }  // namespace

@@ -31,4 +31,13 @@ struct Arrival {
     return arrival.monotonic - age;
 }
 
+/// A time of the bus as wall time. The bus has this machine's clock, unless another host sends SYNC: then the
+/// message is from now.
+[[nodiscard]] inline WallTime wall_of(HostTime bus, const Arrival& arrival) noexcept {
+    constexpr Nanoseconds kOwnClock{10'000'000'000};
+    const Nanoseconds age = arrival.monotonic - bus;
+    const bool is_own = age < kOwnClock && age > -kOwnClock;
+    return is_own ? WallTime{arrival.wall.ns - age.count()} : arrival.wall;
+}
+
 }  // namespace octoskin::bridge

@@ -1,0 +1,95 @@
+// octoskin view
+#include <spdlog/spdlog.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/command_line/log_format.hpp"
+#include "host/apps/daemon/log_limit.hpp"
+#include "host/apps/daemon/places.hpp"
+#include "host/bridge/octoskin_bridge/commands.hpp"
+#include "host/bridge/view/live_view.hpp"
+#include "host/bridge/view/page_files.hpp"
+
+namespace octoskin::bridge {
+namespace {
+
+using app::CommandFailure;
+
+CLI::Validator origin() {
+    return {[](const std::string& text) -> std::string {
+                return view::is_origin(text) ? ""
+                                             : "expected an origin as https://app.foxglove.dev, without a "
+                                               "path, found '" +
+                                                   text + "'";
+            },
+            "ORIGIN"};
+}
+
+/// A foreign page or a client that tries again and again writes lines at a bounded rate.
+void begin_log() {
+    auto sinks = spdlog::default_logger()->sinks();
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("octoskin", std::make_shared<LogLimit>(std::move(sinks))));
+    std::getenv("JOURNAL_STREAM") != nullptr ? app::set_journal_format() : app::set_log_format();
+}
+
+void check_host(const std::string& host) {
+    if (host != "0.0.0.0" && host != "::" && host != "[::]") return;
+    throw CommandFailure(
+        ExitCode::usage,
+        {.code = ErrorCode::bad_argument,
+         .what = "--host must be the address or name by which a browser reaches this machine",
+         .value = "'" + host + "'",
+         .remedy = "give that one address, as 192.168.1.20"});
+}
+
+bool is_loopback(const std::string& host) {
+    return host == "localhost" || host.starts_with("127.") || host == "::1" || host == "[::1]";
+}
+
+void run_view(view::LiveViewOptions& options) {
+    begin_log();
+    check_host(options.web.host);
+    const auto folder = view::page_folder();
+    options.web.files = view::read_page(folder);
+    options.web.file_missing =
+        "The page is not built, because the build found no node: only programs like Foxglove can connect.";
+    auto opened = view::LiveView::open(options);
+    if (!opened) throw CommandFailure(opened.error());
+    const bool has_page = !options.web.files.empty();
+    spdlog::info("the view is at {}{}", (*opened)->url(),
+                 has_page ? "" : " (without its page: " + folder.string() + " has none)");
+    if (!is_loopback(options.web.host))
+        spdlog::warn(
+            "every program and every person that reaches {} sees what the robot sees: there is no "
+            "password and no encryption",
+            options.web.host);
+    (*opened)->run();
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app) {
+    auto options = std::make_shared<view::LiveViewOptions>();
+    options->control = default_control_socket();
+    view::WebOptions& web = options->web;
+    CLI::App* command = app.add_subcommand(
+        "view", "Show the map live: a page for a browser, and a server for Foxglove and Lichtblick");
+    command->add_option("--socket", options->control, "Control socket of the daemon")->capture_default_str();
+    command
+        ->add_option("--host", web.host,
+                     "Address or name of this machine to listen at, by which a browser reaches it")
+        ->capture_default_str();
+    command->add_option("--port", web.port, "Port; 0: any that is free")->capture_default_str();
+    command
+        ->add_option("--allow-origin", web.origins,
+                     "A further origin whose pages may connect, as https://app.foxglove.dev; repeatable")
+        ->check(origin())
+        ->expected(1)
+        ->take_all();
+    command->callback([options] { run_view(*options); });
+}
+
+}  // namespace octoskin::bridge
