@@ -55,7 +55,8 @@ client.on("advertiseServices", (services) => {
     const service = services.find((one) => one.name === calls[i]);
     if (!service) continue;
     const bytes = new TextEncoder().encode(calls[i + 1]);
-    client.sendServiceCallRequest({ serviceId: service.id, callId: i / 2, encoding: "json", data: new DataView(bytes.buffer) });
+    const data = new DataView(bytes.buffer);
+    client.sendServiceCallRequest({ serviceId: service.id, callId: i / 2, encoding: "json", data });
   }
 });
 client.on("serviceCallResponse", (answer) => print("answer", {

@@ -86,18 +86,18 @@ void FoxgloveServer::add_service(std::string name, std::string type,
     services_.emplace(id, Service{std::move(info), std::move(handler)});
 }
 
-void FoxgloveServer::tell(foxglove::Level level, const std::string& id, const std::string& sentence) {
-    const auto found = told_.find(id);
-    if (found == told_.end() ? sentence.empty() : found->second.sentence == sentence) return;
+void FoxgloveServer::notify(foxglove::Level level, const std::string& id, const std::string& sentence) {
+    const auto found = notices_.find(id);
+    if (found == notices_.end() ? sentence.empty() : found->second.sentence == sentence) return;
     if (sentence.empty()) {
-        told_.erase(found);
+        notices_.erase(found);
         return put_text_to_all(foxglove::remove_status_text(id));
     }
-    told_.insert_or_assign(id, Told{level, sentence});
+    notices_.insert_or_assign(id, Notice{level, sentence});
     put_text_to_all(foxglove::status_text(level, id, sentence));
 }
 
-void FoxgloveServer::tell_dropped() {
+void FoxgloveServer::notify_dropped() {
     std::vector<std::pair<ClientId, std::uint64_t>> behind;
     for (auto& [id, client] : clients_) {
         if (client.dropped() == client.dropped_said) continue;
@@ -137,8 +137,8 @@ void FoxgloveServer::on_open(ClientId client) {
     for (const auto& [id, service] : services_) services.push_back(service.info);
     std::vector<std::string> texts = {foxglove::server_info_text(info_), foxglove::advertise_text(channels),
                                       foxglove::advertise_services_text(services)};
-    for (const auto& [id, told] : told_)
-        texts.push_back(foxglove::status_text(told.level, id, told.sentence));
+    for (const auto& [id, notice] : notices_)
+        texts.push_back(foxglove::status_text(notice.level, id, notice.sentence));
     for (std::string& text : texts)
         if (!opened.put(text_message(std::move(text)))) return transport_.drop(client, Refusal::stalled);
 }

@@ -40,6 +40,8 @@ class FoxgloveServer final : public WebClients {
     };
     explicit FoxgloveServer(foxglove::ServerInfo info) : info_(std::move(info)) {}
     void connect(Transport transport) { transport_ = std::move(transport); }
+    /// Forgets all clients: the transport is about to end.
+    void disconnect() { clients_.clear(); }
 
     /// A channel is there for all clients from now on; `info.id` is ignored. `is_kept`: a new reader gets the
     /// newest message.
@@ -60,9 +62,9 @@ class FoxgloveServer final : public WebClients {
 
     /// A sentence that all clients show, now and later, until another one with this `id`, or an empty one,
     /// replaces it.
-    void tell(foxglove::Level level, const std::string& id, const std::string& sentence);
-    /// Tells each client how many messages it did not get. Call it every few seconds.
-    void tell_dropped();
+    void notify(foxglove::Level level, const std::string& id, const std::string& sentence);
+    /// Shows each client how many messages it did not get. Call it every few seconds.
+    void notify_dropped();
 
     [[nodiscard]] const ViewCounts& counts() const noexcept { return counts_; }
     [[nodiscard]] std::size_t clients() const noexcept { return clients_.size(); }
@@ -86,7 +88,7 @@ class FoxgloveServer final : public WebClients {
         foxglove::ServiceInfo info;
         std::function<void(std::string, Reply)> handler;
     };
-    struct Told {
+    struct Notice {
         foxglove::Level level;
         std::string sentence;
     };
@@ -108,7 +110,7 @@ class FoxgloveServer final : public WebClients {
     ChannelId next_channel_ = 1;
     std::map<std::uint32_t, Service> services_;
     std::map<ClientId, ViewClient> clients_;
-    std::map<std::string, Told> told_;
+    std::map<std::string, Notice> notices_;
     ViewCounts counts_;
 };
 

@@ -69,7 +69,7 @@ void LiveView::run() {
     sources_.push_back(loop_.every(17ms, [this] { view_->attend(); }));
     sources_.push_back(loop_.every(100ms, [this] { requests_.attend(); }));
     sources_.push_back(loop_.every(500ms, [this] { daemon_.attend(); }));
-    sources_.push_back(loop_.every(3s, [this] { view_->tell_counts(); }));
+    sources_.push_back(loop_.every(3s, [this] { view_->notify_counts(); }));
     daemon_.attend();
     web_->run(loop_);
     sources_.clear();

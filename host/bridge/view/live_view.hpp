@@ -28,6 +28,9 @@ class LiveView {
   public:
     /// Listens. A daemon need not be there.
     [[nodiscard]] static Result<std::unique_ptr<LiveView>, AppError> open(LiveViewOptions options);
+    ~LiveView() { server_.disconnect(); }
+    LiveView(const LiveView&) = delete;
+    LiveView& operator=(const LiveView&) = delete;
 
     /// Where a browser finds the page: "http://127.0.0.1:8765/".
     [[nodiscard]] std::string url() const;

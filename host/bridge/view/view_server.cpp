@@ -105,7 +105,7 @@ void ViewServer::on_robot(bridge::RobotFacts robot) {
     joints_waiting_.clear();
     if (!std::exchange(is_connected_, true)) spdlog::info("daemon with rig '{}'", robot_->rig);
     why_.clear();
-    server_.tell(foxglove::Level::warning, "octoskin.daemon", "");
+    server_.notify(foxglove::Level::warning, "octoskin.daemon", "");
     publish_robot();
     publish_link();
 }
@@ -183,7 +183,7 @@ void ViewServer::on_lost(const std::string& why) {
     board_.begin_again();
     map_outlets_.on_lost();
     sensors_.on_lost(why);
-    server_.tell(foxglove::Level::warning, "octoskin.daemon", "no daemon: " + why);
+    server_.notify(foxglove::Level::warning, "octoskin.daemon", "no daemon: " + why);
     if (is_new) publish_link();
 }
 
@@ -249,12 +249,12 @@ void ViewServer::publish_frames(WallTime wall) {
     frames_.send(message, wall);
 }
 
-void ViewServer::tell_counts() {
+void ViewServer::notify_counts() {
     map_outlets_.forget_unread();
-    server_.tell_dropped();
+    server_.notify_dropped();
     const std::string refused = server_.counts().refused_text();
-    server_.tell(foxglove::Level::info, "octoskin.refused",
-                 refused.empty() ? "" : "refused connections, by reason: " + refused);
+    server_.notify(foxglove::Level::info, "octoskin.refused",
+                   refused.empty() ? "" : "refused connections, by reason: " + refused);
 }
 
 }  // namespace octoskin::view

@@ -25,6 +25,10 @@ class ViewServer final : public bridge::DaemonListener {
     [[nodiscard]] static Result<std::unique_ptr<ViewServer>, Error> open(FoxgloveServer& server,
                                                                          std::string mode);
 
+    ~ViewServer() override { server_.close(map_); }  // its readers use the board
+    ViewServer(const ViewServer&) = delete;
+    ViewServer& operator=(const ViewServer&) = delete;
+
     void on_described(const nlohmann::ordered_json& described) override;
     void on_robot(bridge::RobotFacts robot) override;
     void on_map(const watch::WatchedMap& map) override;
@@ -42,8 +46,8 @@ class ViewServer final : public bridge::DaemonListener {
 
     /// Sends what is due. Call it every 17 ms.
     void attend();
-    /// Tells clients what is refused and dropped. Call it every few seconds.
-    void tell_counts();
+    /// Shows clients what is refused and dropped. Call it every few seconds.
+    void notify_counts();
 
   private:
     /// Positions of one source that were not published yet.

@@ -4,6 +4,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -27,6 +28,21 @@ constexpr std::size_t kValueShown = 200;
 constexpr const char* kPolicy =
     "default-src 'self'; connect-src 'self' ws:; worker-src 'self'; img-src 'self' data: blob:; style-src "
     "'self'; frame-ancestors 'none'";
+
+/// A connection that Beast ends without waiting for the other end: a client that sends malformed frames and
+/// stays would else be counted as silent, after the limit of silence.
+class Stream : public beast::tcp_stream {
+  public:
+    using beast::tcp_stream::tcp_stream;
+    explicit Stream(tcp::socket&& socket) : beast::tcp_stream(std::move(socket)) {}
+};
+template <class Handler>
+void async_teardown(beast::role_type, Stream& stream, Handler&& handler) {
+    error_code ignored;
+    stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    asio::post(stream.get_executor(),
+               beast::bind_front_handler(std::forward<Handler>(handler), error_code()));
+}
 
 std::string_view value_of(beast::string_view value) {
     return {value.data(), value.size()};
@@ -79,7 +95,7 @@ class WebServer::Parts {
 class WebServer::Parts::Session : public std::enable_shared_from_this<Session> {
   public:
     Session(Parts& parts, ClientId id, tcp::socket socket)
-        : parts_(parts), id_(id), socket_(beast::tcp_stream(std::move(socket))) {}
+        : parts_(parts), id_(id), socket_(std::move(socket)) {}
 
     void begin();
     void pump();
@@ -90,7 +106,7 @@ class WebServer::Parts::Session : public std::enable_shared_from_this<Session> {
 
   private:
     using Response = http::response<http::string_body>;
-    [[nodiscard]] beast::tcp_stream& stream() { return beast::get_lowest_layer(socket_); }
+    [[nodiscard]] Stream& stream() { return beast::get_lowest_layer(socket_); }
     void on_request(const error_code& error);
     void on_bad_request(const error_code& error);
     void take_request();
@@ -108,7 +124,7 @@ class WebServer::Parts::Session : public std::enable_shared_from_this<Session> {
 
     Parts& parts_;
     ClientId id_;
-    websocket::stream<beast::tcp_stream> socket_;
+    websocket::stream<Stream> socket_;
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_{std::in_place};
     Response response_;
@@ -294,7 +310,7 @@ void Session::close(Refusal why) {
 }
 
 void Session::drop(Refusal why) {
-    is_closing_ = true;
+    if (std::exchange(is_closing_, true)) return;
     parts_.refuse(why, "");
     cut();  // ends the read, too
 }
