@@ -130,7 +130,7 @@ double SensorJudge::sigma_of(const Compared& compared, const Expected& a, const 
 void SensorJudge::judge(std::span<const Compared> compared) {
     std::vector<Expected> mounted;
     mounted.reserve(compared.size());
-    looks_.assign(sensors_.size(), Look::nothing);
+    looks_.assign(sensors_.size(), Look{});
     for (const Compared& one : compared) {
         assert(one.sensor < sensors_.size() && one.beam.range_m);
         mounted.push_back(expected(one, one.predictions.mounted));
@@ -232,12 +232,14 @@ void SensorJudge::weigh(const Compared& compared, const Expected& mounted) {
 }
 
 /// In space that the camera sees as free, one short range is sufficient. Elsewhere an object may be present,
-/// but not between two images in which the sensor saw the surface behind it.
+/// but not between two images in which the same zone of the sensor saw the surface behind it. Another zone
+/// looks past such an object.
 void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Expected& mounted,
                               double misfit_mounted) {
     const RangePrediction& at = mounted.at;
     const double range_m = *compared.beam.range_m;
     const double margin_m = kShortM + 3.0 * sigma_of(compared, mounted, mounted);
+    const std::uint8_t zone = compared.beam.source.zone;
     Look& look = looks_[compared.sensor];
     FaultSum& sum = sensor.faults[kOftenShort];
     if (!at.is_from_behind && range_m > at.hidden_until_m + margin_m && range_m < at.clear_m - margin_m) {
@@ -246,11 +248,12 @@ void SensorJudge::weigh_short(Sensor& sensor, const Compared& compared, const Ex
     }
     if (!at.range_m || !mounted.has_lower_bound) return;
     if (range_m < *at.range_m - margin_m) {
-        look = Look::is_short;
+        look = {Saw::is_short, zone};
     } else if (misfit_mounted <= kMisfitOfHiddenMax) {
-        look = Look::agrees;
-        const bool agreed_before = sensor.looks[0] == Look::agrees;
-        const bool was_short_between = sensor.looks[0] == Look::is_short && sensor.looks[1] == Look::agrees;
+        look = {Saw::agrees, zone};
+        const bool agreed_before = sensor.looks[0].saw == Saw::agrees;
+        const bool was_short_between =
+            sensor.looks[0] == Look{Saw::is_short, zone} && sensor.looks[1] == look;
         if (was_short_between) sum.add(kShortRatio, 0.0, sensor.now);
         if (agreed_before) sum.add(kNotShortRatio, -kNotShortRatio, sensor.now);
     }

@@ -92,7 +92,13 @@ class SensorJudge {
 
   private:
     static constexpr std::size_t kFaults = 3 + kTurns;
-    enum class Look : std::uint8_t { nothing, agrees, is_short };
+    enum class Saw : std::uint8_t { nothing, agrees, is_short };
+    /// What a sensor saw beside one image.
+    struct Look {
+        Saw saw = Saw::nothing;
+        std::uint8_t zone = 0;
+        friend bool operator==(const Look&, const Look&) = default;
+    };
     struct Sensor {
         std::size_t node_begin = 0;  ///< index of the node's first sensor
         std::array<FaultSum, kFaults> faults{};
