@@ -36,7 +36,7 @@ inline octomap::point3d point_of(const Eigen::Vector3f& point) {
 
 inline std::vector<VoxelKey> ray_keys(const octomap::OcTree& tree, const Eigen::Vector3f& origin,
                                       const Eigen::Vector3f& end) {
-    octomap::KeyRay ray;
+    static thread_local octomap::KeyRay ray;  // it has room for 100,000 keys: not anew for each ray
     std::vector<VoxelKey> keys;
     if (!tree.computeRayKeys(point_of(origin), point_of(end), ray)) return keys;
     for (const auto& key : ray) keys.push_back(key_of(key));
