@@ -19,6 +19,7 @@ import time
 SOURCES, BUILD = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 BIN = "build/host-release/bin/"
 RIG = "hw/rigs/bench_one_board.yaml"
+BRIDGE = "octoskin bridge --socket control --joints joints --status-socket bridge"
 SAMPLES = "for i in $(seq 30); do echo 0 -0.785 0 -2.356 0 1.571 0.785; sleep 0.1; done"  # of a driver
 
 INSTALLS = BUILDS = HARDWARE = SERVICE = VIEWER = None
@@ -109,12 +110,13 @@ PAGES = {
         "octoskin bridge robot arm.urdf":
             Run("octoskin bridge robot arm.urdf --seconds 1 || test $? = 69"),
         "octoskin rig my_rig.yaml": Run(f"octoskin rig {RIG}"),
-        "octoskin bridge": Run("(octoskin bridge --socket control --joints joints --status-socket bridge & "
-                               "sleep 3; kill $!; wait $!) 2>&1", says="daemon with rig"),
+        "octoskin bridge":
+            Run(f"{BRIDGE} 2>bridge.log & for i in $(seq 100); do grep -q 'daemon with rig' bridge.log && break; "
+                "sleep 0.1; done; kill $!; wait $!; cat bridge.log", says="daemon with rig"),
         "sudo systemctl enable --now octoskin-bridge": SERVICE,
         "octoskin bridge status":
-            Run("octoskin bridge --socket control --joints joints --status-socket bridge & sleep 3; "
-                "octoskin bridge status --socket bridge; ended=$?; kill $!; exit $ended", says="other participants"),
+            Run(f"{BRIDGE} & for i in $(seq 100); do octoskin bridge status --socket bridge && break; sleep 0.1; done; "
+                "ended=$?; kill $!; exit $ended", says="other participants"),
     },
     "ros-camera": {
         # tests/ros publishes images and frames; here nothing publishes them.
