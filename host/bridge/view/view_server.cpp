@@ -22,7 +22,8 @@ constexpr Nanoseconds kJointsPeriod = 33ms;
 constexpr Nanoseconds kRangesPeriod = 50ms;
 /// Readings of one period; beyond this the oldest are left out.
 constexpr std::size_t kRangeBytesMax = std::size_t{256} << 10U;
-constexpr std::size_t kImageBytesMax = std::size_t{1} << 20U;
+/// Width and height.
+constexpr std::size_t kImageHeadBytes = 2 * sizeof(std::uint16_t);
 
 std::string text_of(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -32,6 +33,14 @@ std::string text_of(const Json& json) {
 bool is_due(std::optional<HostTime> sent, Nanoseconds period, HostTime now) {
     constexpr Nanoseconds kHalfTurn = 8ms;
     return !sent || now - *sent + kHalfTurn >= period;
+}
+
+/// Whether there are as many depths as the image has pixels.
+bool is_image(std::string_view image) {
+    snapshot::ByteReader reader(image);
+    const std::size_t width = reader.get<std::uint16_t>();
+    const std::size_t height = reader.get<std::uint16_t>();
+    return reader.is_sound() && image.size() == kImageHeadBytes + width * height * sizeof(std::uint16_t);
 }
 
 std::string image_topic(const std::string& camera) {
@@ -103,6 +112,7 @@ void ViewServer::on_robot(bridge::RobotFacts robot) {
         spdlog::error("{}", opened.error().message());
     open_images();
     joints_waiting_.clear();
+    server_.forget_messages(joints_);
     if (!std::exchange(is_connected_, true)) spdlog::info("daemon with rig '{}'", robot_->rig);
     why_.clear();
     server_.notify(foxglove::Level::warning, "octoskin.daemon", "");
@@ -139,12 +149,11 @@ void ViewServer::on_urdf(std::string urdf) {
 }
 
 void ViewServer::on_image(std::size_t camera, std::string_view image, HostTime captured) {
-    constexpr std::size_t kSizes = 2 * sizeof(std::uint16_t);
-    if (!robot_ || camera >= robot_->cameras.size() || image.size() < kSizes || image.size() > kImageBytesMax)
-        return;
-    std::string payload(image.substr(0, kSizes));
+    if (!robot_ || camera >= robot_->cameras.size()) return;  // of the robot before a reload
+    if (!is_image(image)) return spdlog::error("the daemon's reduced image is malformed");
+    std::string payload(image.substr(0, kImageHeadBytes));
     snapshot::ByteWriter(payload).put(captured.ns);
-    payload += image.substr(kSizes);
+    payload += image.substr(kImageHeadBytes);
     server_.publish(images_.at(image_topic(robot_->cameras[camera].name)), wall_now(), std::move(payload));
 }
 
