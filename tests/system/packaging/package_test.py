@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """package_test.py BUILD CPACK MAINTAINER: the Debian package has what it must and nothing else, and what is in it runs."""
+import json
 import os
 import pathlib
 import re
@@ -31,6 +32,8 @@ BRIDGE_EXAMPLES = {f"usr/share/doc/octoskin-bridge/examples/{name}"
                    for name in ("bridge.launch.py", "octoskin-bridge.override.conf", "octoskin-bridge.sysctl")}
 BRIDGE_OTHERS = {"usr/lib/systemd/system/octoskin-bridge.service", "usr/share/man/man1/octoskin-bridge.1.gz",
                  "usr/share/doc/octoskin-bridge/copyright", "usr/share/doc/octoskin-bridge/changelog.gz"}
+# The page of octoskin view.
+BRIDGE_PAGE = {f"usr/share/octoskin/view/{name}" for name in ("index.html", "licences.txt", "page.css", "page.js", "worker.js")}
 LAB_FOLDERS = {"hw/worlds": "usr/share/octoskin/hw/worlds"}
 FOLDERS = {"docs": "usr/share/doc/octoskin/docs", "host/config": "usr/share/octoskin/config"} | {
     f"hw/{name}": f"usr/share/octoskin/hw/{name}" for name in ("boards", "rigs", "robots")}
@@ -92,7 +95,7 @@ class Package(unittest.TestCase):
         self.assertEqual(self.names(self.lab, "-"), LAB_PROGRAMS | LAB_OTHERS | worlds)
         self.assertEqual(self.names(self.lab, "l"), set())
         self.assertEqual(self.names(self.bridge, "-"),
-                         BRIDGE_PROGRAMS | BRIDGE_SETTINGS | BRIDGE_OTHERS | BRIDGE_EXAMPLES)
+                         BRIDGE_PROGRAMS | BRIDGE_SETTINGS | BRIDGE_OTHERS | BRIDGE_EXAMPLES | BRIDGE_PAGE)
         self.assertEqual(self.names(self.bridge, "l"), set())
 
     def test_belongs_to_root_who_alone_may_write(self):
@@ -137,6 +140,14 @@ class Package(unittest.TestCase):
         for package, settings in ((self.package, SETTINGS), (self.bridge, BRIDGE_SETTINGS)):
             conffiles = run("dpkg-deb", "--info", package, "conffiles").split()
             self.assertEqual(set(conffiles), {f"/{name}" for name in settings})
+
+    def test_has_the_licences_of_the_packages_in_its_page(self):
+        dependencies = json.loads((SOURCE / "host/bridge/page/package.json").read_text())["dependencies"]
+        licences = (self.root / "usr/share/octoskin/view/licences.txt").read_text()
+        copyright = (self.root / "usr/share/doc/octoskin-bridge/copyright").read_text()
+        for name, version in dependencies.items():
+            self.assertIn(f"{name} {version} (", licences)
+            self.assertRegex(copyright, rf"(?m)^Files: {name}(\.js)?$")
 
     def test_has_maintainer_scripts_that_parse(self):
         for package in (self.package, self.bridge):

@@ -1,0 +1,150 @@
+"""A recording on a bus, a daemon with a map of some 30,000 occupied voxels, and `octoskin view`, for tests."""
+import json
+import pathlib
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+MAPPING = "base: denoised\nmap: {resolution_m: 0.018}\n"
+RESOLUTION_M = 0.018
+ORIGIN_KEY = 32768
+
+
+class World:
+    """`with World(programs) as world:`; then `play` once, which takes as long as the recording."""
+
+    def __init__(self, programs, prefix=()):
+        self.bin, self.prefix = pathlib.Path(programs), list(prefix)
+        self.scratch = tempfile.TemporaryDirectory(prefix="octoskin-view-")
+        self.path = pathlib.Path(self.scratch.name)
+        self.daemon = self.view = self.bus = self.player = None
+        self.files = []
+
+    def __enter__(self):
+        try:
+            self.make_recording()
+            self.start_daemon()
+            self.start_view()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        if self.player is not None:
+            self.player.wait()
+        for process in (self.view, self.daemon):
+            if process is not None and process.poll() is None:
+                process.terminate()
+                process.wait(20)
+        if self.bus is not None:
+            self.bus.close()
+        for file in self.files:
+            file.close()
+        self.scratch.cleanup()
+
+    def run(self, *command):
+        subprocess.run([str(word) for word in command], check=True, capture_output=True)
+
+    def make_recording(self):
+        (self.path / "mapping.yaml").write_text(MAPPING)
+        self.run(self.bin / "octoskin-lab", "simulate", self.path / "recording")
+        self.run(self.bin / "octoskin", "replay", self.path / "recording", "--fused-only", "--configuration",
+                 self.path / "mapping.yaml", "--out", self.path / "replayed")
+        (self.path / "maps").mkdir()
+        shutil.copy(self.path / "replayed/fused.ot", self.path / "maps")
+
+    def start_daemon(self):
+        daemon_end, self.bus = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.daemon = subprocess.Popen(
+            [self.bin / "octoskin", "run", "--rig", self.path / "recording/rig.yaml", "--can",
+             f"fd:{daemon_end.fileno()}", "--listen-only", "--no-camera", "--maps", self.path / "maps", "--save-every",
+             "1", "--configuration", self.path / "mapping.yaml", "--socket", self.path / "control"],
+            pass_fds=[daemon_end.fileno()], stderr=self.log_file("daemon"))
+        daemon_end.close()
+        self.wait_for(lambda: (self.path / "control").exists(), "daemon")
+
+    def start_view(self, port=0):
+        """At any free port, or at the one that a page already knows."""
+        self.view = subprocess.Popen([*self.prefix, self.bin / "octoskin", "view", "--socket", self.path / "control",
+                                      "--port", str(port)], stderr=self.log_file("view"))
+        self.wait_for(self.url_of_view, "view")
+        self.url = self.url_of_view()
+        self.port = int(re.search(r":(\d+)", self.url)[1])
+
+    def log_file(self, name):
+        """A new file, closed at the end."""
+        self.files.append(open(self.path / f"{name}.log", "w"))
+        return self.files[-1]
+
+    def url_of_view(self):
+        found = re.search(r"http://\S+", (self.path / "view.log").read_text())
+        return found and found[0]
+
+    def stop_view(self):
+        self.view.terminate()
+        self.view.wait(20)
+
+    def wait_for(self, condition, name, seconds=20):
+        end = time.monotonic() + seconds
+        while not condition():
+            if time.monotonic() > end:
+                raise AssertionError(f"{name}: not within {seconds} s\n" + (self.path / f"{name}.log").read_text())
+            time.sleep(0.02)
+
+    def play(self):
+        """In the background: play_in_parts.py."""
+        self.player = subprocess.Popen(
+            [sys.executable, "-B", pathlib.Path(__file__).with_name("play_in_parts.py"), self.path / "recording/can.log",
+             str(self.bus.fileno())], pass_fds=[self.bus.fileno()], stdout=self.log_file("player"))
+
+    @property
+    def phase(self):
+        """before, playing, pausing, playing again, after."""
+        lines = (self.path / "player.log").read_text().splitlines() if self.player else []
+        return lines[-1] if lines else "before"
+
+    def wait_for_phase(self, phase, seconds=20):
+        self.wait_for(lambda: self.phase == phase, "player", seconds)
+
+    def ask(self, request):
+        with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as asked:
+            asked.connect(str(self.path / "control"))
+            asked.sendall(request.encode() + b"\n")
+            return json.loads(asked.makefile().readline())
+
+    def wait_for_save(self):
+        """Until a map that was saved after this call is there."""
+        before = self.ask("status")["map"]["saved"]
+        self.wait_for(lambda: self.ask("status")["map"]["saved"] > before + 1, "daemon")
+
+    def occupied(self):
+        """Keys of the occupied voxels in the daemon's saved map, as bt2vrml of OctoMap reads it."""
+        copied = self.path / "copied.bt"
+        shutil.copy(self.path / "maps/fused.bt", copied)
+        self.run("bt2vrml", copied)
+        return set(boxes((self.path / "copied.bt.wrl").read_text()))
+
+
+def boxes(vrml):
+    """The voxels of the boxes of a VRML file: OctoMap joins equal ones to larger cubes."""
+    number = r"(-?[\d.e-]+)"
+    for x, y, z, size in re.findall(rf"translation {number} {number} {number}\s+children \[ Shape "
+                                    rf"{{ geometry Box {{ size {number}", vrml):
+        edge = round(float(size) / RESOLUTION_M)
+        low = [round((float(centre) - float(size) / 2) / RESOLUTION_M) + ORIGIN_KEY for centre in (x, y, z)]
+        for i in range(edge):
+            for j in range(edge):
+                for k in range(edge):
+                    yield low[0] + i, low[1] + j, low[2] + k
+
+
+def surface(occupied):
+    """Those with a neighbour that is not occupied: the others have no visible face."""
+    steps = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+    return {key for key in occupied
+            if any((key[0] + x, key[1] + y, key[2] + z) not in occupied for x, y, z in steps)}
