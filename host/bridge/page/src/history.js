@@ -44,7 +44,7 @@ function decode(bytes) {
   return withCount(states, stamps);
 }
 
-/** Times are seconds of the bus, and do not go back. */
+/** Times are seconds of the bus, and do not go back: then it is to be cleared. */
 export class History {
   /** @param {number} [bytesMax] beyond which the oldest versions are forgotten */
   constructor(bytesMax = BYTES_MAX) {
@@ -64,7 +64,6 @@ export class History {
 
   /** The changes that made the map of `time_s`. @param {Map<number, import('./bricks.js').Cells | null>} changed */
   add(time_s, clock_s, staleStamp, changed) {
-    if (this.end_s !== null && time_s < this.end_s) this.clear();
     this.begin_s ??= time_s;
     this.end_s = time_s;
     this.marks.push({ time_s, clock_s, staleStamp });

@@ -25,8 +25,18 @@ export function inspection(page) {
     /** The pixel of a point, metres, map frame. */
     pixelOf: (p_map) => page.scene.pixelOf(p_map),
 
-    /** The ray through a pixel: origin, direction, map frame. */
-    rayThrough: (x_px, y_px) => page.scene.rayThrough(x_px, y_px),
+    /** The camera of the scene: metres, map frame, up is z; `fov_deg`: of the height; size in CSS pixels. */
+    camera: () => ({
+      position: page.scene.camera.position.toArray(),
+      target: page.scene.controls.target.toArray(),
+      fov_deg: page.scene.camera.fov,
+      width: page.scene.element.clientWidth,
+      height: page.scene.element.clientHeight,
+    }),
+
+    /** The newest status, and the newest positions of the joints by name, rad or m, as they arrived. */
+    status: () => page.status ?? null,
+    joints: () => Object.fromEntries(page.arm.positions),
 
     /** Shows a time of the last minute, bus seconds; null: live. */
     showAt: (time_s) => page.timeline.showAt(time_s),

@@ -143,6 +143,7 @@ class Page {
   }
 
   #statusChanged(status) {
+    this.status = status;
     this.panels.show(status, this.arm.addStatus(status));
     if (this.timeline.shown_s === null) this.arm.showAt(null);
     this.knownVoxels = status.map.known_voxels;
@@ -152,11 +153,11 @@ class Page {
   #mapChanged(update) {
     const begin = performance.now();
     this.layer.apply(update);
-    this.pending_ms = (this.pending_ms ?? 0) + performance.now() - begin;
-    const isSameTime = this.drawnClock_s === update.clock_s;
+    if (update.groups.length > 0 || this.drawnClock_s !== update.clock_s) {
+      this.pending_ms = (this.pending_ms ?? 0) + performance.now() - begin;
+      this.scene.request();
+    }
     this.drawnClock_s = update.clock_s;
-    if (update.groups.length > 0 || !isSameTime) this.scene.request();
-    else this.pending_ms = null; // nothing to draw
     this.timeline.setSpan(update.history.begin_s, update.history.end_s);
     this.#frameOnce();
     this.#showFigures();

@@ -66,7 +66,10 @@ export class MapStore {
       for (const number of [...this.live.cells.keys()]) if (!this.seen.has(number)) this.live.set(number, null);
     this.seen = null;
     this.time_s = time_s;
-    this.history.add(time_s, this.head.clock_s, this.head.staleStamp, this.changed);
+    if (time_s === 0) return; // not known yet: the changes count for the first known time
+    const isBack = this.history.end_s !== null && time_s < this.history.end_s; // the bus time began anew
+    if (isBack) this.history.clear();
+    this.history.add(time_s, this.head.clock_s, this.head.staleStamp, isBack ? this.live.cells : this.changed);
     this.changed.clear();
   }
 
