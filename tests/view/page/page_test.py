@@ -160,7 +160,8 @@ class Page(unittest.TestCase):
         self.assert_draws(occupied)
         camera = self.browser.octoskin("camera()")
         picked = 0
-        for share_x, share_y in ((0.5, 0.5), (0.55, 0.4), (0.62, 0.47), (0.3, 0.7), (0.7, 0.8), (0.8, 0.7), (0.45, 0.62)):
+        shares = ((0.5, 0.5), (0.55, 0.4), (0.62, 0.47), (0.3, 0.7), (0.7, 0.8), (0.8, 0.7), (0.45, 0.62))
+        for share_x, share_y in shares:
             x_px, y_px = share_x * camera["width"], share_y * camera["height"]
             expected = nearest_on_ray(*ray_through(camera, x_px, y_px), occupied)
             voxel = self.browser.octoskin(f"pick({x_px}, {y_px})")
@@ -214,7 +215,8 @@ class Page(unittest.TestCase):
 
     def test_a_fits_wide_and_narrow_windows(self):
         """No text runs out of the window, each button is at least 24 px high, and each control has a name."""
-        for width, height, scheme in ((1280, 800, "dark"), (1280, 800, "light"), (390, 844, "dark"), (390, 844, "light")):
+        windows = [(*size, scheme) for size in ((1280, 800), (390, 844)) for scheme in ("dark", "light")]
+        for width, height, scheme in windows:
             self.browser.open(self.world.url, width, height, scheme)
             self.browser.until("window.octoskin?.stats().then((stats) => stats.occupied > 0)")
             self.assertEqual(self.browser.evaluate("document.documentElement.dataset.theme"), scheme)

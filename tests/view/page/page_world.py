@@ -98,9 +98,10 @@ class World:
 
     def play(self):
         """In the background: play_in_parts.py."""
+        program = pathlib.Path(__file__).with_name("play_in_parts.py")
         self.player = subprocess.Popen(
-            [sys.executable, "-B", pathlib.Path(__file__).with_name("play_in_parts.py"), self.path / "recording/can.log",
-             str(self.bus.fileno())], pass_fds=[self.bus.fileno()], stdout=self.log_file("player"))
+            [sys.executable, "-B", program, self.path / "recording/can.log", str(self.bus.fileno())], pass_fds=[self.bus.fileno()],
+            stdout=self.log_file("player"))
 
     @property
     def phase(self):

@@ -1,0 +1,343 @@
+// Modules of the page without a browser: node --test modules.test.mjs
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+const source = '../../../host/bridge/page/src/';
+const { Bricks, cellsOf, STATE } = await import(`${source}bricks.js`);
+const { facesOf, FACE_BYTES } = await import(`${source}faces.js`);
+const { History } = await import(`${source}history.js`);
+const { brickAt, brickNumber, centreOf, keyAt } = await import(`${source}lattice.js`);
+const { readMapPayload } = await import(`${source}map_payload.js`);
+const { MapStore } = await import(`${source}map_store.js`);
+const { Readings, readBatch } = await import(`${source}readings.js`);
+const { sensorState } = await import(`${source}sensor_state.js`);
+
+const BEGINS = 1;
+const COMPLETE = 2;
+const BRICK = brickNumber(4096, 4096, 4096); // its lowest voxel is at the map's origin
+
+/** Writes a payload as docs/reference/watch.md has it. */
+class Payload {
+  constructor({ resolution_m = 0.04, occupiedFrom = 0, clock_s = 100, staleStamp = 160 } = {}) {
+    this.bytes = [];
+    this.number('setFloat64', 8, resolution_m);
+    this.number('setFloat32', 4, occupiedFrom);
+    this.bytes.push(1);
+    this.number('setUint32', 4, clock_s);
+    this.number('setUint16', 2, staleStamp);
+  }
+
+  number(set, size, value) {
+    const view = new DataView(new ArrayBuffer(size));
+    view[set](0, value, true);
+    this.bytes.push(...new Uint8Array(view.buffer));
+  }
+
+  count(value) {
+    for (; value >= 128; value = Math.floor(value / 128)) this.bytes.push((value % 128) + 128);
+    this.bytes.push(value);
+  }
+
+  alike(number, logOdds, stamp) {
+    this.count(number);
+    this.bytes.push(1);
+    this.number('setFloat32', 4, logOdds);
+    this.bytes.push(1);
+    this.number('setUint16', 2, stamp);
+    return this;
+  }
+
+  /** One value for each voxel in Morton order, by runs of at most 128 different ones. */
+  each(number, logOdds, stamp) {
+    this.count(number);
+    this.bytes.push(2);
+    for (let from = 0; from < 512; from += 128) {
+      this.bytes.push(127);
+      for (let code = from; code < from + 128; code++) this.number('setFloat32', 4, logOdds(code));
+    }
+    this.bytes.push(1);
+    this.number('setUint16', 2, stamp);
+    return this;
+  }
+
+  unknown(number) {
+    this.count(number);
+    this.bytes.push(0, 0);
+    return this;
+  }
+
+  get buffer() {
+    return new Uint8Array(this.bytes).buffer;
+  }
+}
+
+/** The voxel of a Morton code, bit by bit. */
+function voxelOf(code) {
+  const at = [0, 0, 0];
+  for (let bit = 0; bit < 9; bit++) at[bit % 3] |= ((code >> bit) & 1) << Math.floor(bit / 3);
+  return at;
+}
+
+/** Pseudo-random numbers below 1, the same each time. */
+function numbers(seed) {
+  let state = seed;
+  return () => (state = (state * 1103515245 + 12345) % 2147483648) / 2147483648;
+}
+
+test('numbers of bricks are Morton codes of 39 bits', () => {
+  assert.equal(brickNumber(1, 0, 0), 1);
+  assert.equal(brickNumber(0, 1, 0), 2);
+  assert.equal(brickNumber(0, 0, 1), 4);
+  assert.equal(brickNumber(256, 0, 0), 2 ** 24);
+  assert.equal(brickNumber(8191, 8191, 8191), 2 ** 39 - 1);
+  assert.equal(brickNumber(-1, 0, 0), -1);
+  assert.equal(brickNumber(0, 8192, 0), -1);
+  const next = numbers(1);
+  for (let count = 0; count < 1000; count++) {
+    const at = [0, 0, 0].map(() => Math.floor(next() * 8192));
+    assert.deepEqual(brickAt(brickNumber(...at)), at);
+  }
+});
+
+test('keys are those of OctoMap', () => {
+  assert.deepEqual(keyAt([0, -0.001, 0.079], 0.04), [32768, 32767, 32769]);
+  assert.deepEqual(
+    centreOf([32768, 32767, 32769], 0.04).map((along) => along.toFixed(3)),
+    ['0.020', '-0.020', '0.060'],
+  );
+});
+
+test('a payload is read voxel by voxel in Morton order', () => {
+  const payload = new Payload().each(BRICK, (code) => (code % 3 === 0 ? NaN : code - 256), 401);
+  const { bricks, clock_s, staleStamp, resolution_m } = readMapPayload(payload.buffer, 0);
+  assert.deepEqual(
+    [clock_s, staleStamp, resolution_m, bricks.length, bricks[0].number],
+    [100, 160, 0.04, 1, BRICK],
+  );
+  for (let code = 0; code < 512; code++) {
+    const [x, y, z] = voxelOf(code);
+    const value = bricks[0].logOdds[x + 8 * y + 64 * z];
+    assert.ok(code % 3 === 0 ? Number.isNaN(value) : value === code - 256, `voxel ${code}`);
+    assert.equal(bricks[0].stamps[code], 401);
+  }
+});
+
+test('a payload that is cut anywhere is refused, or a shorter one', () => {
+  const whole = new Payload().alike(BRICK, 1, 401).each(BRICK + 1, (code) => code, 5).buffer;
+  let refused = 0;
+  for (let size = 0; size < whole.byteLength; size++) {
+    try {
+      assert.ok(readMapPayload(whole.slice(0, size), 0).bricks.length < 2);
+    } catch (error) {
+      assert.ok(error instanceof RangeError);
+      refused++;
+    }
+  }
+  assert.equal(refused, whole.byteLength - 2); // all but the head alone, and the head with one brick
+});
+
+test('forms, runs and numbers that do not exist are refused', () => {
+  const refusals = {
+    'a fourth form': (payload) => payload.bytes.push(1, 3),
+    'a run beyond the brick': (payload) => payload.bytes.push(1, 2, ...Array(5).fill([255, 0, 0, 0, 0]).flat()),
+    'a count without an end': (payload) => payload.bytes.push(...Array(12).fill(255)),
+  };
+  for (const [name, spoil] of Object.entries(refusals)) {
+    const payload = new Payload();
+    spoil(payload);
+    assert.throws(() => readMapPayload(payload.buffer, 0), RangeError, name);
+  }
+  for (const resolution_m of [0, -1, NaN, Infinity])
+    assert.throws(() => readMapPayload(new Payload({ resolution_m }).buffer, 0), RangeError);
+});
+
+test('each visible face is made once, also between bricks', () => {
+  const next = numbers(7);
+  const bricks = new Bricks(() => {});
+  const occupied = new Set();
+  for (const [x, y, z] of [
+    [0, 0, 0],
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+  ]) {
+    const logOdds = Float32Array.from({ length: 512 }, (_, voxel) => {
+      const isOccupied = next() < 0.5;
+      if (isOccupied) occupied.add([8 * x + (voxel & 7), 8 * y + ((voxel >> 3) & 7), 8 * z + (voxel >> 6)].join());
+      return isOccupied ? 1 : next() < 0.5 ? -1 : NaN;
+    });
+    bricks.set(brickNumber(x, y, z), cellsOf(logOdds, new Uint16Array(512), 0));
+  }
+  const made = [];
+  for (const number of bricks.cells.keys()) {
+    const { occupied: faces } = facesOf(bricks, number, { unknown: false, free: false });
+    for (let at = 0; at < faces.length; at += FACE_BYTES) made.push(faces.slice(at, at + 4).join());
+  }
+  const expected = [];
+  for (const key of occupied) {
+    const at = key.split(',').map(Number);
+    for (let direction = 0; direction < 6; direction++) {
+      const beside = [...at];
+      beside[direction >> 1] += direction & 1 ? 1 : -1;
+      if (!occupied.has(beside.join())) expected.push([...at, direction].join());
+    }
+  }
+  assert.deepEqual(made.sort(), expected.sort());
+});
+
+test('a corner is darker the more of the voxels beside it are occupied', () => {
+  const bricks = new Bricks(() => {});
+  const logOdds = new Float32Array(512).fill(-1);
+  const place = (x, y, z) => (logOdds[x + 8 * y + 64 * z] = 1);
+  place(3, 3, 3);
+  place(4, 3, 4); // beside the upper face, on the side of x
+  bricks.set(0, cellsOf(logOdds, new Uint16Array(512), 0));
+  const { occupied } = facesOf(bricks, 0, { unknown: false, free: false });
+  const face = [...Array(occupied.length / FACE_BYTES).keys()]
+    .map((each) => occupied.slice(each * FACE_BYTES, (each + 1) * FACE_BYTES))
+    .find(([x, y, z, direction]) => x === 3 && y === 3 && z === 3 && direction === 5);
+  const shades = [0, 2, 4, 6].map((shift) => (face[6] >> shift) & 3);
+  assert.deepEqual(shades, [0, 1, 0, 1]);
+});
+
+/** Frames of a store; the time is the bus time. */
+function add(store, time_s, payload, flags = COMPLETE) {
+  return store.add(flags, time_s, payload.buffer, 0);
+}
+
+const keysOf = (store) => store.takeUpdate().occupied;
+
+test('the map of each time of the last minute comes back', () => {
+  const store = new MapStore();
+  const next = numbers(3);
+  const expected = [];
+  add(store, 10, new Payload().alike(BRICK, -1, 401), BEGINS | COMPLETE);
+  for (let step = 0; step < 40; step++) {
+    const number = BRICK + Math.floor(next() * 8);
+    const payload = new Payload();
+    if (next() < 0.2) payload.unknown(number);
+    else payload.each(number, () => (next() < 0.3 ? 1 : -1), 401 + step);
+    add(store, 11 + step, payload);
+    expected.push({ time_s: 11 + step, occupied: keysOf(store) });
+  }
+  for (const { time_s, occupied } of [...expected].sort(() => next() - 0.5)) {
+    store.show(time_s);
+    assert.equal(keysOf(store), occupied, `at ${time_s} s`);
+  }
+  store.show(null);
+  assert.equal(keysOf(store), expected.at(-1).occupied);
+});
+
+test('a new beginning leaves out what is gone, and the slider still has it', () => {
+  const store = new MapStore();
+  add(store, 10, new Payload().alike(BRICK, 1, 401).alike(BRICK + 1, 1, 401), BEGINS | COMPLETE);
+  add(store, 20, new Payload().alike(BRICK, 1, 401), BEGINS);
+  assert.equal(keysOf(store), 1024); // until the map is complete
+  add(store, 20, new Payload());
+  assert.equal(keysOf(store), 512);
+  store.show(15);
+  assert.equal(keysOf(store), 1024);
+});
+
+test('a bus time that goes back begins the history anew, with the whole map', () => {
+  const store = new MapStore();
+  add(store, 100, new Payload().alike(BRICK, 1, 401), BEGINS | COMPLETE);
+  add(store, 50, new Payload().alike(BRICK + 1, 1, 401));
+  assert.deepEqual(store.takeUpdate().history.begin_s, 50);
+  store.show(50);
+  assert.equal(keysOf(store), 1024);
+});
+
+test('another resolution is another map', () => {
+  const store = new MapStore();
+  add(store, 10, new Payload().alike(BRICK, 1, 401), BEGINS | COMPLETE);
+  add(store, 11, new Payload({ resolution_m: 0.02 }).alike(BRICK + 9, 1, 401), BEGINS | COMPLETE);
+  assert.equal(keysOf(store), 512);
+  assert.equal(store.history.begin_s, 11);
+});
+
+test('the history keeps a minute, and never more than its bytes', () => {
+  const next = numbers(5);
+  for (const bytesMax of [Infinity, 20000]) {
+    const history = new History(bytesMax);
+    for (let time_s = 0; time_s < 200; time_s++) {
+      const logOdds = Float32Array.from({ length: 512 }, () => next() - 0.5);
+      history.add(time_s, time_s, 0, new Map([[time_s % 4, cellsOf(logOdds, new Uint16Array(512), 0)]]));
+      assert.ok(history.bytes <= bytesMax);
+    }
+    assert.equal(history.end_s, 199);
+    if (bytesMax === Infinity) assert.equal(history.begin_s, 139);
+    else assert.ok(history.begin_s > 139);
+    const held = [...history.versions.values()].flat();
+    assert.ok(held.length < 70);
+    assert.equal(
+      history.bytes,
+      held.reduce((sum, { bytes }) => sum + 200 + bytes.length, 0),
+    );
+  }
+});
+
+test('a reading that ends in a voxel is told from one that passes through', () => {
+  const readings = new Readings();
+  const reading = (time_s, range_m) => ({
+    time_s,
+    node: 1,
+    sensor: 2,
+    zone: 0,
+    hasTarget: true,
+    range_m,
+    sigma_m: 0.01,
+    origin: [0, 0.01, 0.01],
+    direction: [1, 0, 0],
+  });
+  const key = keyAt([0.5, 0.01, 0.01], 0.04);
+  readings.add(reading(10, 0.3));
+  assert.equal(readings.lastThrough(key, 0.04, 20), null);
+  readings.add(reading(11, 0.5));
+  readings.add(reading(12, 0.9));
+  assert.deepEqual(
+    [readings.lastThrough(key, 0.04, 20).endsHere, readings.lastThrough(key, 0.04, 20).reading.time_s],
+    [false, 12],
+  );
+  assert.deepEqual(
+    [readings.lastThrough(key, 0.04, 11).endsHere, readings.lastThrough(key, 0.04, 11).reading.time_s],
+    [true, 11],
+  );
+  assert.equal(readings.lastThrough(key, 0.04, 80), null); // over a minute ago
+  assert.equal(readings.lastThrough(keyAt([0.5, 0.1, 0.01], 0.04), 0.04, 20), null);
+});
+
+test('a batch of ranges that is cut off is refused', () => {
+  const bytes = new Uint8Array(8 + 12 + 4 + 64);
+  new DataView(bytes.buffer).setUint32(8, 68, true);
+  assert.equal(readBatch(bytes.buffer, 0).length, 1);
+  for (let size = 9; size < bytes.length; size++)
+    assert.throws(() => readBatch(bytes.buffer.slice(0, size), 0), RangeError);
+});
+
+test('a sensor has one state, the worst that applies', () => {
+  const node = { verdict: 'usable' };
+  const well = { state: 'ranging', fault: 'none', disputed: false, camera: null, age_s: 0.1, rejected: null };
+  const cases = {
+    used: [{}, { camera: { contradicts: false } }],
+    nothing: [{ rejected: 'no_return' }],
+    rejected: [{ rejected: 'self_hit' }, { rejected: 'late' }],
+    silent: [{ age_s: null }, { age_s: 3.1 }, { state: null }, { age_s: 5, rejected: 'no_return' }],
+    faulty: [
+      { state: 'failed', age_s: null },
+      { disputed: true },
+      { camera: { contradicts: true, fault: null }, rejected: 'no_return' },
+    ],
+  };
+  for (const [state, sensors] of Object.entries(cases))
+    for (const changed of sensors)
+      assert.equal(sensorState(node, { ...well, ...changed }).state, state, JSON.stringify(changed));
+});
+
+test('states of voxels: unknown, free, and occupied from the threshold on', () => {
+  const logOdds = new Float32Array(512).fill(NaN);
+  logOdds.set([-0.1, 0, 0.1]);
+  const { states, occupied } = cellsOf(logOdds, new Uint16Array(512), 0);
+  assert.deepEqual([...states.slice(0, 4)], [STATE.free, STATE.occupied, STATE.occupied, STATE.unknown]);
+  assert.equal(occupied, 2);
+});
