@@ -3,6 +3,12 @@ import { centreOf } from './lattice.js';
 import { percentile } from './map_client.js';
 import { poseOf } from './poses.js';
 
+/** Of the newest 600 maps. */
+function figuresOf(values) {
+  const [p50, p95, max] = [0.5, 0.95, 1].map((share) => percentile(values, share));
+  return { last: values.at(-1) ?? null, p50, p95, max, count: values.length };
+}
+
 /** @param {object} page of main.js */
 export function inspection(page) {
   return {
@@ -63,17 +69,8 @@ export function inspection(page) {
         meshes: drawn.meshes,
         frameBytes: drawn.bytes + worker.bytes,
         historyBytes: worker.historyBytes,
-        mainMs: {
-          last: page.main_ms.at(-1) ?? null,
-          p50: percentile(page.main_ms, 0.5),
-          p95: percentile(page.main_ms, 0.95),
-          count: page.main_ms.length,
-        },
-        workerMs: {
-          last: page.map.worker_ms.at(-1) ?? null,
-          p50: percentile(page.map.worker_ms, 0.5),
-          p95: percentile(page.map.worker_ms, 0.95),
-        },
+        mainMs: figuresOf(page.main_ms),
+        workerMs: figuresOf(page.map.worker_ms),
         drawings: page.scene.drawn.count,
       };
     },

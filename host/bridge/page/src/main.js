@@ -23,7 +23,7 @@ const FIGURES_MAX = 600;
 class Page {
   constructor() {
     this.main_ms = []; // of each map: taking it and drawing it
-    this.pending_ms = null;
+    this.taken_ms = []; // of the maps that are not drawn yet
     this.scene = new Scene(document.getElementById('canvas'));
     this.layer = new MapLayer(this.scene.scene);
     this.arm = new Arm(this.scene);
@@ -63,11 +63,10 @@ class Page {
 
   #prepareDrawing() {
     this.scene.beforeDrawing.push(() => this.layer.setPointScale(this.scene.pointScale));
-    this.scene.afterDrawing.push((took_ms) => {
-      if (this.pending_ms === null) return;
-      this.main_ms.push(this.pending_ms + took_ms);
-      if (this.main_ms.length > FIGURES_MAX) this.main_ms.shift();
-      this.pending_ms = null;
+    this.scene.afterDrawing.push((drawn_ms) => {
+      this.main_ms.push(...this.taken_ms.map((taken_ms) => taken_ms + drawn_ms));
+      this.main_ms.splice(0, Math.max(0, this.main_ms.length - FIGURES_MAX));
+      this.taken_ms = [];
     });
   }
 
@@ -154,7 +153,7 @@ class Page {
     const begin = performance.now();
     this.layer.apply(update);
     if (update.groups.length > 0 || this.drawnClock_s !== update.clock_s) {
-      this.pending_ms = (this.pending_ms ?? 0) + performance.now() - begin;
+      this.taken_ms.push(performance.now() - begin);
       this.scene.request();
     }
     this.drawnClock_s = update.clock_s;

@@ -22,6 +22,7 @@ export class MapStore {
   constructor() {
     this.changed = new Map(); // since the last complete map: number -> Cells or null
     this.dirty = new Set(); // bricks whose faces are to be made anew
+    this.reshaped = new Set(); // those of them in which the state of a voxel changed
     this.live = new Bricks((number, statesChanged) => {
       this.changed.set(number, this.live.get(number) ?? null);
       if (this.shown === this.live) this.#touch(number, statesChanged);
@@ -82,8 +83,19 @@ export class MapStore {
 
   #touch(number, statesChanged) {
     this.dirty.add(number);
-    if (!statesChanged) return;
-    const [x, y, z] = brickAt(number); // corners are shaded by their neighbours
+    if (statesChanged) this.reshaped.add(number);
+  }
+
+  /** Corners are shaded by their neighbours: those of a brick in which a state changed have other faces, too. */
+  #touchNeighbours() {
+    if (this.reshaped.size > this.shown.cells.size / 4)
+      for (const number of this.shown.cells.keys()) this.dirty.add(number); // sooner done than looking for them
+    else for (const number of this.reshaped) this.#touchAround(number);
+    this.reshaped.clear();
+  }
+
+  #touchAround(number) {
+    const [x, y, z] = brickAt(number);
     for (let dz = -1; dz <= 1; dz++)
       for (let dy = -1; dy <= 1; dy++)
         for (let dx = -1; dx <= 1; dx++) {
@@ -140,6 +152,7 @@ export class MapStore {
 
   #makeDirty() {
     const touched = new Set();
+    this.#touchNeighbours();
     for (const number of this.dirty) {
       const group = Math.floor(number / BRICKS_OF_GROUP);
       touched.add(group);

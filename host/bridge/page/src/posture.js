@@ -21,12 +21,8 @@ export function sentencesOf(answer) {
   if (answer.state === 'free') sentences.push('All space that the posture touches is free.');
   else if (leg.voxel_m) sentences.push(`${leg.link} touches ${SPACE[answer.state]}, at ${point(leg.voxel_m)}.`);
   else sentences.push(`${leg.link} has no body, or is outside the map.`);
-  if (leg.occupied_m !== null && leg.occupied_m !== undefined)
-    sentences.push(
-      leg.occupied_m === 0
-        ? `${leg.occupied_link} touches something occupied.`
-        : `The nearest occupied voxel is ${fixed(leg.occupied_m, 3)} m from ${leg.occupied_link}.`,
-    );
+  if (answer.state !== 'occupied' && typeof leg.occupied_m === 'number')
+    sentences.push(`The nearest occupied voxel is ${fixed(leg.occupied_m, 3)} m from ${leg.occupied_link}.`);
   const evidence = leg.evidence;
   if (evidence && evidence.age_s !== null)
     sentences.push(`The weakest evidence is ${fixed(evidence.age_s, 0)} s old.`);
