@@ -118,6 +118,15 @@ PAGES = {
             Run(f"{BRIDGE} & for i in $(seq 100); do octoskin bridge status --socket bridge && break; sleep 0.1; done; "
                 "ended=$?; kill $!; exit $ended", says="other participants"),
     },
+    "view": {
+        "toolchains/install_packages product bridge view": INSTALLS,
+        "cmake --preset host-release": BUILDS,
+        "cmake --build --preset host-release --target octoskin_package --parallel": BUILDS,
+        "sudo apt install ./build/host-release/octoskin_0.1.0_amd64.deb "
+        "./build/host-release/octoskin-bridge_0.1.0_amd64.deb": INSTALLS,
+        "octoskin view": Run("(octoskin view --socket control --port 0 & sleep 3; kill $!; wait $!) 2>&1",
+                             says="the view is at http://127.0.0.1:"),
+    },
     "ros-camera": {
         # tests/ros publishes images and frames; here nothing publishes them.
         "octoskin bridge pose --rig my_rig.yaml > my_cell.yaml":

@@ -42,7 +42,7 @@ class Browser:
         """What `window.octoskin` (host/bridge/page/src/inspection.js) answers: octoskin("pick(10, 20)")."""
         return self.evaluate(f"window.octoskin.{call}")
 
-    def until(self, expression, seconds=20):
+    def until(self, expression, seconds=60):
         """Waits until JavaScript gives something true; returns it. Raises AssertionError."""
         end = time.monotonic() + seconds
         while not (value := self.evaluate(expression)):

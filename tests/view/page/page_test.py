@@ -139,6 +139,7 @@ class Page(unittest.TestCase):
         self.assert_draws(occupied)
         self.assertEqual(self.world.phase, "pausing", "the machine is too slow: ranges came while maps were compared")
         self.taken["paused"] = (time_s, occupied)
+        self.world.play_again()
 
     def test_4_draws_the_links_where_the_kinematics_has_them(self):
         self.world.wait_for_phase("after")

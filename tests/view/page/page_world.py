@@ -9,6 +9,11 @@ import sys
 import tempfile
 import time
 
+# A slow circle: tests have 20 s while no range comes.
+SCENARIO = """extends: {}/hw/worlds/experiment.scenario.yaml
+motion: {{circle: {{ticks_per_revolution: 750}}}}
+"""
+SOURCE = pathlib.Path(__file__).resolve().parents[3]
 MAPPING = "base: denoised\nmap: {resolution_m: 0.018}\n"
 RESOLUTION_M = 0.018
 ORIGIN_KEY = 32768
@@ -36,7 +41,9 @@ class World:
 
     def __exit__(self, *_):
         if self.player is not None:
-            self.player.wait()
+            self.player.terminate()
+            self.player.wait(20)
+            self.player.stdin.close()
         for process in (self.view, self.daemon):
             if process is not None and process.poll() is None:
                 process.terminate()
@@ -52,7 +59,9 @@ class World:
 
     def make_recording(self):
         (self.path / "mapping.yaml").write_text(MAPPING)
-        self.run(self.bin / "octoskin-lab", "simulate", self.path / "recording")
+        (self.path / "scenario.yaml").write_text(SCENARIO.format(SOURCE))
+        self.run(self.bin / "octoskin-lab", "simulate", self.path / "recording", "--scenario",
+                 self.path / "scenario.yaml")
         self.run(self.bin / "octoskin", "replay", self.path / "recording", "--fused-only", "--configuration",
                  self.path / "mapping.yaml", "--out", self.path / "replayed")
         (self.path / "maps").mkdir()
@@ -89,7 +98,7 @@ class World:
         self.view.terminate()
         self.view.wait(20)
 
-    def wait_for(self, condition, name, seconds=20):
+    def wait_for(self, condition, name, seconds=60):
         end = time.monotonic() + seconds
         while not condition():
             if time.monotonic() > end:
@@ -101,7 +110,11 @@ class World:
         program = pathlib.Path(__file__).with_name("play_in_parts.py")
         self.player = subprocess.Popen(
             [sys.executable, "-B", program, self.path / "recording/can.log", str(self.bus.fileno())], pass_fds=[self.bus.fileno()],
-            stdout=self.log_file("player"))
+            stdin=subprocess.PIPE, stdout=self.log_file("player"))
+
+    def play_again(self):
+        self.player.stdin.write(b"again\n")
+        self.player.stdin.close()
 
     @property
     def phase(self):
@@ -109,7 +122,7 @@ class World:
         lines = (self.path / "player.log").read_text().splitlines() if self.player else []
         return lines[-1] if lines else "before"
 
-    def wait_for_phase(self, phase, seconds=20):
+    def wait_for_phase(self, phase, seconds=60):
         self.wait_for(lambda: self.phase == phase, "player", seconds)
 
     def ask(self, request):

@@ -3,18 +3,21 @@
 
 usage: play_in_parts.py LOG FD
 
-Meanwhile the map does not change, but the bus time goes on. Prints each part when it begins: playing, pausing, playing
-again, after. A process of its own: a thread beside tests would send SYNC late.
+From BEGIN_S on no range is sent, until a line comes on standard input; then ranges for MORE_S, and it ends. Meanwhile
+the map does not change, but the bus time goes on. Prints each part when it begins: playing, pausing, playing again,
+after. A process of its own: a thread beside tests would send SYNC late.
 """
 import pathlib
 import re
+import select
 import socket
 import struct
 import sys
 import time
 
 RANGES = range(0x200, 0x280)  # identifiers of RANGE and RANGE_FD: docs/protocol.md
-PAUSE_S = (5.5, 12.0)
+BEGIN_S = 6.0
+MORE_S = 2.5
 
 
 def frames_of(log):
@@ -29,18 +32,24 @@ def frames_of(log):
         yield float(stamp) - first, int(identifier, 16), frame
 
 
-def part_at(at_s):
-    return "playing" if at_s < PAUSE_S[0] else "pausing" if at_s < PAUSE_S[1] else "playing again"
+def is_asked_to_go_on():
+    return select.select([sys.stdin], [], [], 0)[0] != []
 
 
 def main(log, bus):
     frames = list(frames_of(log))
-    begin, part = time.monotonic(), None
+    begin, part, again_s = time.monotonic(), "playing", None
+    print(part, flush=True)
     for at_s, identifier, frame in frames:
         time.sleep(max(0.0, begin + at_s - time.monotonic()))
-        if part_at(at_s) != part:
-            part = part_at(at_s)
+        if part == "playing" and at_s >= BEGIN_S:
+            part = "pausing"
             print(part, flush=True)
+        elif part == "pausing" and is_asked_to_go_on():
+            part, again_s = "playing again", at_s
+            print(part, flush=True)
+        elif part == "playing again" and at_s > again_s + MORE_S:
+            break
         if part != "pausing" or identifier not in RANGES:
             bus.send(frame)
     print("after", flush=True)

@@ -71,6 +71,16 @@ export class Arm {
     }
   }
 
+  /**
+   * The bus time of the map goes on although neither joints nor ranges come.
+   * @returns {boolean} ranges that are drawn got too old
+   */
+  passTime(time_s) {
+    if (this.newest_s === null || time_s < this.newest_s + 0.5) return false;
+    this.newest_s = time_s;
+    return true;
+  }
+
   /** @returns {Map<string, object>} states of the sensors by the newest status */
   addStatus(status) {
     const states = sensorStates(status);

@@ -157,6 +157,7 @@ class Page {
       this.scene.request();
     }
     this.drawnClock_s = update.clock_s;
+    if (this.arm.passTime(update.time_s) && this.timeline.shown_s === null) this.arm.showAt(null);
     this.timeline.setSpan(update.history.begin_s, update.history.end_s);
     this.#frameOnce();
     this.#showFigures();

@@ -77,7 +77,7 @@ export class Panels {
                   'li',
                   { class: 'problem' },
                   text,
-                  remedy ? element('div', { class: 'remedy' }, remedy) : null,
+                  remedy && !text.includes(remedy) ? element('div', { class: 'remedy' }, remedy) : null,
                 ),
               ),
             ),
