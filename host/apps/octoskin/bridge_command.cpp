@@ -1,4 +1,4 @@
-// octoskin bridge, octoskin view: become the program of the package octoskin-bridge.
+// octoskin bridge, octoskin view and octoskin export: become the program of the package octoskin-bridge.
 #include <unistd.h>
 
 #include <cerrno>
@@ -41,6 +41,18 @@ std::vector<std::string> with_command(std::vector<std::string> arguments) {
                          {.code = ErrorCode::no_program, .what = std::strerror(errno), .file = *program});
 }
 
+/// A command of its own that is one of the bridge's program.
+void add_command_of_bridge(CLI::App& app, const std::string& name, const std::string& description) {
+    CLI::App* command = app.add_subcommand(name, description + " (package octoskin-bridge)");
+    command->set_help_flag();  // the program has its own
+    command->prefix_command();
+    command->callback([command, name] {
+        std::vector<std::string> words = command->remaining();
+        words.insert(words.begin(), name);
+        become_bridge(std::move(words));
+    });
+}
+
 }  // namespace
 
 void add_bridge_command(CLI::App& app) {
@@ -54,15 +66,12 @@ void add_bridge_command(CLI::App& app) {
 }
 
 void add_view_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "view", "Show the map live in a browser, and to Foxglove and Lichtblick (package octoskin-bridge)");
-    command->set_help_flag();  // the program has its own
-    command->prefix_command();
-    command->callback([command] {
-        std::vector<std::string> words = command->remaining();
-        words.insert(words.begin(), "view");
-        become_bridge(std::move(words));
-    });
+    add_command_of_bridge(app, "view", "Show the map live in a browser, and to Foxglove and Lichtblick");
+}
+
+void add_export_command(CLI::App& app) {
+    add_command_of_bridge(app, "export",
+                          "Write a recording as an MCAP file for Foxglove, PlotJuggler, Rerun and ros2 bag");
 }
 
 }  // namespace octoskin::app

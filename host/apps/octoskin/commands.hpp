@@ -25,5 +25,6 @@ void add_command_command(CLI::App& app);
 void add_repair_command(CLI::App& app);
 void add_bridge_command(CLI::App& app);
 void add_view_command(CLI::App& app);
+void add_export_command(CLI::App& app);
 
 }  // namespace octoskin::app

@@ -11,7 +11,7 @@
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/explain/explanation.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/playback_options.hpp"
+#include "host/apps/playback/playback_options.hpp"
 
 namespace octoskin::app {
 namespace {

@@ -31,6 +31,7 @@ void add_commands(CLI::App& app) {
     add_repair_command(app);
     add_bridge_command(app);
     add_view_command(app);
+    add_export_command(app);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include "host/apps/command_line/interruption.hpp"
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/octoskin/playback_options.hpp"
+#include "host/apps/playback/playback_options.hpp"
 #include "host/apps/playback/film_playback.hpp"
 #include "host/apps/playback/map_folder.hpp"
 #include "host/apps/playback/onto_bus.hpp"

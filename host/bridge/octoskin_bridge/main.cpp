@@ -12,6 +12,7 @@ void add_commands(CLI::App& app) {
     add_pose_command(app);
     add_robot_command(app);
     add_view_command(app);
+    add_export_command(app);
 }
 
 }  // namespace

@@ -27,7 +27,6 @@ Result<SensorOutlets, Error> SensorOutlets::open(TopicSink& sink, std::string pr
     return made;
 }
 
-/// Frames have the prefix without slashes: "/left/octoskin" gives "left_octoskin".
 std::string SensorOutlets::frame_prefix() const {
     std::string name = prefix_.substr(1);
     std::ranges::replace(name, '/', '_');
@@ -50,7 +49,10 @@ Status<Error> SensorOutlets::on_robot(const RobotFacts& robot, WallTime wall) {
     ranges_ = std::move(ranges);
     robot_ = robot;
     const bool has_parent = robot.has_link(map_frame_);  // named as a problem
-    if (!has_parent) frames_->send(static_frames(robot, frame_prefix(), map_frame_, wall), wall);
+    if (has_parent) return Done{};
+    auto frames = static_frames(robot, frame_prefix(), map_frame_, wall);
+    frames.transforms.insert(frames.transforms.end(), other_frames_.begin(), other_frames_.end());
+    frames_->send(frames, wall);
     return Done{};
 }
 

@@ -23,6 +23,10 @@ class SensorOutlets {
     [[nodiscard]] static Result<SensorOutlets, Error> open(TopicSink& sink, std::string prefix,
                                                            std::string map_frame);
 
+    /// Also publishes these frames beside those of the sensors, from the next `on_robot` on.
+    void change_other_frames(std::vector<ros::geometry_msgs::TransformStamped> frames) {
+        other_frames_ = std::move(frames);
+    }
     /// Opens a topic for each sensor and publishes the frames.
     [[nodiscard]] Status<Error> on_robot(const RobotFacts& robot, WallTime wall);
     void on_range(const watch::WatchedRange& range, HostTime now, WallTime captured);
@@ -33,6 +37,8 @@ class SensorOutlets {
         notes_ = std::move(notes);
     }
 
+    /// Frames have the prefix of the topics without slashes: "/left/octoskin" gives "left_octoskin".
+    [[nodiscard]] std::string frame_prefix() const;
     /// Sends what is due: problems once a second, points at the end of each round.
     void attend(HostTime now, WallTime wall);
 
@@ -41,7 +47,6 @@ class SensorOutlets {
   private:
     SensorOutlets(TopicSink& sink, std::string prefix, std::string map_frame)
         : sink_(&sink), prefix_(std::move(prefix)), map_frame_(std::move(map_frame)) {}
-    [[nodiscard]] std::string frame_prefix() const;
     void end_round();
 
     TopicSink* sink_;
@@ -58,6 +63,7 @@ class SensorOutlets {
     std::optional<nlohmann::ordered_json> status_;
     std::string lost_ = "not connected yet";
     std::vector<ros::diagnostic_msgs::DiagnosticStatus> notes_;
+    std::vector<ros::geometry_msgs::TransformStamped> other_frames_;
     std::optional<HostTime> diagnosed_;
 };
 

@@ -86,6 +86,18 @@ ros::tf2_msgs::TFMessage static_frames(const RobotFacts& robot, const std::strin
     return message;
 }
 
+std::string camera_frame(const std::string& prefix, const CameraFacts& camera) {
+    return prefix + "_camera" + (camera.name.empty() ? "" : "_" + camera.name);
+}
+
+std::vector<ros::geometry_msgs::TransformStamped> camera_frames(const RobotFacts& robot,
+                                                                const std::string& prefix, WallTime stamp) {
+    std::vector<ros::geometry_msgs::TransformStamped> frames;
+    for (const CameraFacts& camera : robot.cameras)
+        frames.push_back(frame(camera.link, camera_frame(prefix, camera), camera.T_link_camera, stamp));
+    return frames;
+}
+
 ros::diagnostic_msgs::DiagnosticArray diagnostics(const Json& status, WallTime stamp) {
     ros::diagnostic_msgs::DiagnosticArray array{.header = ros_header(stamp, ""), .status = {}};
     const auto problems = status.find("problems");

@@ -31,6 +31,13 @@ namespace octoskin::bridge {
 [[nodiscard]] ros::tf2_msgs::TFMessage static_frames(const RobotFacts& robot, const std::string& prefix,
                                                      const std::string& map_frame, WallTime stamp);
 
+/// "octoskin_camera", "octoskin_camera_left": the optical frame of a camera.
+[[nodiscard]] std::string camera_frame(const std::string& prefix, const CameraFacts& camera);
+/// From each camera's link to its optical frame.
+[[nodiscard]] std::vector<ros::geometry_msgs::TransformStamped> camera_frames(const RobotFacts& robot,
+                                                                              const std::string& prefix,
+                                                                              WallTime stamp);
+
 /// The problems of the daemon's status one to one, with their codes; one OK if there is none.
 [[nodiscard]] ros::diagnostic_msgs::DiagnosticArray diagnostics(const nlohmann::ordered_json& status,
                                                                 WallTime stamp);

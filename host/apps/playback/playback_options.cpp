@@ -1,4 +1,4 @@
-#include "host/apps/octoskin/playback_options.hpp"
+#include "host/apps/playback/playback_options.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -93,7 +93,7 @@ std::optional<Eigen::Isometry3d> pose_of(const std::string& text) {
 
 }  // namespace
 
-void add_playback_options(CLI::App& command, PlaybackOptions& options) {
+void add_recording_options(CLI::App& command, PlaybackOptions& options) {
     command.add_option(
         "--configuration", options.configuration,
         configuration_help(
@@ -101,6 +101,12 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
     command.add_option("--rig", options.rig, "Rig (YAML) in place of the recording's")
         ->check(existing_file());
     add_robot_options(command, options.robot, "Robot (URDF) in place of the recording's");
+    command.add_flag("--by-capture-time", options.is_by_capture_time,
+                     "Play in the order of capture times, even if the recording has the daemon's order");
+}
+
+void add_playback_options(CLI::App& command, PlaybackOptions& options) {
+    add_recording_options(command, options);
     command.add_option(
         "--camera", options.camera,
         "Of a data set or a lone .oni file: with a --rig of several cameras the name of one, else " +
@@ -109,8 +115,6 @@ void add_playback_options(CLI::App& command, PlaybackOptions& options) {
     command.add_option("--pose", options.pose,
                        "Where the camera of an .oni file without a can.log was, in the map's frame: "
                        "X,Y,Z,ROLL,PITCH,YAW of its optical frame, metres and degrees (default: the rig's)");
-    command.add_flag("--by-capture-time", options.is_by_capture_time,
-                     "Play in the order of capture times, even if the recording has the daemon's order");
 }
 
 PlaybackRequest playback_request(const PlaybackOptions& options) {

@@ -20,6 +20,9 @@ struct PlaybackOptions {
     bool is_by_capture_time = false;
 };
 
+/// Adds those of a recording of a robot, except the recording: --configuration, --rig, --robot,
+/// --package-path and --by-capture-time. `options` has to outlive `command`.
+void add_recording_options(CLI::App& command, PlaybackOptions& options);
 /// Adds all of them except the recording, which each command adds itself. `options` has to outlive `command`.
 void add_playback_options(CLI::App& command, PlaybackOptions& options);
 
