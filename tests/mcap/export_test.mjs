@@ -5,7 +5,8 @@ import fs from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 
-import { McapStreamReader, octoskin, readIndexed, recording, scratchFolder, stampNs, decompressHandlers } from "./oracles.mjs";
+import { decompressHandlers, McapStreamReader, octoskin, readIndexed, recording, scratchFolder, stampNs }
+  from "./oracles.mjs";
 
 const daemon = recording("daemon");
 
@@ -39,7 +40,8 @@ test("joint states, ranges and images are those of order.log, value for value", 
   const { joints, readings, frames } = commits();
 
   const states = on(messages, "/joint_states");
-  assert.deepEqual(states.map((one) => Array.from(one.message.position)), joints.map((one) => one.slice(1).map(Number)));
+  assert.deepEqual(states.map((one) => Array.from(one.message.position)),
+    joints.map((one) => one.slice(1).map(Number)));
   const byTime = (times) => times.map(BigInt).sort((a, b) => (a < b ? -1 : a > b ? 1 : 0));
   const offset = offsetOf(states, byTime(joints.map((one) => one[0])));
   for (const one of states) assert.equal(stampNs(one.message.header.stamp), one.time);
@@ -47,7 +49,8 @@ test("joint states, ranges and images are those of order.log, value for value", 
   const ranges = messages.filter((one) => one.topic.startsWith("/octoskin/range/"));
   const key = (topic, time, range) => `${topic} ${time} ${range}`;
   const expected = readings.map(([node, sensor, , time, range]) =>
-    key(`/octoskin/range/n${node}_s${sensor}`, BigInt(time) + offset, range === "-" ? Infinity : Math.fround(Number(range))));
+    key(`/octoskin/range/n${node}_s${sensor}`, BigInt(time) + offset,
+      range === "-" ? Infinity : Math.fround(Number(range))));
   assert.deepEqual(ranges.map((one) => key(one.topic, one.time, one.message.range)).sort(), expected.sort());
 
   const images = on(messages, "/octoskin/camera/depth/image_rect_raw");
@@ -111,8 +114,9 @@ test("CAN frames are the lines of can.log", async (context) => {
   const text = ({ message, time }) => {
     const stamp = `(${time / 1_000_000_000n}.${String((time % 1_000_000_000n) / 1000n).padStart(6, "0")})`;
     const id = message.id.toString(16).toUpperCase().padStart(message.is_extended ? 8 : 3, "0");
-    const isFd = message.len !== undefined;
-    return `${stamp} ${message.header.frame_id} ${id}#${isFd ? "#1" : ""}${hex(message.data.slice(0, message.len ?? message.dlc))}`;
+    const flags = message.len !== undefined ? "#1" : "";
+    const data = hex(message.data.slice(0, message.len ?? message.dlc));
+    return `${stamp} ${message.header.frame_id} ${id}#${flags}${data}`;
   };
   assert.equal(messages.length, lines.length);
   assert.deepEqual(messages.map(text).sort(), lines.sort());

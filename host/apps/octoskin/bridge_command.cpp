@@ -1,20 +1,13 @@
 // octoskin bridge, octoskin view and octoskin export: become the program of the package octoskin-bridge.
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "host/apps/command_line/command_failure.hpp"
+#include "host/apps/octoskin/bridge_program.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/io/openni2/helper_process.hpp"
 
 namespace octoskin::app {
 namespace {
-
-constexpr const char* kProgram = "octoskin-bridge";
 
 /// Without a command, or with options only, it is `run`.
 std::vector<std::string> with_command(std::vector<std::string> arguments) {
@@ -24,54 +17,39 @@ std::vector<std::string> with_command(std::vector<std::string> arguments) {
     return arguments;
 }
 
-[[noreturn]] void become_bridge(std::vector<std::string> words) {
-    const auto program = openni2::find_helper(kProgram);
-    if (!program)
-        throw CommandFailure(
-            ExitCode::unavailable,
-            {.code = ErrorCode::no_program,
-             .what = std::string(kProgram) + " is not installed",
-             .remedy = "install the package octoskin-bridge (in a build: its target of this name)"});
-    words.insert(words.begin(), kProgram);
-    std::vector<char*> pointers;
-    for (std::string& word : words) pointers.push_back(word.data());
-    pointers.push_back(nullptr);
-    ::execv(program->c_str(), pointers.data());
-    throw CommandFailure(ExitCode::unavailable,
-                         {.code = ErrorCode::no_program, .what = std::strerror(errno), .file = *program});
-}
-
-/// A command of its own that is one of the bridge's program.
-void add_command_of_bridge(CLI::App& app, const std::string& name, const std::string& description) {
+/// Adds a command whose arguments, made by `words` of those given, are the bridge program's.
+template <class Words>
+void add_command(CLI::App& app, const std::string& name, const std::string& description, Words words) {
     CLI::App* command = app.add_subcommand(name, description + " (package octoskin-bridge)");
     command->set_help_flag();  // the program has its own
     command->prefix_command();
-    command->callback([command, name] {
-        std::vector<std::string> words = command->remaining();
-        words.insert(words.begin(), name);
-        become_bridge(std::move(words));
+    command->callback(
+        [command, words] { become_bridge(with_form_of_errors(*command, words(command->remaining()))); });
+}
+
+/// A command of the bridge's program that is one of octoskin, too.
+void add_same_command(CLI::App& app, const std::string& name, const std::string& description) {
+    add_command(app, name, description, [name](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), name);
+        return arguments;
     });
 }
 
 }  // namespace
 
 void add_bridge_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "bridge",
-        "Speak ROS 2: the map in MoveIt and RViz, joint states and depth images from topics (package "
-        "octoskin-bridge)");
-    command->set_help_flag();  // the program has its own
-    command->prefix_command();
-    command->callback([command] { become_bridge(with_command(command->remaining())); });
+    add_command(app, "bridge",
+                "Speak ROS 2: the map in MoveIt and RViz, joint states and depth images from topics",
+                with_command);
 }
 
 void add_view_command(CLI::App& app) {
-    add_command_of_bridge(app, "view", "Show the map live in a browser, and to Foxglove and Lichtblick");
+    add_same_command(app, "view", "Show the map live in a browser, and to Foxglove and Lichtblick");
 }
 
 void add_export_command(CLI::App& app) {
-    add_command_of_bridge(app, "export",
-                          "Write a recording as an MCAP file for Foxglove, PlotJuggler, Rerun and ros2 bag");
+    add_same_command(app, "export",
+                     "Write a recording as an MCAP file for Foxglove, PlotJuggler, Rerun and ros2 bag");
 }
 
 }  // namespace octoskin::app

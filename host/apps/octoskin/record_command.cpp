@@ -17,6 +17,7 @@
 #include "host/apps/daemon/daemon_client.hpp"
 #include "host/apps/daemon/places.hpp"
 #include "host/apps/daemon/record_requests.hpp"
+#include "host/apps/octoskin/bridge_program.hpp"
 #include "host/apps/octoskin/commands.hpp"
 #include "host/apps/query/query_answer.hpp"
 #include "host/apps/recording/recording.hpp"
@@ -31,6 +32,7 @@ struct RecordOptions {
     std::filesystem::path socket = default_control_socket();
     double seconds = 0.0;
     bool stops = false;
+    bool makes_mcap = false;
 };
 
 /// The "recording" in a daemon's answer; a refusal is a CommandFailure.
@@ -192,12 +194,40 @@ Json start(const RecordOptions& options) {
     throw CommandFailure(error);
 }
 
-void record(const RecordOptions& options) {
+/// "FOLDER.mcap".
+std::filesystem::path mcap_of(const std::filesystem::path& folder) {
+    std::filesystem::path file = folder;
+    return file += ".mcap";
+}
+
+/// Before the recording, which cannot be repeated.
+void check_mcap(const RecordOptions& options) {
+    check_bridge();
+    const std::filesystem::path file = options.out.empty() ? options.out : mcap_of(folder_of(options));
+    std::error_code error;
+    if (file.empty() || !std::filesystem::exists(std::filesystem::symlink_status(file, error))) return;
+    throw CommandFailure(ExitCode::cannot_create, {.code = ErrorCode::already_exists,
+                                                   .what = "exists already",
+                                                   .remedy = "move it away, or record to another directory",
+                                                   .file = file});
+}
+
+/// Of a complete recording. The program prints its own error.
+void make_mcap(const std::filesystem::path& folder, const CLI::App& command) {
+    (void)flush_standard_output();
+    const int code =
+        run_bridge(with_form_of_errors(command, {"export", "--", folder.string(), mcap_of(folder).string()}));
+    if (code != 0) throw CLI::RuntimeError(code);
+}
+
+void record(const RecordOptions& options, const CLI::App& command) {
+    if (options.makes_mcap) check_mcap(options);
     try {
         const Json begun = options.stops ? stop(options) : start(options);
         const auto ended = follow(options, begun);
         if (!ended) report_left(begun.at("folder").get<std::string>());
         tell(*ended);
+        if (options.makes_mcap) make_mcap(ended->at("folder").get<std::string>(), command);
     } catch (const Json::exception&) {
         throw CommandFailure(foreign_answer(options.socket));
     }
@@ -216,18 +246,21 @@ void add_record_command(CLI::App& app) {
         ->check(from_to(0.0, 1e6))
         ->capture_default_str();
     command->add_flag("--stop", options->stops, "End the running recording");
+    command->add_flag(
+        "--mcap", options->makes_mcap,
+        "Then export it to DIRECTORY.mcap, as `octoskin export` does (package octoskin-bridge)");
     command->add_option("--socket", options->socket, "Control socket of the daemon")->capture_default_str();
     command->footer(
         "Exit codes: 0 the recording is complete; 1 it is incomplete, or the daemon ended it early; 64 "
         "command line;\n65 the answer is not of a daemon of this version; 69 no daemon, or nothing is being "
         "recorded; 73 the\ndirectory cannot be recorded to, or another recording is running; 74 the daemon "
         "does not answer.");
-    command->callback([options] {
+    command->callback([options, command] {
         if (options->out.empty() && !options->stops)
             throw CommandFailure(
                 ExitCode::usage,
                 {ErrorCode::bad_argument, "record needs a directory", {}, "give a directory, or --stop"});
-        record(*options);
+        record(*options, *command);
     });
 }
 

@@ -15,12 +15,13 @@
 #include "host/apps/command_line/interruption.hpp"
 #include "host/apps/command_line/standard_output.hpp"
 #include "host/apps/octoskin/commands.hpp"
-#include "host/apps/playback/playback_options.hpp"
+#include "host/apps/octoskin/imported_bag.hpp"
 #include "host/apps/playback/film_playback.hpp"
 #include "host/apps/playback/map_folder.hpp"
 #include "host/apps/playback/onto_bus.hpp"
 #include "host/apps/playback/ordered_playback.hpp"
 #include "host/apps/playback/playback.hpp"
+#include "host/apps/playback/playback_options.hpp"
 #include "hw/rigfile/joined.hpp"
 
 namespace octoskin::app {
@@ -28,6 +29,7 @@ namespace {
 
 struct ReplayOptions {
     PlaybackOptions playback;
+    BagOptions bag;
     std::filesystem::path out;
     std::optional<std::string> speed;  ///< empty: max into maps, 1 onto a bus
     std::string onto;
@@ -166,7 +168,8 @@ void report_last_posture(const Playback& playback) {
     print("the arm's last known posture, for `octoskin query`: --stands={}\n", joints);
 }
 
-void replay_recording(const ReplayOptions& options) {
+/// `made_of`: the file from which a temporary recording was made; empty: the recording is the user's own.
+void replay_recording(const ReplayOptions& options, const std::filesystem::path& made_of = {}) {
     const bool wants_all = !options.is_fused_only;
     PlaybackRequest request = playback_request(options.playback);
     request.maps = wants_all ? every_feed() : std::vector{MapFeed::both};
@@ -179,9 +182,10 @@ void replay_recording(const ReplayOptions& options) {
     if (!folder) throw CommandFailure(folder.error());
     ProgressSeconds seconds;
     const char* const unit = is_played_in_order(request) ? "commits" : "CAN frames";
-    const auto playback = play_recording(
+    auto playback = play_recording(
         request, [&](const ReplayProgress& progress) { report_progress(progress, unit, seconds); });
     if (!playback) throw CommandFailure(playback.error());
+    if (!made_of.empty()) playback->origin.recording = std::filesystem::absolute(made_of).lexically_normal();
 
     for (const CounterTable& table : playback->inputs) print_text(to_text(table));
     if (!playback->nodes.empty()) print_text(to_text(std::span<const NodeSummary>(playback->nodes)));
@@ -200,6 +204,41 @@ void replay_recording(const ReplayOptions& options) {
     }
 }
 
+/// An MCAP file has neither rig nor robot.
+void check_bag_options(const ReplayOptions& options) {
+    const bool has_rig = !options.playback.rig.empty();
+    if (has_rig && options.onto.empty()) return;
+    throw CommandFailure(
+        ExitCode::usage,
+        {.code = ErrorCode::bad_argument,
+         .what = has_rig ? "cannot be sent onto a bus" : "needs the rig of its robot",
+         .remedy =
+             has_rig ? "make a recording of it with `octoskin bridge import`, and replay that" : "give --rig",
+         .file = options.playback.recording,
+         .key = has_rig ? "--onto" : "--rig"});
+}
+
+/// Through a temporary recording; the maps are beside the file.
+void replay_bag(ReplayOptions options, const CLI::App& command) {
+    check_bag_options(options);
+    const std::filesystem::path bag = options.playback.recording;
+    if (options.out.empty()) options.out = std::filesystem::path(bag).replace_extension(".maps");
+    const ImportedBag imported(command, bag, options.playback.rig, options.playback.robot, options.bag);
+    options.playback.recording = imported.recording();
+    replay_recording(options, bag);
+}
+
+void replay_any(const ReplayOptions& options, const CLI::App& command) {
+    if (is_bag(options.playback.recording)) return replay_bag(options, command);
+    if (options.bag.is_any_given())
+        throw CommandFailure(ExitCode::usage,
+                             {.code = ErrorCode::conflict,
+                              .what = "--joint-states, --can and --log-time are for an MCAP file",
+                              .remedy = "leave them out",
+                              .file = options.playback.recording});
+    options.onto.empty() ? replay_recording(options) : replay_onto_bus(options);
+}
+
 }  // namespace
 
 void add_replay_command(CLI::App& app) {
@@ -207,12 +246,15 @@ void add_replay_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "replay", "Play a recording through the pipeline; write maps and the input counters");
     command
-        ->add_option("recording", options->playback.recording,
-                     "Directory of the recording or data set; or an .oni file")
+        ->add_option(
+            "recording", options->playback.recording,
+            "Directory of the recording or data set; or an .oni file; or with --rig an MCAP file of ROS 2 "
+            "(package octoskin-bridge)")
         ->required();
-    auto* const out = command->add_option("--out", options->out,
-                                          "Folder for the maps (default: RECORDING/maps; of X.oni, X.maps)");
+    auto* const out = command->add_option(
+        "--out", options->out, "Folder for the maps (default: RECORDING/maps; of X.oni and X.mcap, X.maps)");
     add_playback_options(*command, options->playback);
+    add_bag_options(*command, options->bag);
     auto* const fused_only =
         command->add_flag("--fused-only", options->is_fused_only,
                           "Leave out the maps of the camera alone and of the sensors alone");
@@ -232,9 +274,9 @@ void add_replay_command(CLI::App& app) {
                    "Show each frame of the log (of a recording in the daemon's order, each reading and depth "
                    "frame; of a data set, each image) and wait for the enter key")
         ->excludes(speed);
-    command->callback([options] {
+    command->callback([options, command] {
         const Interruption interruption;
-        options->onto.empty() ? replay_recording(*options) : replay_onto_bus(*options);
+        replay_any(*options, *command);
     });
 }
 

@@ -11,5 +11,6 @@ void add_pose_command(CLI::App& app);
 void add_robot_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_import_command(CLI::App& app);
 
 }  // namespace octoskin::bridge

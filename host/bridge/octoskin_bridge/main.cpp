@@ -13,6 +13,7 @@ void add_commands(CLI::App& app) {
     add_robot_command(app);
     add_view_command(app);
     add_export_command(app);
+    add_import_command(app);
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+#include "host/apps/octoskin/bridge_program.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "host/apps/command_line/arguments.hpp"
+#include "host/apps/command_line/command_failure.hpp"
+#include "host/io/openni2/helper_process.hpp"
+
+namespace octoskin::app {
+namespace {
+
+constexpr const char* kProgram = "octoskin-bridge";
+
+std::filesystem::path find_bridge() {
+    const auto program = openni2::find_helper(kProgram);
+    if (program) return *program;
+    throw CommandFailure(
+        ExitCode::unavailable,
+        {.code = ErrorCode::no_program,
+         .what = std::string(kProgram) + " is not installed",
+         .remedy = "install the package octoskin-bridge (in a build: its target of this name)"});
+}
+
+/// The arguments as exec takes them; `words` must outlive them.
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+    words.insert(words.begin(), kProgram);
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    return pointers;
+}
+
+[[noreturn]] void not_started(const std::filesystem::path& program, int error) {
+    throw CommandFailure(ExitCode::unavailable,
+                         {.code = ErrorCode::no_program, .what = std::strerror(error), .file = program});
+}
+
+}  // namespace
+
+void check_bridge() {
+    (void)find_bridge();
+}
+
+std::vector<std::string> with_form_of_errors(const CLI::App& command, std::vector<std::string> words) {
+    const std::string option(kJsonErrors);
+    if (command.get_parent()->get_option(option)->count() > 0) words.insert(words.begin(), option);
+    return words;
+}
+
+void become_bridge(std::vector<std::string> words) {
+    const std::filesystem::path program = find_bridge();
+    ::execv(program.c_str(), pointers_to(words).data());
+    not_started(program, errno);
+}
+
+int run_bridge(std::vector<std::string> words) {
+    constexpr int kSignalled = 128;  // the convention of shells
+    const std::filesystem::path program = find_bridge();
+    posix_spawnattr_t attributes{};
+    posix_spawnattr_init(&attributes);
+    sigset_t none;
+    sigemptyset(&none);  // this process may wait for its signals in a thread
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    pid_t child = 0;
+    const int error =
+        ::posix_spawn(&child, program.c_str(), nullptr, &attributes, pointers_to(words).data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    if (error != 0) not_started(program, error);
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0)
+        if (errno != EINTR) not_started(program, errno);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : kSignalled + WTERMSIG(status);
+}
+
+}  // namespace octoskin::app
