@@ -43,6 +43,8 @@ inline Read read_all(McapReader& reader) {
 
 /// Of bytes that begin like an MCAP file.
 inline Read read_bytes(const testing_support::ScratchFolder& folder, std::string_view bytes) {
+    // A new file: ext4 writes one that is emptied and filled again to the disk.
+    std::filesystem::remove(folder / "a.mcap");
     auto reader = McapReader::open(folder.write("a.mcap", bytes));
     if (!reader) {
         ADD_FAILURE() << reader.error().message();
