@@ -22,8 +22,6 @@ constexpr Nanoseconds kJointsPeriod = 33ms;
 constexpr Nanoseconds kRangesPeriod = 50ms;
 /// Readings of one period; beyond this the oldest are left out.
 constexpr std::size_t kRangeBytesMax = std::size_t{256} << 10U;
-/// Width and height.
-constexpr std::size_t kImageHeadBytes = 2 * sizeof(std::uint16_t);
 
 std::string text_of(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -33,14 +31,6 @@ std::string text_of(const Json& json) {
 bool is_due(std::optional<HostTime> sent, Nanoseconds period, HostTime now) {
     constexpr Nanoseconds kHalfTurn = 8ms;
     return !sent || now - *sent + kHalfTurn >= period;
-}
-
-/// Whether there are as many depths as the image has pixels.
-bool is_image(std::string_view image) {
-    snapshot::ByteReader reader(image);
-    const std::size_t width = reader.get<std::uint16_t>();
-    const std::size_t height = reader.get<std::uint16_t>();
-    return reader.is_sound() && image.size() == kImageHeadBytes + width * height * sizeof(std::uint16_t);
 }
 
 std::string image_topic(const std::string& camera) {
@@ -142,19 +132,22 @@ void ViewServer::publish_robot() {
     server_.publish(robot_channel_, wall_now(), text_of(robot));
 }
 
-void ViewServer::on_urdf(std::string urdf) {
-    urdf_ = std::move(urdf);
+void ViewServer::on_urdf(const std::string& text) {
+    urdf_ = text;
     urdf_outlet_.send(ros::std_msgs::String{*urdf_}, wall_now());
     publish_robot();
 }
 
-void ViewServer::on_image(std::size_t camera, std::string_view image, HostTime captured) {
-    if (!robot_ || camera >= robot_->cameras.size()) return;  // of the robot before a reload
-    if (!is_image(image)) return spdlog::error("the daemon's reduced image is malformed");
-    std::string payload(image.substr(0, kImageHeadBytes));
-    snapshot::ByteWriter(payload).put(captured.ns);
-    payload += image.substr(kImageHeadBytes);
-    server_.publish(images_.at(image_topic(robot_->cameras[camera].name)), wall_now(), std::move(payload));
+void ViewServer::on_image(const watch::WatchedImage& image, HostTime captured) {
+    if (!robot_ || image.camera >= robot_->cameras.size()) return;
+    std::string payload;
+    snapshot::ByteWriter writer(payload);
+    writer.put(image.width);
+    writer.put(image.height);
+    writer.put(captured.ns);
+    for (const std::uint16_t depth_mm : image.depth_mm) writer.put(depth_mm);
+    server_.publish(images_.at(image_topic(robot_->cameras[image.camera].name)), wall_now(),
+                    std::move(payload));
 }
 
 void ViewServer::on_map(const watch::WatchedMap& map) {

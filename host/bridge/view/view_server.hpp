@@ -36,11 +36,8 @@ class ViewServer final : public bridge::DaemonListener {
     void on_joints(const watch::WatchedJoints& joints, HostTime sampled) override;
     void on_status(const nlohmann::ordered_json& status) override;
     void on_lost(const std::string& why) override;
-    /// The robot's URDF.
-    void on_urdf(std::string urdf);
-    /// A reduced depth image of a camera, by its place among the robot's cameras: width and height (16 bits
-    /// each), then the depths in millimetres (16 bits each, 0: none), row by row.
-    void on_image(std::size_t camera, std::string_view image, HostTime captured);
+    void on_urdf(const std::string& text) override;
+    void on_image(const watch::WatchedImage& image, HostTime captured) override;
     /// What a recording says of its place in time.
     void change_place(nlohmann::ordered_json place);
 
