@@ -296,6 +296,24 @@ class Daemons(unittest.TestCase):
             finally:
                 world.daemon.send_signal(signal.SIGCONT)
 
+    def test_a_daemon_that_is_stopped_when_the_view_starts_is_connected_when_it_goes_on(self):
+        with ViewWorld(FOLDER, plays=False) as world:
+            world.bridge.terminate()
+            world.bridge.wait(10)
+            world.daemon.send_signal(signal.SIGSTOP)
+            try:
+                (world.path / "view.log").write_text("")
+                world.start_bridge()
+                with WebSocket(world.port) as connected:
+                    connected.subscribe([LINK])
+                    link = lambda: json.loads(connected.data(1)[2])
+                    self.assertFalse(link()["connected"])
+                    self.assertFalse(link()["connected"], "another reason: it does not answer")
+                    world.daemon.send_signal(signal.SIGCONT)
+                    self.assertTrue(wait_for(lambda: link()["connected"]))
+            finally:
+                world.daemon.send_signal(signal.SIGCONT)
+
     def test_it_ends_at_a_signal(self):
         with ViewWorld(FOLDER, has_daemon=False) as world:
             with WebSocket(world.port):

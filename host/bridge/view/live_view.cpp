@@ -17,6 +17,7 @@ using namespace std::chrono_literals;
 /// A question may take ten seconds of the daemon's processor time.
 constexpr Nanoseconds kQueryPatience = 15s;
 constexpr Nanoseconds kVoxelPatience = 3s;
+constexpr Nanoseconds kHelloPatience = 2s;
 
 foxglove::ServerInfo server_info(const std::string& mode) {
     return {.name = "octoskin",
@@ -63,14 +64,23 @@ void LiveView::add_services() {
     add("voxel", "octoskin.Voxel", kVoxelPatience);
 }
 
+void LiveView::attend_daemon() {
+    if (daemon_.is_connected() || is_asking_) return;
+    is_asking_ = true;
+    requests_.ask("hello", kHelloPatience, [this](const Result<std::string, std::string>& answer) {
+        is_asking_ = false;
+        answer ? daemon_.attend() : view_->on_lost(answer.error());
+    });
+}
+
 void LiveView::run() {
     for (const int signal : {SIGTERM, SIGINT})
         sources_.push_back(loop_.on_signal(signal, [this] { loop_.stop(0); }));
     sources_.push_back(loop_.every(17ms, [this] { view_->attend(); }));
     sources_.push_back(loop_.every(100ms, [this] { requests_.attend(); }));
-    sources_.push_back(loop_.every(500ms, [this] { daemon_.attend(); }));
+    sources_.push_back(loop_.every(500ms, [this] { attend_daemon(); }));
     sources_.push_back(loop_.every(3s, [this] { view_->notify_counts(); }));
-    daemon_.attend();
+    attend_daemon();
     web_->run(loop_);
     sources_.clear();
 }

@@ -40,6 +40,8 @@ class LiveView {
   private:
     explicit LiveView(LiveViewOptions options);
     void add_services();
+    /// Connects to a daemon that answers. One that hangs is asked again and again, without waiting for it.
+    void attend_daemon();
 
     LiveViewOptions options_;
     EventLoop loop_;
@@ -47,6 +49,7 @@ class LiveView {
     std::unique_ptr<ViewServer> view_;
     DaemonRequests requests_;
     bridge::DaemonLink daemon_;
+    bool is_asking_ = false;  ///< whether a daemon answers
     std::unique_ptr<WebServer> web_;
     std::vector<EventSource> sources_;
 };

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <bit>
+#include <optional>
 #include <random>
 #include <vector>
 
