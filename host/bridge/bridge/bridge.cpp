@@ -89,7 +89,7 @@ Bridge::~Bridge() {
 
 void Bridge::run() {
     spdlog::info("ROS 2: {}", network_.description);
-    daemon_.emplace(loop_, options_.control, *this);
+    daemon_.emplace(loop_, options_.control, *this, DaemonLink::Wishes{});
     for (const int signal : {SIGTERM, SIGINT})
         sources_.push_back(loop_.on_signal(signal, [this] { loop_.stop(0); }));
     sources_.push_back(loop_.on_readable(participant_->descriptor(), [this] { on_dds(); }));

@@ -18,8 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The bridge does nothing else meanwhile.
-constexpr std::chrono::milliseconds kAnswerPatience{300};
 /// Between two attempts, after one that failed.
 constexpr Nanoseconds kRest{2'000'000'000};
 constexpr std::string_view kGreeting = R"({"ok":true,"watch":1})";
@@ -32,9 +30,12 @@ Unexpected<std::string> malformed() {
 
 }  // namespace
 
-DaemonLink::DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener,
-                       std::string request)
-    : loop_(loop), socket_(std::move(socket)), listener_(listener), request_(std::move(request) + '\n') {}
+DaemonLink::DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener, Wishes wishes)
+    : loop_(loop),
+      socket_(std::move(socket)),
+      listener_(listener),
+      request_(std::move(wishes.request) + '\n'),
+      patience_(wishes.patience) {}
 
 DaemonLink::~DaemonLink() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -46,12 +47,12 @@ void DaemonLink::attend() {
     tried_ = now;
     rest_ = Nanoseconds{0};  // a daemon that is not there is refused at once
     connect();
-    const bool was_slow = monotonic_now() - now >= kAnswerPatience;
+    const bool was_slow = monotonic_now() - now >= patience_;
     if (descriptor_ < 0 && was_slow) rest_ = kRest;
 }
 
 void DaemonLink::connect() {
-    const auto connected = connect_unix_socket(socket_, SOCK_STREAM, kAnswerPatience);
+    const auto connected = connect_unix_socket(socket_, SOCK_STREAM, patience_);
     if (!connected) return listener_.on_lost(connected.error().message());
     descriptor_ = *connected;
     if (const auto described = describe(); !described) return lose(described.error());
@@ -66,7 +67,7 @@ void DaemonLink::connect() {
 }
 
 Status<std::string> DaemonLink::describe() {
-    const auto answer = ask_daemon(socket_, "describe", kAnswerPatience);
+    const auto answer = ask_daemon(socket_, "describe", patience_);
     if (!answer) return unexpected(answer.error().message());
     const Json described = Json::parse(*answer, nullptr, false);
     auto facts = robot_facts(described);

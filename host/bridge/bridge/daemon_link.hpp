@@ -2,6 +2,7 @@
 // the daemon comes back.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -40,15 +41,21 @@ class DaemonLink {
     static constexpr const char* kUsualFrames = "watch";
     static constexpr const char* kAllFrames = "watch map ranges joints status images robot";
 
+    struct Wishes {
+        std::string request = kUsualFrames;
+        /// How long the daemon may take to accept a connection, and to answer. The caller does nothing else
+        /// meanwhile.
+        std::chrono::milliseconds patience{300};
+    };
+
     /// `loop` and `listener` must outlive it.
-    DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener,
-               std::string request = kUsualFrames);
+    DaemonLink(EventLoop& loop, std::filesystem::path socket, DaemonListener& listener, Wishes wishes);
     ~DaemonLink();
     DaemonLink(const DaemonLink&) = delete;
     DaemonLink& operator=(const DaemonLink&) = delete;
 
-    /// Connects if there is no connection. Call it about twice a second. Waits at most 0.6 s for a daemon
-    /// that hangs, and then not again for 2 s.
+    /// Connects if there is no connection. Call it about twice a second. Waits at most twice the patience for
+    /// a daemon that hangs, and then not again for 2 s.
     void attend();
     [[nodiscard]] bool is_connected() const noexcept { return descriptor_ >= 0; }
     /// Frames that the daemon left out because this program read too slowly.
@@ -77,6 +84,7 @@ class DaemonLink {
     std::filesystem::path socket_;
     DaemonListener& listener_;
     std::string request_;  ///< with its line feed
+    std::chrono::milliseconds patience_;
     int descriptor_ = -1;
     EventSource readable_;
     std::string bytes_;

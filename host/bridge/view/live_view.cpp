@@ -34,7 +34,7 @@ LiveView::LiveView(LiveViewOptions options)
       server_(server_info("live")),
       view_(ViewServer::open(server_, "live").value()),
       requests_(loop_, options_.control),
-      daemon_(loop_, options_.control, *view_, bridge::DaemonLink::kAllFrames) {}
+      daemon_(loop_, options_.control, *view_, {.request = bridge::DaemonLink::kAllFrames}) {}
 
 Result<std::unique_ptr<LiveView>, AppError> LiveView::open(LiveViewOptions options) {
     std::unique_ptr<LiveView> made(new LiveView(std::move(options)));
