@@ -4,13 +4,16 @@
 #include <cstdlib>
 #include <memory>
 
+#include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/log_format.hpp"
 #include "host/apps/daemon/log_limit.hpp"
 #include "host/apps/daemon/places.hpp"
+#include "host/apps/playback/playback_options.hpp"
 #include "host/bridge/octoskin_bridge/commands.hpp"
 #include "host/bridge/view/live_view.hpp"
 #include "host/bridge/view/page_files.hpp"
+#include "host/bridge/view/recorded_view.hpp"
 
 namespace octoskin::bridge {
 namespace {
@@ -49,34 +52,50 @@ bool is_loopback(const std::string& host) {
     return host == "localhost" || host.starts_with("127.") || host == "::1" || host == "[::1]";
 }
 
-void run_view(view::LiveViewOptions& options) {
+struct ViewOptions {
+    std::filesystem::path control = default_control_socket();
+    app::PlaybackOptions playback;  ///< of a recording; without one: live
+    view::WebOptions web;
+};
+
+template <class View>
+void serve(Result<std::unique_ptr<View>, AppError> view, bool has_page) {
+    if (!view) throw CommandFailure(view.error());
+    spdlog::info("the view is at {}{}", (*view)->url(),
+                 has_page ? "" : " (without its page: " + view::page_folder().string() + " has none)");
+    (*view)->run();
+}
+
+void run_view(ViewOptions& options) {
     begin_log();
     check_host(options.web.host);
-    const auto folder = view::page_folder();
-    options.web.files = view::read_page(folder);
+    options.web.files = view::read_page(view::page_folder());
     options.web.file_missing =
         "The page is not built, because the build found no node: only programs like Foxglove can connect.";
-    auto opened = view::LiveView::open(options);
-    if (!opened) throw CommandFailure(opened.error());
     const bool has_page = !options.web.files.empty();
-    spdlog::info("the view is at {}{}", (*opened)->url(),
-                 has_page ? "" : " (without its page: " + folder.string() + " has none)");
     if (!is_loopback(options.web.host))
         spdlog::warn(
             "every program and every person that reaches {} sees what the robot sees: there is no "
             "password and no encryption",
             options.web.host);
-    (*opened)->run();
+    if (options.playback.recording.empty())
+        serve(view::LiveView::open(options.control, options.web), has_page);
+    else
+        serve(view::RecordedView::open(app::playback_request(options.playback), options.web), has_page);
 }
 
 }  // namespace
 
 void add_view_command(CLI::App& app) {
-    auto options = std::make_shared<view::LiveViewOptions>();
-    options->control = default_control_socket();
+    auto options = std::make_shared<ViewOptions>();
     view::WebOptions& web = options->web;
     CLI::App* command = app.add_subcommand(
-        "view", "Show the map live: a page for a browser, and a server for Foxglove and Lichtblick");
+        "view",
+        "Show the map live, or a recording: a page for a browser, and a server for Foxglove and Lichtblick");
+    command
+        ->add_option("recording", options->playback.recording,
+                     "Directory of a recording to play instead of showing a daemon's map")
+        ->check(app::existing_path());
     command->add_option("--socket", options->control, "Control socket of the daemon")->capture_default_str();
     command
         ->add_option("--host", web.host,
@@ -89,6 +108,7 @@ void add_view_command(CLI::App& app) {
         ->check(origin())
         ->expected(1)
         ->take_all();
+    app::add_recording_options(*command, options->playback);
     command->callback([options] { run_view(*options); });
 }
 

@@ -138,20 +138,24 @@ Result<RecordedEvents, AppError> RecordedEvents::open(PlaybackRequest request) {
     if (!urdf) return unexpected(urdf.error());
     const auto setup = make_host_setup(*rig);
     if (!setup) return fail(ExitCode::bad_config, setup.error());
-    auto facts = robot_facts(description_json(*setup, true, 0));
+    Json described = description_json(*setup, true, 0);
+    auto facts = robot_facts(described);
     if (!facts) return fail(ExitCode::failed, {ErrorCode::self_check, facts.error()});
     auto clock = clock_of(request.recording, setup->rig);
     request.maps = {MapFeed::both};
-    return RecordedEvents(std::move(request), std::move(facts).value(), std::move(urdf).value(),
-                          setup->rig.joint_counts(), clock);
+    return RecordedEvents(std::move(request), std::make_shared<const HostSetup>(*setup), std::move(described),
+                          std::move(facts).value(), std::move(urdf).value(), clock);
 }
 
-RecordedEvents::RecordedEvents(PlaybackRequest request, RobotFacts robot, std::string urdf,
-                               std::vector<std::size_t> joints, std::optional<BusClock> clock)
+RecordedEvents::RecordedEvents(PlaybackRequest request, std::shared_ptr<const HostSetup> setup,
+                               Json described, RobotFacts robot, std::string urdf,
+                               std::optional<BusClock> clock)
     : request_(std::move(request)),
+      setup_(std::move(setup)),
+      described_(std::move(described)),
       robot_(std::move(robot)),
       urdf_(std::move(urdf)),
-      joint_counts_(std::move(joints)),
+      joint_counts_(setup_->rig.joint_counts()),
       clock_(clock.value_or(BusClock(Nanoseconds{0}))),
       has_wall_time_(clock.has_value()) {}
 
@@ -161,6 +165,7 @@ Result<Playback, AppError> RecordedEvents::play(DaemonListener& listener, Record
     Events events(listener, details == nullptr ? none : *details, clock_, joint_counts_);
     PlaybackRequest request = request_;
     request.listener = &events;
+    listener.on_described(described_);
     listener.on_robot(robot_);
     listener.on_status(status_of({}));
     auto playback = play_recording(request, report);

@@ -1,6 +1,8 @@
 // A recording as the events of a daemon: played through the host's pipeline, at any pace.
 #pragma once
 
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -10,6 +12,7 @@
 #include "host/bridge/recorded/bus_clock.hpp"
 #include "host/bridge/robot/robot_facts.hpp"
 #include "host/core/depth/depth_frame.hpp"
+#include "host/io/rig/host_rig_reader.hpp"
 
 namespace octoskin::bridge {
 
@@ -35,6 +38,7 @@ class RecordedEvents {
     [[nodiscard]] static Result<RecordedEvents, AppError> open(PlaybackRequest request);
 
     [[nodiscard]] const RobotFacts& robot() const noexcept { return robot_; }
+    [[nodiscard]] const std::shared_ptr<const HostSetup>& setup() const noexcept { return setup_; }
     /// The text of the URDF, as given or recorded.
     [[nodiscard]] const std::string& robot_description() const noexcept { return urdf_; }
     [[nodiscard]] const BusClock& clock() const noexcept { return clock_; }
@@ -51,10 +55,13 @@ class RecordedEvents {
                                                   const ReplayReport& report = {});
 
   private:
-    RecordedEvents(PlaybackRequest request, RobotFacts robot, std::string urdf,
-                   std::vector<std::size_t> joints, std::optional<BusClock> clock);
+    RecordedEvents(PlaybackRequest request, std::shared_ptr<const HostSetup> setup,
+                   nlohmann::ordered_json described, RobotFacts robot, std::string urdf,
+                   std::optional<BusClock> clock);
 
     PlaybackRequest request_;
+    std::shared_ptr<const HostSetup> setup_;
+    nlohmann::ordered_json described_;  ///< as a daemon answers `describe`
     RobotFacts robot_;
     std::string urdf_;
     std::vector<std::size_t> joint_counts_;  ///< of each source

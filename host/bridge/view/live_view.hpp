@@ -1,8 +1,6 @@
-// The view of a running daemon: its connection, the channels and the web server in one thread.
+// The view of a running daemon.
 #pragma once
 
-#include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -13,44 +11,32 @@
 #include "host/apps/recording/app_error.hpp"
 #include "host/bridge/bridge/daemon_link.hpp"
 #include "host/bridge/view/daemon_requests.hpp"
-#include "host/bridge/view/foxglove_server.hpp"
-#include "host/bridge/view/view_server.hpp"
-#include "host/bridge/view/web_server.hpp"
+#include "host/bridge/view/view_host.hpp"
 
 namespace octoskin::view {
 
-struct LiveViewOptions {
-    std::filesystem::path control;  ///< the daemon's socket
-    WebOptions web = {};
-};
-
 class LiveView {
   public:
-    /// Listens. A daemon need not be there.
-    [[nodiscard]] static Result<std::unique_ptr<LiveView>, AppError> open(LiveViewOptions options);
-    ~LiveView() { server_.disconnect(); }
+    /// Listens. A daemon need not be there. `control`: its socket.
+    [[nodiscard]] static Result<std::unique_ptr<LiveView>, AppError> open(std::filesystem::path control,
+                                                                          WebOptions options);
     LiveView(const LiveView&) = delete;
     LiveView& operator=(const LiveView&) = delete;
 
-    /// Where a browser finds the page: "http://127.0.0.1:8765/".
-    [[nodiscard]] std::string url() const;
+    [[nodiscard]] std::string url() const { return host_->url(); }
     /// Until SIGTERM or SIGINT. Throws std::bad_alloc.
     void run();
 
   private:
-    explicit LiveView(LiveViewOptions options);
+    LiveView(std::unique_ptr<ViewHost> host, const std::filesystem::path& control);
     void add_services();
     /// Connects to a daemon that answers. One that hangs is asked again and again, without waiting for it.
     void attend_daemon();
 
-    LiveViewOptions options_;
-    EventLoop loop_;
-    FoxgloveServer server_;
-    std::unique_ptr<ViewServer> view_;
+    std::unique_ptr<ViewHost> host_;
     DaemonRequests requests_;
     bridge::DaemonLink daemon_;
     bool is_asking_ = false;  ///< whether a daemon answers
-    std::unique_ptr<WebServer> web_;
     std::vector<EventSource> sources_;
 };
 

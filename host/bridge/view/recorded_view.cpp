@@ -1,0 +1,232 @@
+#include "host/bridge/view/recorded_view.hpp"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "host/apps/explain/explanation.hpp"
+#include "host/apps/query/query_answer.hpp"
+#include "host/apps/query/query_request.hpp"
+#include "host/apps/query/voxel_answer.hpp"
+#include "host/io/candump/log_source.hpp"
+
+namespace octoskin::view {
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
+
+constexpr std::chrono::milliseconds kQueryWorkMax = 10s;
+constexpr std::size_t kContributions = 20;
+
+std::string text_of(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+double seconds_between(HostTime begin, HostTime end) {
+    return std::chrono::duration<double>(end - begin).count();
+}
+
+/// Of {"point_m": [x, y, z]}.
+std::optional<Eigen::Vector3d> point_of(const std::string& request) {
+    const Json json = Json::parse(request, nullptr, false);
+    if (!json.is_object() || !json.contains("point_m")) return std::nullopt;
+    const Json& list = json["point_m"];
+    if (!list.is_array() || list.size() != 3) return std::nullopt;
+    Eigen::Vector3d point;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!list[i].is_number()) return std::nullopt;
+        point[static_cast<Eigen::Index>(i)] = list[i].get<double>();
+    }
+    return point.allFinite() ? std::optional(point) : std::nullopt;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RecordedView>, AppError> RecordedView::open(const PlaybackRequest& request,
+                                                                   WebOptions options) {
+    auto events = bridge::RecordedEvents::open(request);
+    if (!events) return unexpected(events.error());
+    const auto span = span_of(request.recording, events->clock());
+    if (!span)
+        return fail(ExitCode::bad_data, {.code = ErrorCode::no_data,
+                                         .what = "has no frame: there is nothing to show",
+                                         .file = request.recording.directory});
+    auto host = ViewHost::open(std::move(options), "recording");
+    if (!host) return unexpected(host.error());
+    return std::unique_ptr<RecordedView>(
+        new RecordedView(std::move(host).value(), request, std::move(events).value(), *span));
+}
+
+RecordedView::RecordedView(std::unique_ptr<ViewHost> host, PlaybackRequest request,
+                           bridge::RecordedEvents events, const Span& span)
+    : host_(std::move(host)),
+      request_(std::move(request)),
+      setup_(events.setup()),
+      urdf_(events.robot_description()),
+      span_(span) {
+    add_services();
+    sources_.push_back(host_->loop().on_readable(answering_.descriptor(), [this] { take_answer(); }));
+    sources_.push_back(host_->loop().every(500ms, [this] { publish_place(); }));
+    player_.emplace(host_->loop(), std::move(events), *this);
+}
+
+/// The time stamps of a damaged log may go back: the largest one counts.
+std::optional<RecordedView::Span> RecordedView::span_of(const RecordingPaths& recording,
+                                                        const bridge::BusClock& clock) {
+    auto reader = candump::LogReader::open(recording.can_log());
+    if (!reader) return std::nullopt;
+    std::optional<Span> span;
+    while (true) {  // to the end, or to what cannot be read: the playback reports it
+        const auto entry = reader->next();
+        if (!entry || !*entry) return span;
+        const HostTime at = clock.bus_of((*entry)->stamp);
+        if (!span) span = Span{at, at};
+        span->end = std::max(span->end, at);
+    }
+}
+
+void RecordedView::run() {
+    publish_place();
+    host_->run();
+}
+
+void RecordedView::on_described(const Json& described) {
+    host_->view().on_described(described);
+}
+
+void RecordedView::on_robot(bridge::RobotFacts robot) {
+    positions_.assign(robot.joint_sources.size(), {});
+    host_->view().on_robot(std::move(robot));
+    host_->view().on_urdf(urdf_);
+}
+
+void RecordedView::on_map(const watch::WatchedMap& map) {
+    map_ = map;
+    host_->view().on_map(map);
+}
+
+void RecordedView::on_range(const watch::WatchedRange& range, HostTime captured) {
+    host_->view().on_range(range, captured);
+}
+
+void RecordedView::on_joints(const watch::WatchedJoints& joints, HostTime sampled) {
+    if (joints.source < positions_.size()) positions_[joints.source] = joints.position;
+    host_->view().on_joints(joints, sampled);
+}
+
+void RecordedView::on_status(const Json& status) {
+    host_->view().on_status(status);
+}
+
+void RecordedView::on_image(const watch::WatchedImage& image, HostTime captured) {
+    host_->view().on_image(image, captured);
+}
+
+void RecordedView::on_lost(const std::string& why) {
+    host_->view().on_lost(why);
+}
+
+void RecordedView::on_end(const std::optional<AppError>& error) {
+    if (error) on_lost(error->error.message());
+    publish_place();
+}
+
+void RecordedView::publish_place() {
+    const double end_s = seconds_between(span_.begin, span_.end);
+    const auto now = player_ ? player_->now() : std::nullopt;
+    const double now_s = now ? seconds_between(span_.begin, *now) : 0.0;
+    host_->view().change_place({{"begin_s", 0.0}, {"end_s", std::max(end_s, now_s)}, {"now_s", now_s}});
+}
+
+void RecordedView::add_services() {
+    FoxgloveServer& server = host_->server();
+    server.add_service("/octoskin/voxel", "octoskin.Voxel",
+                       [this](const std::string& request, const Reply& reply) { reply(voxel(request)); });
+    server.add_service("/octoskin/play", "octoskin.Play",
+                       [this](const std::string& request, const Reply& reply) { reply(play(request)); });
+    server.add_service("/octoskin/query", "octoskin.Query", [this](const std::string& request, Reply reply) {
+        ask(query(request), std::move(reply));
+    });
+    server.add_service(
+        "/octoskin/explain", "octoskin.Explain",
+        [this](const std::string& request, Reply reply) { ask(explanation(request), std::move(reply)); });
+}
+
+void RecordedView::ask(std::function<Answer()> work, Reply reply) {
+    if (questions_.size() >= kQuestionsMax)
+        return reply(unexpected(std::string("too many questions wait: ask again later")));
+    questions_.push_back({std::move(work), std::move(reply)});
+    if (questions_.size() == 1) begin_next_question();
+}
+
+void RecordedView::begin_next_question() {
+    answering_.begin(std::exchange(questions_.front().work, nullptr));
+}
+
+void RecordedView::take_answer() {
+    auto answer = answering_.take();
+    if (!answer) return;
+    const Reply reply = std::move(questions_.front().reply);
+    questions_.pop_front();
+    if (!questions_.empty()) begin_next_question();
+    reply(std::move(*answer));
+}
+
+Answer RecordedView::voxel(const std::string& request) const {
+    if (!map_ || !map_->is_whole()) return unexpected(std::string("there is no map yet"));
+    return text_of(answer_voxel("voxel " + request, map_->map()));
+}
+
+/// {"at_s": seconds since the beginning or null, "speed": 0 or more}
+Answer RecordedView::play(const std::string& request) {
+    const Json json = Json::parse(request, nullptr, false);
+    const Json at_s = json.is_object() && json.contains("at_s") ? json["at_s"] : Json();
+    const Json speed = json.is_object() && json.contains("speed") ? json["speed"] : Json();
+    constexpr double kSpeedMax = 1000.0;
+    constexpr double kAtMax_s = 1e7;
+    const auto is_within = [](const Json& value, double max) {
+        return value.is_number() && value.get<double>() >= 0.0 && value.get<double>() <= max;
+    };
+    if (!is_within(speed, kSpeedMax) || !(at_s.is_null() || is_within(at_s, kAtMax_s)))
+        return unexpected(std::string(R"(expected {"at_s": seconds or null, "speed": 0 to 1000})"));
+    std::optional<HostTime> at;
+    if (!at_s.is_null()) at = span_.begin + Nanoseconds{static_cast<std::int64_t>(1e9 * at_s.get<double>())};
+    player_->play(at, speed.get<double>());
+    return std::string(R"({"ok":true})");
+}
+
+/// The same answer as of a daemon whose map and arm are these.
+std::function<Answer()> RecordedView::query(const std::string& request) const {
+    std::vector<double> present;
+    for (const std::vector<double>& source : positions_) {
+        if (source.empty()) {
+            present.clear();
+            break;
+        }
+        present.insert(present.end(), source.begin(), source.end());
+    }
+    return [request, setup = setup_, map = map_, present = std::move(present)]() -> Answer {
+        if (!map || !map->is_whole()) return unexpected(std::string("there is no map yet"));
+        const auto asked = read_query("query " + request);
+        if (!asked) return text_of(query_refused(asked.error()));
+        return text_of(answer_query(*asked, {.rig = &setup->rig,
+                                             .robot = &setup->robot,
+                                             .map = map->map(),
+                                             .present = present,
+                                             .is_live = true,
+                                             .work_max = kQueryWorkMax}));
+    };
+}
+
+/// Replays all of the recording, in seconds to minutes.
+std::function<Answer()> RecordedView::explanation(const std::string& request) const {
+    return [request, playback = request_]() -> Answer {
+        const auto point = point_of(request);
+        if (!point) return unexpected(std::string(R"(expected {"point_m": [x, y, z]})"));
+        const auto explained = explain(playback, *point, kContributions);
+        if (!explained) return text_of(query_refused(explained.error()));
+        return text_of(to_json(*explained));
+    };
+}
+
+}  // namespace octoskin::view
