@@ -1,6 +1,7 @@
 // Bundles the page: node build.mjs MODULES OUT COUNTERS
 //   MODULES   folder with node_modules (toolchains/install_packages view)
-//   OUT       folder for index.html, page.css, page.js, worker.js, licences.txt
+//   OUT       folder for index.html, page.css, page.js, worker.js, licences.txt and report_view.js, which is part of
+//             reports of octoskin-lab
 //   COUNTERS  docs/counters.md, which says what each counter means
 import fs from 'node:fs';
 import { createRequire } from 'node:module';
@@ -62,17 +63,26 @@ const licences = [
 ].join(`\n${'-'.repeat(78)}\n\n`);
 
 fs.mkdirSync(out, { recursive: true });
-await esbuild.build({
-  entryPoints: { page: path.join(here, 'src/main.js'), worker: path.join(here, 'src/map_worker.js') },
+const options = {
   outdir: out,
   bundle: true,
   minify: true,
   format: 'iife',
   target: 'es2022',
-  legalComments: 'none',
   nodePaths: [path.resolve(modules, 'node_modules')],
   plugins: [counters],
   logLevel: 'warning',
+};
+await esbuild.build({
+  ...options,
+  entryPoints: { page: path.join(here, 'src/main.js'), worker: path.join(here, 'src/map_worker.js') },
+  legalComments: 'none',
+});
+// Part of a report, which may go anywhere: it has the licences' lines in it.
+await esbuild.build({
+  ...options,
+  entryPoints: { report_view: path.join(here, 'src/report_view.js') },
+  legalComments: 'inline',
 });
 for (const file of ['index.html', 'page.css']) fs.copyFileSync(path.join(here, file), path.join(out, file));
 fs.writeFileSync(path.join(out, 'licences.txt'), licences);

@@ -42,6 +42,7 @@ void add_experiment_command(CLI::App& app) {
     request->inputs.rig = shipped_file("hw/rigs/experiment.yaml");
     request->inputs.scenario = shipped_file("hw/worlds/experiment.scenario.yaml");
     request->papers_scenario = request->inputs.scenario;
+    request->view_script = shipped_file("view/report_view.js");
     request->seeds = {0};
     request->configurations = {kDefaultMapping};
     request->jobs = std::max(1U, std::thread::hardware_concurrency());

@@ -16,6 +16,7 @@ std::string report_html(const ReportInput& input) {
     html += "</style>\n</head>\n<body>\n<main>\n";
     html += headline_section(input);
     html += pictures_section(input);
+    html += view_section(input);
     html += paper_section(input);
     html += paired_section(input);
     html += unknown_section(input);

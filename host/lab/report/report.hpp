@@ -22,6 +22,12 @@ struct PicturePair {
     Image back;
 };
 
+/// A map for the view in three dimensions.
+struct ViewedMap {
+    std::string title;
+    std::vector<std::string> payloads;  ///< the whole map as payloads of `watch` (docs/reference/watch.md)
+};
+
 /// The input counters of one kind of input: received = used + sum of rejected.
 struct ReportCounters {
     std::string input;  ///< "ranges"
@@ -46,6 +52,8 @@ struct ReportInput {
     std::string main_configuration = "fast";
     std::uint64_t picture_seed = 0;
     std::vector<PicturePair> pictures;  ///< scene first, then the maps
+    std::vector<ViewedMap> viewed_maps = {};
+    std::string view_script = {};  ///< JavaScript that shows them; empty: they are left out
     UpdateModel update_model;
     RangeCounting range_counting;
     std::vector<ReportCounters> inputs;

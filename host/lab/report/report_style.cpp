@@ -55,6 +55,14 @@ figure.chart { max-width: 46rem; margin: 1.2rem 0; }
 }
 figcaption { font: .88rem/1.45 system-ui, sans-serif; margin-top: .5rem; max-width: 72ch; }
 figcaption b { color: var(--ink); }
+.map-view { background: var(--panel); border-radius: .7rem; padding: .8rem; max-width: 60rem; }
+.map-buttons { display: flex; flex-wrap: wrap; gap: .5rem; margin-bottom: .6rem; font-family: system-ui, sans-serif; }
+.map-buttons button { font: inherit; font-size: .9rem; color: var(--ink); background: var(--page); padding: .35rem .8rem;
+  border: 1px solid var(--rule); border-radius: .5rem; cursor: pointer; }
+.map-buttons button[aria-pressed=true] { border-color: var(--accent); box-shadow: inset 0 0 0 1px var(--accent); }
+.map-canvas { height: min(60vh, 34rem); }
+.map-canvas canvas { display: block; width: 100%; height: 100%; border-radius: .5rem; }
+.map-said { font: .88rem/1.45 system-ui, sans-serif; margin: .6rem 0 0; min-height: 2.9em; }
 .zoom { display: block; position: relative; background: var(--panel); border-radius: .6rem; overflow: hidden;
   cursor: zoom-in; }
 .zoom + .zoom { margin-top: .6rem; }

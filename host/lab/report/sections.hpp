@@ -9,6 +9,8 @@ namespace octoskin::report {
 
 [[nodiscard]] std::string headline_section(const ReportInput& input);
 [[nodiscard]] std::string pictures_section(const ReportInput& input);
+/// Empty without maps or script.
+[[nodiscard]] std::string view_section(const ReportInput& input);
 [[nodiscard]] std::string paper_section(const ReportInput& input);
 [[nodiscard]] std::string paired_section(const ReportInput& input);
 [[nodiscard]] std::string unknown_section(const ReportInput& input);

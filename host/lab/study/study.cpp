@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 
 #include "host/apps/playback/map_folder.hpp"
@@ -133,6 +135,12 @@ report::ReportCounters report_counters(const CounterTable& table) {
     return inputs;
 }
 
+/// Empty if the page of `octoskin view` is not installed: the report then has its pictures only.
+std::string script_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 Status<AppError> write_report(const StudyRequest& request, const OpenFolder& folder, const StudyWorld& world,
                               const evaluation::Results& results, const SeedOutcome& first,
                               const NamedMapping& main_configuration) {
@@ -149,6 +157,8 @@ Status<AppError> write_report(const StudyRequest& request, const OpenFolder& fol
                               .idealisations = idealisations_of(main.rig, world.scene.scenario),
                               .reproduce = {command_of(request)}};
     input.cameras = main.rig.cameras.size();
+    input.viewed_maps = viewed_maps(main.pipeline.maps(), input.cameras);
+    input.view_script = script_of(request.view_script);
     if (input.cameras == 0) input.title = "octoskin: what the range sensors see";
     if (input.cameras > 1) input.title = "octoskin: what the cameras cannot see";
     for (const CounterTable& table : main.inputs) {

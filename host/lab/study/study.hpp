@@ -23,6 +23,8 @@ struct StudyRequest {
     unsigned jobs = 1;
     /// The scenario of the paper's experiment, to detect whether this run repeats it.
     std::filesystem::path papers_scenario;
+    /// JavaScript that shows the maps in the report; absent: the report has its pictures only.
+    std::filesystem::path view_script = {};
     std::filesystem::path out;
 };
 

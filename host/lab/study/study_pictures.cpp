@@ -1,6 +1,9 @@
 #include "host/lab/study/study_pictures.hpp"
 
+#include <algorithm>
+
 #include "host/apps/recording/reading.hpp"
+#include "host/io/watch/map_changes.hpp"
 #include "host/lab/report/pictures.hpp"
 #include "host/lab/study/captions.hpp"
 #include "hw/rigfile/robot_description.hpp"
@@ -112,6 +115,21 @@ std::vector<PicturePair> draw_pictures(const sim::World& world, const sim::Scena
     std::vector<PicturePair> pictures = draw_maps(maps_to_draw(maps, rig.cameras.size()), truth);
     pictures.insert(pictures.begin(), draw_scene(world, scenario, rig));
     return pictures;
+}
+
+std::vector<report::ViewedMap> viewed_maps(std::span<const FedMap> maps, std::size_t cameras) {
+    constexpr std::size_t kPayloadBytes = std::size_t{1} << 20U;
+    std::vector<report::ViewedMap> viewed;
+    for (const NamedMap& named : maps_to_draw(maps, cameras)) {
+        report::ViewedMap& one = viewed.emplace_back();
+        one.title = named.title;
+        watch::MissingBricks bricks;
+        bricks.add(watch::bricks_of(*named.map));
+        do one.payloads.push_back(bricks.take(*named.map, kPayloadBytes));
+        while (!bricks.empty());
+    }
+    std::ranges::reverse(viewed);  // the fused map is shown first
+    return viewed;
 }
 
 }  // namespace octoskin

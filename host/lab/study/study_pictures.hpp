@@ -20,4 +20,7 @@ namespace octoskin {
                                                              std::span<const FedMap> maps,
                                                              const evaluation::Truth& truth);
 
+/// The same maps as bricks, for the view in three dimensions. O(voxels).
+[[nodiscard]] std::vector<report::ViewedMap> viewed_maps(std::span<const FedMap> maps, std::size_t cameras);
+
 }  // namespace octoskin

@@ -136,6 +136,15 @@ export class MapLayer {
     return mesh;
   }
 
+  /** Another map follows. */
+  clear() {
+    for (const mesh of this.meshes.values()) {
+      mesh.geometry.dispose();
+      this.root.remove(mesh);
+    }
+    this.meshes.clear();
+  }
+
   /** Keys of the voxels that have a face in the scene, each once, as "x,y,z". @param {string} layer */
   drawnKeys(layer = 'occupied') {
     const keys = new Set();
