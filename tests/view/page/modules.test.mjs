@@ -6,6 +6,7 @@ const source = '../../../host/bridge/page/src/';
 const { Bricks, cellsOf, STATE } = await import(`${source}bricks.js`);
 const { facesOf, FACE_BYTES } = await import(`${source}faces.js`);
 const { History } = await import(`${source}history.js`);
+const { readImage } = await import(`${source}images.js`);
 const { brickAt, brickNumber, centreOf, keyAt } = await import(`${source}lattice.js`);
 const { readMapPayload } = await import(`${source}map_payload.js`);
 const { MapStore } = await import(`${source}map_store.js`);
@@ -313,6 +314,19 @@ test('a batch of ranges that is cut off is refused', () => {
   assert.equal(readBatch(bytes.buffer, 0).length, 1);
   for (let size = 9; size < bytes.length; size++)
     assert.throws(() => readBatch(bytes.buffer.slice(0, size), 0), RangeError);
+});
+
+test('an image that is cut off, or smaller than it says, is refused', () => {
+  const bytes = new Uint8Array(12 + 2 * 3 * 2);
+  const view = new DataView(bytes.buffer);
+  view.setUint16(0, 3, true);
+  view.setUint16(2, 2, true);
+  view.setBigInt64(4, 1500000000n, true);
+  view.setUint16(12 + 2 * 4, 2500, true);
+  const { width, height, time_s, depths_mm } = readImage(bytes.buffer, 0);
+  assert.deepEqual([width, height, time_s, [...depths_mm]], [3, 2, 1.5, [0, 0, 0, 0, 2500, 0]]);
+  for (let size = 0; size < bytes.length; size++)
+    assert.throws(() => readImage(bytes.buffer.slice(0, size), 0), RangeError);
 });
 
 test('a sensor has one state, the worst that applies', () => {

@@ -76,6 +76,36 @@ def nearest_on_ray(origin, direction, keys):
     return min(met)[2] if met else None
 
 
+# Text whose contrast to its background is below 4.5 (WCAG 2.2, AA), as "text: contrast". Backgrounds that let something
+# through are those above the map: there the page's own colour counts.
+LOW_CONTRAST = """(() => {
+  const rgb = (colour) => colour.match(/[\\d.]+/g).map(Number);
+  const light = (colour) => rgb(colour).slice(0, 3).map((part) => part / 255)
+    .map((part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, part, index) => sum + part * [0.2126, 0.7152, 0.0722][index], 0);
+  const ground = (element) => {
+    for (let at = element; at; at = at.parentElement) {
+      const colour = getComputedStyle(at).backgroundColor;
+      if (colour !== 'transparent' && (rgb(colour)[3] ?? 1) > 0.5) return colour;
+    }
+  };
+  const low = [];
+  for (const element of document.querySelectorAll('body *')) {
+    const text = [...element.childNodes].filter((node) => node.nodeType === 3).map((node) => node.data.trim()).join('');
+    if (!text || !element.checkVisibility() || element.closest(':disabled, script')) continue;
+    const [a, b] = [light(getComputedStyle(element).color), light(ground(element))].sort((one, two) => two - one);
+    const contrast = (a + 0.05) / (b + 0.05);
+    if (contrast < 4.5) low.push(`${text}: ${contrast.toFixed(2)}`);
+  }
+  return low;
+})()"""
+# Controls that a screen reader cannot name.
+NAMELESS = """[...document.querySelectorAll('button, input, select, canvas')]
+  .filter((control) => control.checkVisibility())
+  .filter(({textContent, ariaLabel, labels}) => !textContent.trim() && !ariaLabel && !(labels?.length > 0))
+  .map((control) => control.outerHTML)"""
+
+
 class Page(unittest.TestCase):
     """One daemon, one view and one Chromium for all cases. They run in the order of their names: the bus plays once."""
 
@@ -180,6 +210,11 @@ class Page(unittest.TestCase):
         self.browser.octoskin(f"showAt({time_s})")
         self.assert_draws(before)
         self.screenshot("paused")
+        shown_s = self.browser.octoskin("stats()")["shown_s"]
+        for key, ahead_s in (("ArrowLeft", 0), ("ArrowRight", 1)):  # a second back, and ahead
+            self.browser.ask("press", key=key)
+            wanted = shown_s - 1 + ahead_s
+            self.browser.until(f"window.octoskin.stats().then((stats) => Math.abs(stats.shown_s - {wanted}) < 1e-6)")
         self.browser.ask("press", key=" ")
         self.browser.until("window.octoskin.stats().then((stats) => stats.shown_s === null)")
         self.assert_draws(occupied)
@@ -215,7 +250,7 @@ class Page(unittest.TestCase):
         print({name: stats[name] for name in ("mainMs", "workerMs", "frameBytes", "historyBytes", "faces")})
 
     def test_a_fits_wide_and_narrow_windows(self):
-        """No text runs out of the window, each button is at least 24 px high, and each control has a name."""
+        """No text runs out of the window, all can be read, and each control has a name and a size."""
         windows = [(*size, scheme) for size in ((1280, 800), (390, 844)) for scheme in ("dark", "light")]
         for width, height, scheme in windows:
             self.browser.open(self.world.url, width, height, scheme)
@@ -226,6 +261,10 @@ class Page(unittest.TestCase):
                                         "button.offsetParent && button.getBoundingClientRect().height < 24).length")
             self.assertEqual(low, 0)
             self.browser.until("window.octoskin.status() !== null")
+            self.browser.octoskin("setPosture({})")  # with its sliders
+            self.browser.until("window.octoskin.posture().answer !== null")
+            self.assertEqual(self.browser.evaluate(LOW_CONTRAST), [])
+            self.assertEqual(self.browser.evaluate(NAMELESS), [])
             self.screenshot(f"page_{width}_{scheme}")
 
 

@@ -109,8 +109,8 @@ class World:
         """In the background: play_in_parts.py."""
         program = pathlib.Path(__file__).with_name("play_in_parts.py")
         self.player = subprocess.Popen(
-            [sys.executable, "-B", program, self.path / "recording/can.log", str(self.bus.fileno())], pass_fds=[self.bus.fileno()],
-            stdin=subprocess.PIPE, stdout=self.log_file("player"))
+            [sys.executable, "-B", program, self.path / "recording/can.log", str(self.bus.fileno())],
+            pass_fds=[self.bus.fileno()], stdin=subprocess.PIPE, stdout=self.log_file("player"))
 
     def play_again(self):
         self.player.stdin.write(b"again\n")

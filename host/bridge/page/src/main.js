@@ -117,6 +117,7 @@ class Page {
 
   #daemonChanged(link) {
     this.#notice(link.connected ? null : link.why);
+    this.timeline.liveWord = link.mode === 'recording' ? 'newest' : 'live';
     this.recording.show(link);
   }
 

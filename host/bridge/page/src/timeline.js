@@ -12,6 +12,7 @@ export class Timeline {
     this.label = document.getElementById('when');
     this.begin_s = this.end_s = null;
     this.shown_s = null; // null: live
+    this.liveWord = 'live';
     this.slider.addEventListener('input', () => this.#moved());
     this.button.addEventListener('click', () => this.toggle());
     this.#draw();
@@ -62,7 +63,7 @@ export class Timeline {
     this.slider.disabled = this.end_s === null;
     this.button.disabled = this.end_s === null;
     this.button.textContent = this.shown_s === null ? 'Pause' : 'Continue';
-    this.label.textContent = this.shown_s === null ? 'live' : `${fixed(before_s, 1)} s before`;
+    this.label.textContent = this.shown_s === null ? this.liveWord : `${fixed(before_s, 1)} s before`;
     this.label.classList.toggle('live', this.shown_s === null);
     this.slider.setAttribute('aria-valuetext', this.label.textContent);
   }
