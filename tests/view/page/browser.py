@@ -31,8 +31,9 @@ class Browser:
             raise RuntimeError(answer["error"])
         return answer["value"]
 
-    def open(self, url, width=1280, height=800, scheme="dark"):
-        self.ask("open", url=url, width=width, height=height, scheme=scheme)
+    def open(self, url, width=1280, height=800, scheme="dark", cuts=False):
+        """`cuts`: one frame of the map arrives without its end."""
+        self.ask("open", url=url, width=width, height=height, scheme=scheme, cuts=cuts)
 
     def evaluate(self, expression):
         """The value of JavaScript, as JSON; a promise is awaited."""

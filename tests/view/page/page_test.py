@@ -246,7 +246,7 @@ class Page(unittest.TestCase):
         self.assertLessEqual(set(seen["hosts"]), own)
         self.assertEqual([error for error in seen["errors"] if "WebSocket" not in error], [])  # test_8
         stats = self.stats()
-        self.assertEqual((stats["malformed"], stats["mapsMalformed"]), (0, 0))
+        self.assertEqual((stats["malformed"], stats["mapsMalformed"], stats["mapGaps"]), (0, 0, 0))
         print({name: stats[name] for name in ("mainMs", "workerMs", "frameBytes", "historyBytes", "faces")})
 
     def test_a_fits_wide_and_narrow_windows(self):
@@ -266,6 +266,13 @@ class Page(unittest.TestCase):
             self.assertEqual(self.browser.evaluate(LOW_CONTRAST), [])
             self.assertEqual(self.browser.evaluate(NAMELESS), [])
             self.screenshot(f"page_{width}_{scheme}")
+
+
+    def test_b_asks_for_the_whole_map_again_after_a_frame_that_is_cut(self):
+        self.browser.open(self.world.url, cuts=True)
+        self.browser.until("window.octoskin?.stats().then((stats) => stats.mapGaps === 1 && stats.connections === 2)")
+        self.assertEqual(self.stats()["mapsMalformed"], 1)
+        self.assert_draws(self.world.occupied())
 
 
 if __name__ == "__main__":

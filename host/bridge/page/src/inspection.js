@@ -61,6 +61,7 @@ export function inspection(page) {
         ...page.connection.counts,
         maps: worker.updates,
         mapsMalformed: worker.malformed,
+        mapGaps: page.map.gaps,
         time_s: page.map.newest?.time_s ?? null,
         shown_s: page.map.newest?.shown_s ?? null,
         occupied: page.map.newest?.occupied ?? 0,

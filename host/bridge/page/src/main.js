@@ -33,7 +33,7 @@ class Page {
     this.timeline = new Timeline((time_s) => this.#showAt(time_s));
     this.map = new MapClient({
       onUpdate: (update) => this.#mapChanged(update),
-      onMalformed: () => this.#malformed(),
+      onGap: () => this.connection.reopen(), // a new subscription begins with the whole map
     });
     this.connection = new Connection(this.#url, {
       onState: (state) => this.#linkChanged(state),
@@ -48,7 +48,6 @@ class Page {
     this.picking = new Picking(this);
     this.controls = new Controls(this, (layer, isOn) => this.#setLayer(layer, isOn));
     this.wanted = { unknown: false, free: false };
-    this.malformed = 0;
     this.theme = new Theme((theme) => this.#setTheme(theme));
     this.#prepareDrawing();
     document.getElementById('legend').open = innerWidth > NARROW_PX;
@@ -182,11 +181,6 @@ class Page {
     const known = this.knownVoxels === undefined ? '' : `${count(this.knownVoxels)} known voxels, `;
     document.getElementById('figures').textContent =
       `${known}${count(newest.occupied)} occupied, ${fixed(newest.resolution_m * 100, 1)} cm`;
-  }
-
-  #malformed() {
-    this.malformed += 1;
-    this.connection.reopen(); // a new subscription begins with the whole map
   }
 
   #showAt(time_s) {

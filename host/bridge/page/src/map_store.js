@@ -42,7 +42,7 @@ export class MapStore {
   }
 
   /**
-   * Takes a frame. Throws a RangeError for a malformed one; all that it has is then forgotten.
+   * Takes a frame. Throws a RangeError for a malformed one, of which nothing is then taken.
    * @param {number} flags 1 begins, 2 complete @param {number} time_s of the bus
    * @returns {boolean} the map is complete: `takeUpdate` has something new
    */

@@ -37,9 +37,10 @@ function addFrame({ flags, time_s, buffer, offset }) {
   } catch (error) {
     if (!(error instanceof RangeError)) throw error;
     figures.malformed += 1;
-    postMessage({ kind: 'malformed', why: error.message });
+    postMessage({ kind: 'malformed' });
   }
   begun_ms += performance.now() - begin;
+  postMessage({ kind: 'taken', bytes: buffer.byteLength });
 }
 
 const ANSWERS = {

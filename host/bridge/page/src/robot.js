@@ -20,12 +20,21 @@ function visualsOf(urdf) {
   const loader = new URDFLoader();
   loader.loadMeshCb = (_path, _manager, _material, done) => done(new THREE.Group());
   const visuals = new Map();
-  for (const [name, link] of Object.entries(loader.parse(urdf).links))
+  for (const [name, link] of Object.entries(parsedLinks(loader, urdf)))
     visuals.set(
       name,
       link.children.filter((child) => child.isURDFVisual && hasSurface(child)),
     );
   return visuals;
+}
+
+/** Empty for a text that the loader cannot read: the capsules remain. It throws whatever it meets. */
+function parsedLinks(loader, urdf) {
+  try {
+    return loader.parse(urdf).links;
+  } catch {
+    return {};
+  }
 }
 
 function hasSurface(object) {
