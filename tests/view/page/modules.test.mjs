@@ -278,7 +278,7 @@ test('the history keeps a minute, and never more than its bytes', () => {
   }
 });
 
-test('a reading that ends in a voxel is told from one that passes through', () => {
+test('a reading that ends in a voxel differs from one that passes through', () => {
   const readings = new Readings();
   const reading = (time_s, range_m) => ({
     time_s,
