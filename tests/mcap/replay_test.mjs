@@ -267,4 +267,11 @@ test("a replay needs a rig, and cannot go onto a bus", async (context) => {
   assert.equal(octoskin("replay", file).code, 64);
   assert.equal(octoskin("replay", file, "--rig", rig, "--onto", "can0").code, 64);
   assert.equal(octoskin("replay", source, "--log-time").code, 64);
+  // A folder of `ros2 bag`: with one file it is that file, with two of them one must be named.
+  fs.writeFileSync(path.join(folder, "metadata.yaml"), "rosbag2_bagfile_information: {}\n");
+  const one = octoskin("replay", folder, "--rig", rig, "--out", path.join(folder, "out"));
+  assert.notEqual(one.code, 66);
+  assert.match(one.out, /^\/from_can_bus /m);
+  fs.copyFileSync(file, path.join(folder, "bag_1.mcap"));
+  assert.equal(octoskin("replay", folder, "--rig", rig, "--out", path.join(folder, "out")).code, 64);
 });

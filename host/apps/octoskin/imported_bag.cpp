@@ -2,7 +2,9 @@
 
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <system_error>
 
 #include "host/apps/command_line/command_failure.hpp"
@@ -36,6 +38,12 @@ OpenFolder new_folder() {
     return std::move(folder->folder);
 }
 
+constexpr const char* kExtension = ".mcap";
+
+bool has_extension(const std::string& name) {
+    return std::filesystem::path(name).extension() == kExtension;
+}
+
 std::vector<std::string> words_of(const std::filesystem::path& bag, const std::filesystem::path& folder,
                                   const std::filesystem::path& rig, const GivenRobot& robot,
                                   const BagOptions& options) {
@@ -65,9 +73,25 @@ void add_bag_options(CLI::App& command, BagOptions& options) {
                      "in their headers");
 }
 
-bool is_bag(const std::filesystem::path& recording) {
+std::optional<std::filesystem::path> bag_of(const std::filesystem::path& recording) {
     std::error_code error;
-    return recording.extension() == ".mcap" && !std::filesystem::is_directory(recording, error);
+    if (!std::filesystem::is_directory(recording, error))
+        return recording.extension() == kExtension ? std::optional(recording) : std::nullopt;
+    const auto folder = FilePlace(recording).open_folder();
+    if (!folder || folder->kind_of("metadata.yaml") == EntryKind::absent ||
+        folder->kind_of("can.log") != EntryKind::absent)
+        return std::nullopt;
+    const auto names = folder->names();
+    std::vector<std::string> bags;
+    if (names) std::ranges::copy_if(*names, std::back_inserter(bags), has_extension);
+    if (bags.size() > 1)
+        throw CommandFailure(ExitCode::usage,
+                             {.code = ErrorCode::bad_argument,
+                              .what = "is a bag of several files",
+                              .value = std::to_string(bags.size()),
+                              .remedy = "name one of them, or join them with `ros2 bag convert`",
+                              .file = recording});
+    return bags.empty() ? std::nullopt : std::optional(recording / bags.front());
 }
 
 ImportedBag::ImportedBag(const CLI::App& command, const std::filesystem::path& bag,

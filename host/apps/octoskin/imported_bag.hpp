@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,9 @@ struct BagOptions {
 /// --joint-states, --can and --log-time. `options` has to outlive `command`.
 void add_bag_options(CLI::App& command, BagOptions& options);
 
-/// A file whose name ends with .mcap.
-[[nodiscard]] bool is_bag(const std::filesystem::path& recording);
+/// A file whose name ends with .mcap, or the only one of a folder of `ros2 bag` (with a metadata.yaml and
+/// without a can.log). Empty: neither. Throws CommandFailure (usage) if the folder has several.
+[[nodiscard]] std::optional<std::filesystem::path> bag_of(const std::filesystem::path& recording);
 
 class ImportedBag {
   public:

@@ -229,7 +229,11 @@ void replay_bag(ReplayOptions options, const CLI::App& command) {
 }
 
 void replay_any(const ReplayOptions& options, const CLI::App& command) {
-    if (is_bag(options.playback.recording)) return replay_bag(options, command);
+    if (auto bag = bag_of(options.playback.recording)) {
+        ReplayOptions of_bag = options;
+        of_bag.playback.recording = std::move(*bag);
+        return replay_bag(std::move(of_bag), command);
+    }
     if (options.bag.is_any_given())
         throw CommandFailure(ExitCode::usage,
                              {.code = ErrorCode::conflict,

@@ -113,9 +113,11 @@ class Import {
             joints_.take(message, clock_, request_.uses_log_time, log_, account);
             return Done{};
         }
-        for (BagCamera& camera : cameras_)
-            if (camera.topic() == topic)
-                return camera.take(message, paths_, clock_, request_.uses_log_time, account);
+        for (BagCamera& camera : cameras_) {
+            if (camera.topic() != topic) continue;
+            log_.add(message.head.logged);
+            return camera.take(message, paths_, clock_, request_.uses_log_time, account);
+        }
         account.note_rejected(kNotNeeded);
         return Done{};
     }

@@ -16,7 +16,7 @@ void BagLog::add(WallTime stamp, std::size_t source, std::vector<double> positio
     push(stamp, Joints{source, std::move(position)});
 }
 
-void BagLog::push(WallTime stamp, std::variant<wire::CanFrame, Joints> content) {
+void BagLog::push(WallTime stamp, Content content) {
     waiting_.push({stamp, number_++, std::move(content)});
     if (waiting_.size() > kWaitingMax) write_oldest();
 }
@@ -33,8 +33,8 @@ void BagLog::write_oldest() {
     if (makes_sync_) exchange_until(stamp);
     if (const auto* frame = std::get_if<wire::CanFrame>(&entry.content))
         write(stamp, *frame);
-    else
-        write_joints(stamp, std::get<Joints>(entry.content));
+    else if (const auto* joints = std::get_if<Joints>(&entry.content))
+        write_joints(stamp, *joints);
 }
 
 void BagLog::write(WallTime stamp, const wire::CanFrame& frame) {
@@ -73,9 +73,9 @@ void BagLog::write_reports(WallTime stamp, std::uint8_t sequence) {
 }
 
 /// Exchanges at their times, so that no silence of the log looks like a clock that was set. A hole in the bag
-/// stays one.
+/// stays one: what is written is bounded by what is read.
 void BagLog::exchange_until(WallTime stamp) {
-    constexpr std::int64_t kHole_ns = 60'000'000'000;
+    constexpr std::int64_t kHole_ns = 2'000'000'000;
     const bool begins = !exchanged_ || stamp.ns - exchanged_->ns > kHole_ns;
     WallTime next = begins ? stamp : WallTime{exchanged_->ns + kSyncPeriod.count()};
     for (; next <= stamp; next.ns += kSyncPeriod.count()) {

@@ -31,6 +31,8 @@ class BagLog {
     void add(WallTime stamp, const wire::CanFrame& frame);
     /// A sample of a source that has a converter.
     void add(WallTime stamp, std::size_t source, std::vector<double> position);
+    /// Time passes without an entry: an image came. An exchange may be due.
+    void add(WallTime stamp) { push(stamp, std::monostate()); }
     /// The bag has been read to this time.
     void advance(WallTime now);
     /// Writes what waits and closes the file. Error: the file could not be written.
@@ -47,10 +49,11 @@ class BagLog {
         std::size_t source = 0;
         std::vector<double> position;
     };
+    using Content = std::variant<std::monostate, wire::CanFrame, Joints>;
     struct Entry {
         WallTime stamp;
         std::uint64_t number = 0;
-        std::variant<wire::CanFrame, Joints> content;
+        Content content;
     };
     struct IsLater {
         bool operator()(const Entry& a, const Entry& b) const noexcept {
@@ -58,7 +61,7 @@ class BagLog {
         }
     };
 
-    void push(WallTime stamp, std::variant<wire::CanFrame, Joints> content);
+    void push(WallTime stamp, Content content);
     void write_oldest();
     void write(WallTime stamp, const wire::CanFrame& frame);
     /// Returns the stamp with which it was written.
