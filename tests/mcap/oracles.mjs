@@ -1,5 +1,5 @@
 // The independent programs of these tests, and the recordings and programs of this project.
-import { spawnSync } from "node:child_process";
+import { spawn, spawnSync } from "node:child_process";
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import os from "node:os";
@@ -81,10 +81,15 @@ export function scratchFolder(context) {
   return folder;
 }
 
+const program = path.join(process.env.OCTOSKIN_BIN ?? path.join(root, "build/host-release/bin"), "octoskin");
+
+/** Starts `octoskin` with these variables beside those of this process. */
+export const startOctoskin = (variables, ...words) =>
+  spawn(program, words, { stdio: "ignore", env: { ...process.env, ...variables } });
+
 /** Runs `octoskin`; its exit code, output and errors. */
 export function octoskin(...words) {
-  const programs = process.env.OCTOSKIN_BIN ?? path.join(root, "build/host-release/bin");
-  const done = spawnSync(path.join(programs, "octoskin"), words, { encoding: "utf-8", timeout: 120_000 });
+  const done = spawnSync(program, words, { encoding: "utf-8", timeout: 120_000 });
   return { code: done.status, out: done.stdout, err: done.stderr };
 }
 

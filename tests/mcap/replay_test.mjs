@@ -1,12 +1,16 @@
 // `octoskin replay FILE.mcap`: files that @mcap/core's writer made of a recording's messages give the map of that
 // recording, byte for byte; cut, damaged and foreign ones are read as far as they are whole, or refused by a code.
 import assert from "node:assert/strict";
+import { once } from "node:events";
 import fs from "node:fs";
 import path from "node:path";
 import { before, test } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
 
-import { lz4Frame, McapWriter, MessageWriter, octoskin, readIndexed, recording, rosmsg, scratchFolder, Sink, zstdFrame }
-  from "./oracles.mjs";
+import {
+  lz4Frame, McapWriter, MessageWriter, octoskin, readIndexed, recording, rosmsg, scratchFolder, Sink, startOctoskin,
+  zstdFrame,
+} from "./oracles.mjs";
 
 const source = recording("moving_cones");
 const rig = path.join(source, "rig.yaml");
@@ -274,4 +278,19 @@ test("a replay needs a rig, and cannot go onto a bus", async (context) => {
   assert.match(one.out, /^\/from_can_bus /m);
   fs.copyFileSync(file, path.join(folder, "bag_1.mcap"));
   assert.equal(octoskin("replay", folder, "--rig", rig, "--out", path.join(folder, "out")).code, 64);
+});
+
+test("an interrupted replay leaves nothing behind, nor does the program that imports", async (context) => {
+  const folder = scratchFolder(context);
+  const file = path.join(folder, "bag.mcap");
+  fs.writeFileSync(file, await write(bus(messages)));
+  const temporary = path.join(folder, "temporary");
+  fs.mkdirSync(temporary);
+  const running = startOctoskin({ TMPDIR: temporary }, "replay", file, "--rig", rig);
+  const ended = once(running, "exit");
+  while (fs.readdirSync(temporary).length === 0 && running.exitCode === null) await sleep(1);
+  running.kill("SIGTERM");
+  assert.equal((await ended)[0], 143);
+  await sleep(500); // in which the other program would have gone on
+  assert.deepEqual(fs.readdirSync(temporary), []);
 });

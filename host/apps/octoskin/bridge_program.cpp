@@ -1,10 +1,11 @@
 #include "host/apps/octoskin/bridge_program.hpp"
 
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 
@@ -41,6 +42,20 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
                          {.code = ErrorCode::no_program, .what = std::strerror(error), .file = program});
 }
 
+constexpr int kNotStarted = 127;  // the convention of shells
+
+/// Between fork and exec: calls that are safe there only. The child ends with this process, whose temporary
+/// files it would go on to write.
+[[noreturn]] void run_as_child(const std::filesystem::path& program, const std::vector<char*>& arguments,
+                               pid_t parent) {
+    sigset_t none;
+    sigemptyset(&none);  // the parent may wait for its signals in a thread
+    (void)::pthread_sigmask(SIG_SETMASK, &none, nullptr);
+    (void)::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() == parent) ::execv(program.c_str(), arguments.data());
+    ::_exit(kNotStarted);
+}
+
 }  // namespace
 
 void check_bridge() {
@@ -62,20 +77,15 @@ void become_bridge(std::vector<std::string> words) {
 int run_bridge(std::vector<std::string> words) {
     constexpr int kSignalled = 128;  // the convention of shells
     const std::filesystem::path program = find_bridge();
-    posix_spawnattr_t attributes{};
-    posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigemptyset(&none);  // this process may wait for its signals in a thread
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-    pid_t child = 0;
-    const int error =
-        ::posix_spawn(&child, program.c_str(), nullptr, &attributes, pointers_to(words).data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    if (error != 0) not_started(program, error);
+    const std::vector<char*> arguments = pointers_to(words);
+    const pid_t parent = ::getpid();
+    const pid_t child = ::fork();
+    if (child < 0) not_started(program, errno);
+    if (child == 0) run_as_child(program, arguments, parent);
     int status = 0;
     while (::waitpid(child, &status, 0) < 0)
         if (errno != EINTR) not_started(program, errno);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted) not_started(program, ENOEXEC);
     return WIFEXITED(status) ? WEXITSTATUS(status) : kSignalled + WTERMSIG(status);
 }
 
