@@ -44,7 +44,8 @@ void add_bridge_command(CLI::App& app) {
 }
 
 void add_view_command(CLI::App& app) {
-    add_same_command(app, "view", "Show the map live in a browser, and to Foxglove and Lichtblick");
+    add_same_command(app, "view",
+                     "Show the map live, or a recording, in a browser, and to Foxglove and Lichtblick");
 }
 
 void add_export_command(CLI::App& app) {

@@ -66,7 +66,10 @@ RecordedView::RecordedView(std::unique_ptr<ViewHost> host, PlaybackRequest reque
       span_(span) {
     add_services();
     sources_.push_back(host_->loop().on_readable(answering_.descriptor(), [this] { take_answer(); }));
-    sources_.push_back(host_->loop().every(500ms, [this] { publish_place(); }));
+    sources_.push_back(host_->loop().every(500ms, [this] {
+        publish_place();
+        publish_status();
+    }));
     player_.emplace(host_->loop(), std::move(events), *this);
 }
 
@@ -96,6 +99,7 @@ void RecordedView::on_described(const Json& described) {
 
 void RecordedView::on_robot(bridge::RobotFacts robot) {
     positions_.assign(robot.joint_sources.size(), {});
+    ranges_.clear();
     host_->view().on_robot(std::move(robot));
     host_->view().on_urdf(urdf_);
 }
@@ -106,6 +110,7 @@ void RecordedView::on_map(const watch::WatchedMap& map) {
 }
 
 void RecordedView::on_range(const watch::WatchedRange& range, HostTime captured) {
+    ranges_[range.source.sensor_id()] = {captured, range.range_m};
     host_->view().on_range(range, captured);
 }
 
@@ -115,7 +120,44 @@ void RecordedView::on_joints(const watch::WatchedJoints& joints, HostTime sample
 }
 
 void RecordedView::on_status(const Json& status) {
-    host_->view().on_status(status);
+    problems_ = status.value("problems", std::vector<Json>());
+    publish_status();
+}
+
+Json RecordedView::sensor_status(const HostNode& node, std::size_t index) const {
+    const auto number = static_cast<std::uint8_t>(index);
+    const auto now = player_ ? player_->now() : std::nullopt;
+    const auto newest = ranges_.find(SensorId{node.node_id, number});
+    const bool has_any = newest != ranges_.end() && now;
+    const bool has_target = has_any && newest->second.range_m;
+    return {{"index", index},
+            {"name", node.sensors[index].name},
+            {"state", has_any ? Json("ranging") : Json()},
+            {"age_s", has_any ? Json(seconds_between(newest->second.captured, *now)) : Json()},
+            {"range_m", has_target ? Json(*newest->second.range_m) : Json()},
+            {"rejected", has_any && !has_target ? Json("no_return") : Json()},
+            {"fault", nullptr},
+            {"disputed", false},
+            {"camera", nullptr}};
+}
+
+Json RecordedView::nodes_status() const {
+    Json nodes = Json::array();
+    for (const HostNode& node : setup_->rig.nodes) {
+        Json sensors = Json::array();
+        for (std::size_t i = 0; i < node.sensors.size(); ++i) sensors.push_back(sensor_status(node, i));
+        nodes.push_back(
+            {{"id", node.node_id}, {"name", node.name}, {"verdict", "usable"}, {"sensors", sensors}});
+    }
+    return nodes;
+}
+
+void RecordedView::publish_status() {
+    const std::size_t known = map_ && map_->is_whole() ? map_->map().known_voxels() : 0;
+    host_->view().on_status({{"problems", problems_},
+                             {"nodes", nodes_status()},
+                             {"map", {{"known_voxels", known}}},
+                             {"inputs", Json::object()}});
 }
 
 void RecordedView::on_image(const watch::WatchedImage& image, HostTime captured) {

@@ -4,7 +4,9 @@
 
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +18,7 @@
 #include "host/bridge/recorded/recorded_events.hpp"
 #include "host/bridge/view/recorded_player.hpp"
 #include "host/bridge/view/view_host.hpp"
+#include "host/core/rig/sensor_id.hpp"
 
 namespace octoskin::view {
 
@@ -49,6 +52,10 @@ class RecordedView final : public PlayerListener {
         std::function<Answer()> work;
         Reply reply;
     };
+    struct NewestRange {
+        HostTime captured;
+        std::optional<double> range_m;
+    };
     /// Of the bus: the first and the last frame of the log.
     struct Span {
         HostTime begin;
@@ -63,6 +70,11 @@ class RecordedView final : public PlayerListener {
     void begin_next_question();
     void take_answer();
     void publish_place();
+    /// The problems of the playback, and of each sensor the newest range. A playback has no counters before
+    /// its end.
+    void publish_status();
+    [[nodiscard]] nlohmann::ordered_json nodes_status() const;
+    [[nodiscard]] nlohmann::ordered_json sensor_status(const HostNode& node, std::size_t index) const;
     [[nodiscard]] Answer voxel(const std::string& request) const;
     [[nodiscard]] Answer play(const std::string& request);
     [[nodiscard]] std::function<Answer()> query(const std::string& request) const;
@@ -73,6 +85,8 @@ class RecordedView final : public PlayerListener {
     std::shared_ptr<const HostSetup> setup_;
     std::string urdf_;
     Span span_;
+    std::map<SensorId, NewestRange> ranges_;
+    std::vector<nlohmann::ordered_json> problems_;
     std::optional<watch::WatchedMap> map_;
     std::vector<std::vector<double>> positions_;  ///< newest, of each joint source; empty: none yet
     std::deque<Question> questions_;              ///< the first one is being answered

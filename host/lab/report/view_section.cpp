@@ -40,8 +40,7 @@ std::string view_section(const ReportInput& input) {
     std::string html = fmt::format(
         "<section id=\"view\">\n<h2>The maps in three dimensions</h2>\n"
         "<p>The maps of seed {}: drag to turn, scroll or pinch to zoom; with the keyboard the arrow keys, "
-        "plus "
-        "and minus. A click on a voxel shows what the map holds about it.</p>\n"
+        "plus and minus. A click on a voxel, or Enter in the middle, shows what the map holds about it.</p>\n"
         "<div class=\"map-view\">\n<div class=\"map-buttons\" role=\"group\" aria-label=\"Map\">\n",
         input.picture_seed);
     for (std::size_t i = 0; i < input.viewed_maps.size(); ++i) html += map_button(input.viewed_maps[i], i);

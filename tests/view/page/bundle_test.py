@@ -13,7 +13,7 @@ import tempfile
 import unittest
 
 NODE, (SOURCES, MODULES, SERVED) = sys.argv[1], (pathlib.Path(argument) for argument in sys.argv[2:5])
-FILES = ["index.html", "licences.txt", "page.css", "page.js", "worker.js"]
+FILES = ["index.html", "licences.txt", "page.css", "page.js", "report_view.js", "worker.js"]
 # Where the system forbids namespaces, the comparison alone remains.
 IS_ALLOWED = subprocess.run(["unshare", "--map-root-user", "--net", "true"], capture_output=True).returncode == 0
 WITHOUT_NETWORK = ["unshare", "--map-root-user", "--net"] if IS_ALLOWED else []

@@ -267,12 +267,26 @@ class Page(unittest.TestCase):
             self.assertEqual(self.browser.evaluate(NAMELESS), [])
             self.screenshot(f"page_{width}_{scheme}")
 
-
     def test_b_asks_for_the_whole_map_again_after_a_frame_that_is_cut(self):
         self.browser.open(self.world.url, cuts=True)
         self.browser.until("window.octoskin?.stats().then((stats) => stats.mapGaps === 1 && stats.connections === 2)")
         self.assertEqual(self.stats()["mapsMalformed"], 1)
         self.assert_draws(self.world.occupied())
+
+    def test_c_shows_the_maps_of_a_report(self):
+        out, short = self.world.path / "experiment", pathlib.Path(__file__).resolve().parents[2] / "data/short"
+        self.world.run(pathlib.Path(OPTIONS.programs) / "octoskin-lab", "experiment", "--out", out, "--rig",
+                       short / "rig.yaml", "--scenario", short / "scenario.yaml")
+        self.browser.open(f"file://{out}/report.html")
+        self.browser.until("window.octoskinReport !== undefined")
+        for button, name in enumerate(("fused", "proximity", "depth")):
+            self.browser.evaluate(f"window.octoskinReport.show(window.octoskinReport.buttons[{button}])")
+            drawn = self.browser.evaluate("window.octoskinReport.layer.drawnKeys()")
+            expected = surface(self.world.occupied(f"experiment/{name}.bt", 0.04))
+            self.assertGreater(len(expected), 10, name)
+            self.assertEqual({tuple(map(int, key.split(","))) for key in drawn}, expected, name)
+        self.screenshot("report")
+        self.assertEqual(self.browser.ask("seen")["errors"], [])
 
 
 if __name__ == "__main__":

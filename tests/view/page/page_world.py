@@ -136,21 +136,21 @@ class World:
         before = self.ask("status")["map"]["saved"]
         self.wait_for(lambda: self.ask("status")["map"]["saved"] > before + 1, "daemon")
 
-    def occupied(self):
-        """Keys of the occupied voxels in the daemon's saved map, as bt2vrml of OctoMap reads it."""
+    def occupied(self, map_file="maps/fused.bt", resolution_m=RESOLUTION_M):
+        """Keys of the occupied voxels in a map, by default the daemon's saved one, as bt2vrml of OctoMap reads it."""
         copied = self.path / "copied.bt"
-        shutil.copy(self.path / "maps/fused.bt", copied)
+        shutil.copy(self.path / map_file, copied)
         self.run("bt2vrml", copied)
-        return set(boxes((self.path / "copied.bt.wrl").read_text()))
+        return set(boxes((self.path / "copied.bt.wrl").read_text(), resolution_m))
 
 
-def boxes(vrml):
+def boxes(vrml, resolution_m):
     """The voxels of the boxes of a VRML file: OctoMap joins equal ones to larger cubes."""
     number = r"(-?[\d.e-]+)"
     for x, y, z, size in re.findall(rf"translation {number} {number} {number}\s+children \[ Shape "
                                     rf"{{ geometry Box {{ size {number}", vrml):
-        edge = round(float(size) / RESOLUTION_M)
-        low = [round((float(centre) - float(size) / 2) / RESOLUTION_M) + ORIGIN_KEY for centre in (x, y, z)]
+        edge = round(float(size) / resolution_m)
+        low = [round((float(centre) - float(size) / 2) / resolution_m) + ORIGIN_KEY for centre in (x, y, z)]
         for i in range(edge):
             for j in range(edge):
                 for k in range(edge):

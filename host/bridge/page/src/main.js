@@ -116,6 +116,7 @@ class Page {
 
   #daemonChanged(link) {
     this.#notice(link.connected ? null : link.why);
+    document.getElementById('rejected').hidden = link.mode === 'recording'; // it has no counters
     this.timeline.liveWord = link.mode === 'recording' ? 'newest' : 'live';
     this.recording.show(link);
   }

@@ -12,6 +12,8 @@ const BEGINS = 1;
 const COMPLETE = 2;
 /** A click that moves further than this, in CSS pixels, turns the view. */
 const CLICK_PX = 4;
+/** Share of the sphere about all voxels that the view shows: few are at its rim. */
+const FILLED = 0.6;
 
 /** The payloads of one map, a line of base64 each. @returns {ArrayBuffer[]} */
 function payloadsOf(element) {
@@ -43,6 +45,7 @@ class ReportView {
     this.scene.beforeDrawing.push(() => this.layer.setPointScale(this.scene.pointScale));
     for (const button of this.buttons) button.addEventListener('click', () => this.show(button));
     this.#hearClicks();
+    this.#hearKeys();
     this.#colour();
     this.show(this.buttons[0]);
     this.#frame();
@@ -70,7 +73,7 @@ class ReportView {
     const box = this.layer.box();
     if (box.isEmpty()) return;
     const sphere = box.getBoundingSphere(new THREE.Sphere());
-    this.scene.frame(sphere.center, sphere.radius);
+    this.scene.frame(sphere.center, FILLED * sphere.radius);
     this.scene.look('corner');
   }
 
@@ -82,6 +85,29 @@ class ReportView {
       if (!begun || Math.hypot(offsetX - begun[0], offsetY - begun[1]) > CLICK_PX) return;
       this.#describe(this.store.pick(this.scene.rayThrough(offsetX, offsetY)));
     });
+  }
+
+  #hearKeys() {
+    const actions = {
+      ArrowLeft: () => this.scene.turn(-1, 0),
+      ArrowRight: () => this.scene.turn(1, 0),
+      ArrowUp: () => this.scene.turn(0, 1),
+      ArrowDown: () => this.scene.turn(0, -1),
+      '+': () => this.scene.zoom(0.85),
+      '-': () => this.scene.zoom(1 / 0.85),
+      Enter: () => this.#pickMiddle(),
+    };
+    this.scene.canvas.addEventListener('keydown', (event) => {
+      const action = actions[event.key];
+      if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      action();
+    });
+  }
+
+  #pickMiddle() {
+    const { clientWidth, clientHeight } = this.scene.element;
+    this.#describe(this.store.pick(this.scene.rayThrough(clientWidth / 2, clientHeight / 2)));
   }
 
   /** @param {object | null} picked of MapStore.pick */

@@ -250,6 +250,27 @@ TEST(Report, embeds_each_picture) {
               4);
 }
 
+std::size_t count_of(std::string_view text, std::string_view part) {
+    std::size_t count = 0;
+    for (auto at = text.find(part); at != std::string_view::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+TEST(Report, has_maps_to_view_with_all_of_their_bytes_and_no_script_that_ends_early) {
+    ReportInput input = two_seeds();
+    EXPECT_THAT(report_html(input), Not(HasSubstr("map-view\"")));
+    input.viewed_maps = {{"Fused <b>", {"abc", std::string("\0\xff", 2)}}, {"Camera", {"z"}}};
+    EXPECT_THAT(report_html(input), Not(HasSubstr("map-view\"")));
+    input.view_script = "const end = '</script>';";
+    const std::string html = report_html(input);
+    EXPECT_THAT(html, HasSubstr("data-map=\"0\">\nYWJj\nAP8=\n</script>"));
+    EXPECT_THAT(html, HasSubstr("data-map=\"1\">\neg==\n</script>"));
+    EXPECT_THAT(html, HasSubstr("aria-pressed=\"true\">Fused &lt;b&gt;</button>"));
+    EXPECT_THAT(html, HasSubstr("const end = '<\\/script>';</script>"));
+    EXPECT_EQ(count_of(html, "<script"), 3U);
+    EXPECT_EQ(count_of(html, "</script>"), 3U);
+}
+
 TEST(Report, disarms_hostile_names) {
     ReportInput input = two_seeds();
     input.title = "<script>alert(1)</script>";
