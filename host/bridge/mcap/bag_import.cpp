@@ -197,7 +197,7 @@ Status<AppError> write_end(const ImportedBag& imported, const BagRequest& reques
     return Done{};
 }
 
-/// The topics of the bag with their types, for a person who looks for the right ones.
+/// The topics of the bag with their types, to find the right ones.
 std::string topics_text(const BagAccount& topics) {
     std::vector<std::string> texts;
     for (const auto& [topic, account] : topics) texts.push_back(topic + " (" + account.type + ")");

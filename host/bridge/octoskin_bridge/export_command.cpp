@@ -40,7 +40,7 @@ TopicChoice choice_of(const ExportCommandOptions& options) {
     return choice;
 }
 
-/// A misspelt topic would be missing from the file without a word.
+/// A misspelt topic would be missing from the file without a message.
 void check_topics(const ExportCommandOptions& options, const McapTopics& topics) {
     std::vector<std::string> known;
     for (const auto& [topic, count] : topics.counts()) known.push_back(topic);
