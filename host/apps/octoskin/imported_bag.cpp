@@ -22,20 +22,20 @@ OpenFolder temporary_parent() {
     return std::move(folder->folder);
 }
 
-OpenFolder new_folder() {
-    const std::filesystem::path parent = std::filesystem::temp_directory_path();
-    std::string name = (parent / "octoskin-import-XXXXXX").string();
+/// For this user only.
+OpenFolder new_folder(const OpenFolder& parent) {
+    std::string name = (parent.path_for_libraries() / "octoskin-import-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) {
         const std::error_code error(errno, std::generic_category());
         throw CommandFailure(ExitCode::cannot_create,
                              {.code = ErrorCode::system_error,
                               .what = "nothing can be written there (" + error.message() + ")",
                               .remedy = "name another folder with TMPDIR, or " + remedy_of(error),
-                              .file = parent});
+                              .file = parent.shown()});
     }
-    auto folder = FilePlace(std::filesystem::path(name)).make_folder();
+    auto folder = parent.open_folder(std::filesystem::path(name).filename());
     if (!folder) throw CommandFailure(ExitCode::cannot_create, to_error(folder.error()));
-    return std::move(folder->folder);
+    return std::move(folder).value();
 }
 
 constexpr const char* kExtension = ".mcap";
@@ -97,7 +97,7 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& recordi
 ImportedBag::ImportedBag(const CLI::App& command, const std::filesystem::path& bag,
                          const std::filesystem::path& rig, const GivenRobot& robot, const BagOptions& options)
     : parent_(temporary_parent()),
-      work_(new_folder()),
+      work_(new_folder(parent_)),
       unfinished_(parent_, work_.shown().filename().string()) {
     (void)flush_standard_output();  // the other program's lines follow
     const int code =

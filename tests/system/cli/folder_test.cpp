@@ -315,6 +315,7 @@ TEST(FolderRule, nothing_else_in_the_host_makes_moves_or_removes_files_by_path) 
                 testing::ElementsAre(
                     "host/apps/daemon/recording_writer.cpp",     // the folder that a user names
                     "host/apps/flashing/flashing.cpp",           // the same
+                    "host/apps/octoskin/imported_bag.cpp",       // in an open folder, by its descriptor
                     "host/io/helper_limits/confinement.cpp",     // names what it refuses
                     "host/io/mapfile/atomic_file.cpp",           // in an open folder
                     "host/io/openni2/helpers/oni_recorder.cpp",  // of a file that octoskin has made
