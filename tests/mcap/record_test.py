@@ -22,7 +22,7 @@ class Daemon(World):
     """Without a bridge; joint states come through its socket."""
 
     def __init__(self):
-        super().__init__(PROGRAMS, plays=False)
+        super().__init__(PROGRAMS, is_mapped=False)
         self.is_over = False
 
     def start_bridge(self):

@@ -297,7 +297,7 @@ class Daemons(unittest.TestCase):
                 world.daemon.send_signal(signal.SIGCONT)
 
     def test_a_daemon_that_is_stopped_when_the_view_starts_is_connected_when_it_goes_on(self):
-        with ViewWorld(FOLDER, plays=False) as world:
+        with ViewWorld(FOLDER, is_mapped=False) as world:
             world.bridge.terminate()
             world.bridge.wait(10)
             world.daemon.send_signal(signal.SIGSTOP)

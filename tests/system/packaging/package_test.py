@@ -25,7 +25,7 @@ OTHERS = {f"{HELPERS}/openni2/OpenNI2/Drivers/libOctoskinVirtual.so.0",
           "usr/share/doc/octoskin/copyright",
           "usr/share/doc/octoskin/changelog.gz", "usr/share/octoskin/hw/octoskin.dbc"}
 LAB_OTHERS = {f"{HELPERS}/octoskin-sdf.so", "usr/share/man/man1/octoskin-lab.1.gz", "usr/share/doc/octoskin-lab/copyright",
-              "usr/share/doc/octoskin-lab/changelog.gz"}
+              "usr/share/doc/octoskin-lab/changelog.gz", "usr/share/octoskin/view/report_view.js"}
 BRIDGE_PROGRAMS = {f"{HELPERS}/octoskin-bridge"}
 BRIDGE_SETTINGS = {"etc/default/octoskin-bridge"}
 BRIDGE_EXAMPLES = {f"usr/share/doc/octoskin-bridge/examples/{name}"
