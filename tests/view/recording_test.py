@@ -120,6 +120,8 @@ class View(unittest.TestCase):
         self.assertTrue(wait_for(lambda: self.now_s() > paused_s + 0.5))
         self.play(0, 0)  # the first usable reading comes after the second SYNC
         self.assertTrue(wait_for(lambda: 0 < self.now_s() < 2))
+        self.assertTrue(wait_for(lambda: self.client.newest(STATUS)["map"]["known_voxels"] == 0))
+        self.assertEqual(self.client.newest(LINK)["speed"], 0)
 
     def test_a_map_that_begins_anew_is_whole(self):
         with WebSocket(self.view.port, timeout=60) as reader:
@@ -146,12 +148,23 @@ class View(unittest.TestCase):
 
     def test_requests_that_are_none_are_refused(self):
         for request in ({}, {"at_s": None}, {"at_s": -1, "speed": 1}, {"at_s": 1, "speed": -1}, {"speed": "1"},
-                        {"at_s": 1e300, "speed": 1}, {"at_s": None, "speed": 1e9}):
+                        {"at_s": 1e300, "speed": 1}, {"at_s": None, "speed": 1e9}, {"at_s": None, "speed": 1e-300}):
             self.assertIsInstance(self.client.call("/octoskin/play", request), str, request)
         for request in ({}, {"point_m": [1, 2]}, {"point_m": [1, 2, None]}, {"point_m": "1,2,3"}):
             self.assertIsInstance(self.client.call("/octoskin/explain", request), str, request)
         self.assertEqual(self.client.call("/octoskin/explain", {"point_m": [1e9, 0, 0]})["ok"], False)
         self.assertEqual(self.client.call("/octoskin/query", {"path": 1})["error"]["code"], "wrong_type")
+
+    def test_questions_of_a_client_that_left_keep_no_other_one_waiting(self):
+        self.go_to_end()
+        for _ in range(2):
+            with Client(self.view.port) as left:
+                for _ in range(4):
+                    left.begin("/octoskin/explain", {"point_m": [0.4, 0, 0.2]})
+                left.call("/octoskin/play", {})  # it was read
+        begun = time.monotonic()
+        self.assertTrue(wait_for(lambda: isinstance(self.client.call("/octoskin/query", {"path": [AT_REST]}), dict), 10))
+        self.assertLess(time.monotonic() - begun, 5)
 
     def test_what_is_no_recording_ends_with_a_code(self):
         for path, code in ((f"{RECORDING}/none", 66), (str(pathlib.Path(RECORDING).parent), 65)):

@@ -130,7 +130,7 @@ void WatchServer::give_status(std::string json) {
 }
 
 void WatchServer::give_robot(const std::string& urdf) {
-    if (urdf.size() <= watch::kPayloadMax) give(watch::FrameKind::robot, HostTime{0}, urdf);
+    give(watch::FrameKind::robot, HostTime{0}, urdf.size() <= watch::kPayloadMax ? urdf : std::string());
 }
 
 void WatchServer::on_sample(const JointMeasurement& joints) noexcept try {
@@ -163,7 +163,7 @@ void WatchServer::on_image(const DepthFrame& frame) noexcept try {
 void WatchServer::give(watch::FrameKind kind, HostTime time, std::string payload) {
     auto shared = std::make_shared<const std::string>(std::move(payload));
     const std::lock_guard lock(mutex_);
-    if (given_.events.size() >= kEventsMax) {
+    if (given_.events.size() >= kEventsMax && kind != watch::FrameKind::robot) {
         ++lost_;
         return;
     }

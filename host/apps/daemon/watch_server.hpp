@@ -51,7 +51,8 @@ class WatchServer final : public MeasurementObserver {
     /// The map as it is now, with its time on the bus; 0: not known.
     void give_map(FusedMap copy, HostTime time);
     void give_status(std::string json);
-    /// The robot's URDF, or another one: late watchers get the newest.
+    /// The robot's URDF, or another one: late watchers get the newest. One that is too large for a frame is
+    /// given as an empty text.
     void give_robot(const std::string& urdf);
     void on_sample(const JointMeasurement& joints) noexcept override;
     void on_beam(const Beam& beam) noexcept override;

@@ -1,6 +1,9 @@
 // octoskin-bridge: the daemon's map on ROS 2's topics, and ROS 2's joint states and images to the daemon.
+#include <unistd.h>
+
 #include "host/apps/command_line/exit_codes.hpp"
 #include "host/apps/command_line/program.hpp"
+#include "host/apps/daemon/quiet_thread.hpp"
 #include "host/bridge/octoskin_bridge/commands.hpp"
 
 namespace {
@@ -19,8 +22,10 @@ void add_commands(CLI::App& app) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return octoskin::app::run_program(
+    const int exit_code = octoskin::app::run_program(
         {"octoskin bridge", "Speaks ROS 2 with the daemon's map, without an installation of ROS.",
          octoskin::app::exit_codes_text(false), add_commands, ". The daemon and its map: octoskin"},
         argc, argv);
+    if (octoskin::LeavableThread::was_one_left()) ::_exit(exit_code);
+    return exit_code;
 }

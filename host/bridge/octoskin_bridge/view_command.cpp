@@ -78,7 +78,14 @@ void run_view(ViewOptions& options) {
             "every program and every person that reaches {} sees what the robot sees: there is no "
             "password and no encryption",
             options.web.host);
-    if (options.playback.recording.empty())
+    const bool is_live = options.playback.recording.empty();
+    const bool has_rig = !options.playback.rig.empty() || !options.playback.robot.urdf.empty();
+    if (is_live && has_rig)
+        throw CommandFailure(ExitCode::usage,
+                             {.code = ErrorCode::conflict,
+                              .what = "--rig and --robot are of a recording: a daemon has its own",
+                              .remedy = "give a recording, too, or leave them out"});
+    if (is_live)
         serve(view::LiveView::open(options.control, options.web), has_page);
     else
         serve(view::RecordedView::open(app::playback_request(options.playback), options.web), has_page);

@@ -26,7 +26,8 @@ std::optional<std::string> one_line(const std::string& payload) {
     if (payload.size() > kRequestBytesMax || is_nested_too_deep(payload)) return std::nullopt;
     const Json json = Json::parse(payload, nullptr, false);
     if (!json.is_object()) return std::nullopt;
-    return json.dump();
+    std::string line = json.dump();  // a number may be longer than it was
+    return line.size() <= kRequestBytesMax ? std::optional(std::move(line)) : std::nullopt;
 }
 
 }  // namespace
@@ -162,9 +163,12 @@ void FoxgloveServer::subscribe(ClientId id, const foxglove::Subscription& wanted
     const auto channel = channels_.find(wanted.channel);
     if (channel == channels_.end())  // closed while the request was on its way, or wrong
         return warn(id, fmt::format("there is no channel {}", wanted.channel));
+    const std::string in_use =
+        fmt::format("channel {} or subscription {} is in use", wanted.channel, wanted.id);
+    if (clients_[id].has_subscription(wanted.channel, wanted.id)) return warn(id, in_use);
     auto stream = channel->second.source != nullptr ? channel->second.source->stream() : nullptr;
     if (!clients_[id].subscribe(wanted.channel, wanted.id, channel->second.newest, std::move(stream)))
-        return warn(id, fmt::format("channel {} or subscription {} is in use", wanted.channel, wanted.id));
+        return warn(id, in_use);
     ++channel->second.readers;
 }
 
@@ -191,9 +195,9 @@ void FoxgloveServer::take(ClientId id, foxglove::ServiceCall request) {
     if (clients_[id].calls >= kCallsMax) return fail("four calls wait for an answer: wait for one of them");
     ++clients_[id].calls;
     service->second.handler(std::move(*line),
-                            [this, id, number = request.service, call = request.call](Answer given) {
-                                answer(id, number, call, std::move(given));
-                            });
+                            {.give = [this, id, number = request.service, call = request.call](
+                                         Answer given) { answer(id, number, call, std::move(given)); },
+                             .is_wanted = [this, id] { return clients_.contains(id); }});
 }
 
 void FoxgloveServer::answer(ClientId id, std::uint32_t service, std::uint32_t call, Answer answer) {

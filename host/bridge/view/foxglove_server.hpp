@@ -24,8 +24,12 @@ namespace octoskin::view {
 using ChannelId = std::uint32_t;
 /// The JSON of an answer, or a sentence why there is none.
 using Answer = Result<std::string, std::string>;
-/// Takes the answer, once; later than the call, or never.
-using Reply = std::function<void(Answer)>;
+/// Takes the answer of a call, once; later than the call, or never.
+struct Reply {
+    std::function<void(Answer)> give;
+    std::function<bool()> is_wanted;  ///< false: the client has gone
+    void operator()(Answer answer) const { give(std::move(answer)); }
+};
 
 class FoxgloveServer final : public WebClients {
   public:

@@ -86,7 +86,7 @@ void RecordedPlayer::play(std::optional<HostTime> at, double speed) {
         base_.reset();
         if (at) {
             passing_until_ = at;
-            is_restarting_ = !now_ || *at < *now_;
+            is_restarting_ = is_restarting_ || !now_ || *at < *now_;
             if (is_restarting_) waiting_.clear();
         }
     }
@@ -96,6 +96,11 @@ void RecordedPlayer::play(std::optional<HostTime> at, double speed) {
 std::optional<HostTime> RecordedPlayer::now() const {
     const std::lock_guard lock(mutex_);
     return now_;
+}
+
+double RecordedPlayer::speed() const {
+    const std::lock_guard lock(mutex_);
+    return speed_;
 }
 
 bool RecordedPlayer::is_passing() const {
@@ -142,6 +147,7 @@ void RecordedPlayer::take_events() {
         const std::lock_guard lock(mutex_);
         events.swap(waiting_);
         wake_.clear();
+        if (thrown_) std::rethrow_exception(thrown_);
     }
     changed_.notify_all();
     for (const auto& event : events) event();
@@ -170,6 +176,11 @@ void RecordedPlayer::work() {
             changed_.wait(lock, [this] { return is_ending_ || is_restarting_; });
         } catch (const Interrupted&) {
             continue;
+        } catch (...) {  // no memory: the loop ends the program, which says so
+            const std::lock_guard lock(mutex_);
+            thrown_ = std::current_exception();
+            wake_.wake();
+            return;
         }
     }
 }

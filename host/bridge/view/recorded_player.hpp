@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -35,11 +36,14 @@ class RecordedPlayer {
     RecordedPlayer(const RecordedPlayer&) = delete;
     RecordedPlayer& operator=(const RecordedPlayer&) = delete;
 
-    /// Speed 0 pauses. `at`: goes to this time of the bus; earlier than now: the recording begins anew, and
-    /// what is before `at` passes as quickly as it can.
+    /// The slowest playback that is not a pause.
+    static constexpr double kSpeedMin = 0.001;
+    /// Speed 0 pauses; else at least kSpeedMin. `at`: goes to this time of the bus; earlier than now: the
+    /// recording begins anew, and what is before `at` passes as quickly as it can.
     void play(std::optional<HostTime> at, double speed);
     /// The time that was reached; empty: none yet.
     [[nodiscard]] std::optional<HostTime> now() const;
+    [[nodiscard]] double speed() const;
 
   private:
     class Relay;
@@ -73,6 +77,7 @@ class RecordedPlayer {
     std::optional<HostTime> now_;
     bool is_restarting_ = false;
     bool is_ending_ = false;
+    std::exception_ptr thrown_;  ///< by the playback
     EventSource readable_;
     std::thread thread_;  ///< the last member: it uses all others
 };

@@ -1,5 +1,6 @@
 #include "host/bridge/view/recorded_view.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "host/apps/query/query_request.hpp"
 #include "host/apps/query/voxel_answer.hpp"
 #include "host/io/candump/log_source.hpp"
+#include "host/io/watch/map_changes.hpp"
 
 namespace octoskin::view {
 namespace {
@@ -40,6 +42,17 @@ std::optional<Eigen::Vector3d> point_of(const std::string& request) {
     return point.allFinite() ? std::optional(point) : std::nullopt;
 }
 
+/// A map of the same voxels without any brick.
+watch::WatchedMap emptied(const watch::WatchedMap& map) {
+    const FusedMap none(map.map().config());
+    watch::MissingBricks bricks;
+    watch::WatchedMap empty;
+    constexpr std::size_t kBytes = 1024;
+    (void)empty.take({.kind = watch::FrameKind::map, .flags = watch::kBegins | watch::kComplete},
+                     bricks.take(none, kBytes));
+    return empty;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<RecordedView>, AppError> RecordedView::open(const PlaybackRequest& request,
@@ -67,6 +80,7 @@ RecordedView::RecordedView(std::unique_ptr<ViewHost> host, PlaybackRequest reque
     add_services();
     sources_.push_back(host_->loop().on_readable(answering_.descriptor(), [this] { take_answer(); }));
     sources_.push_back(host_->loop().every(500ms, [this] {
+        forget_unwanted();
         publish_place();
         publish_status();
     }));
@@ -97,11 +111,14 @@ void RecordedView::on_described(const Json& described) {
     host_->view().on_described(described);
 }
 
+/// The playback begins: an empty map takes the place of the one before.
 void RecordedView::on_robot(bridge::RobotFacts robot) {
+    has_ended_ = false;
     positions_.assign(robot.joint_sources.size(), {});
     ranges_.clear();
     host_->view().on_robot(std::move(robot));
     host_->view().on_urdf(urdf_);
+    if (map_ && map_->is_whole()) on_map(emptied(*map_));
 }
 
 void RecordedView::on_map(const watch::WatchedMap& map) {
@@ -147,7 +164,7 @@ Json RecordedView::nodes_status() const {
         Json sensors = Json::array();
         for (std::size_t i = 0; i < node.sensors.size(); ++i) sensors.push_back(sensor_status(node, i));
         nodes.push_back(
-            {{"id", node.node_id}, {"name", node.name}, {"verdict", "usable"}, {"sensors", sensors}});
+            {{"id", node.node_id}, {"name", node.name}, {"verdict", "recorded"}, {"sensors", sensors}});
     }
     return nodes;
 }
@@ -169,6 +186,7 @@ void RecordedView::on_lost(const std::string& why) {
 }
 
 void RecordedView::on_end(const std::optional<AppError>& error) {
+    has_ended_ = true;
     if (error) on_lost(error->error.message());
     publish_place();
 }
@@ -176,8 +194,11 @@ void RecordedView::on_end(const std::optional<AppError>& error) {
 void RecordedView::publish_place() {
     const double end_s = seconds_between(span_.begin, span_.end);
     const auto now = player_ ? player_->now() : std::nullopt;
-    const double now_s = now ? seconds_between(span_.begin, *now) : 0.0;
-    host_->view().change_place({{"begin_s", 0.0}, {"end_s", std::max(end_s, now_s)}, {"now_s", now_s}});
+    const double reached_s = now ? std::min(end_s, seconds_between(span_.begin, *now)) : 0.0;
+    host_->view().change_place({{"begin_s", 0.0},
+                                {"end_s", end_s},
+                                {"now_s", has_ended_ ? end_s : reached_s},
+                                {"speed", player_ ? player_->speed() : 1.0}});
 }
 
 void RecordedView::add_services() {
@@ -202,6 +223,7 @@ void RecordedView::ask(std::function<Answer()> work, Reply reply) {
 }
 
 void RecordedView::begin_next_question() {
+    *is_forgotten_ = false;
     answering_.begin(std::exchange(questions_.front().work, nullptr));
 }
 
@@ -210,8 +232,17 @@ void RecordedView::take_answer() {
     if (!answer) return;
     const Reply reply = std::move(questions_.front().reply);
     questions_.pop_front();
+    while (!questions_.empty() && !questions_.front().reply.is_wanted()) questions_.pop_front();
     if (!questions_.empty()) begin_next_question();
     reply(std::move(*answer));
+}
+
+void RecordedView::forget_unwanted() {
+    if (!questions_.empty() && !questions_.front().reply.is_wanted()) *is_forgotten_ = true;
+    const auto waiting = questions_.begin() + (questions_.empty() ? 0 : 1);
+    questions_.erase(
+        std::remove_if(waiting, questions_.end(), [](const Question& one) { return !one.reply.is_wanted(); }),
+        questions_.end());
 }
 
 Answer RecordedView::voxel(const std::string& request) const {
@@ -229,8 +260,10 @@ Answer RecordedView::play(const std::string& request) {
     const auto is_within = [](const Json& value, double max) {
         return value.is_number() && value.get<double>() >= 0.0 && value.get<double>() <= max;
     };
-    if (!is_within(speed, kSpeedMax) || !(at_s.is_null() || is_within(at_s, kAtMax_s)))
-        return unexpected(std::string(R"(expected {"at_s": seconds or null, "speed": 0 to 1000})"));
+    const bool is_too_slow = is_within(speed, RecordedPlayer::kSpeedMin) && speed.get<double>() != 0.0 &&
+                             speed.get<double>() != RecordedPlayer::kSpeedMin;
+    if (is_too_slow || !is_within(speed, kSpeedMax) || !(at_s.is_null() || is_within(at_s, kAtMax_s)))
+        return unexpected(std::string(R"(expected {"at_s": seconds or null, "speed": 0, or 0.001 to 1000})"));
     std::optional<HostTime> at;
     if (!at_s.is_null()) at = span_.begin + Nanoseconds{static_cast<std::int64_t>(1e9 * at_s.get<double>())};
     player_->play(at, speed.get<double>());
@@ -247,25 +280,38 @@ std::function<Answer()> RecordedView::query(const std::string& request) const {
         }
         present.insert(present.end(), source.begin(), source.end());
     }
-    return [request, setup = setup_, map = map_, present = std::move(present)]() -> Answer {
+    return [request, setup = setup_, map = map_, present = std::move(present),
+            is_forgotten = is_forgotten_]() -> Answer {
         if (!map || !map->is_whole()) return unexpected(std::string("there is no map yet"));
         const auto asked = read_query("query " + request);
         if (!asked) return text_of(query_refused(asked.error()));
-        return text_of(answer_query(*asked, {.rig = &setup->rig,
-                                             .robot = &setup->robot,
-                                             .map = map->map(),
-                                             .present = present,
-                                             .is_live = true,
-                                             .work_max = kQueryWorkMax}));
+        return text_of(answer_query(*asked,
+                                    {.rig = &setup->rig,
+                                     .robot = &setup->robot,
+                                     .map = map->map(),
+                                     .present = present,
+                                     .is_live = true,
+                                     .work_max = kQueryWorkMax},
+                                    [&] { return is_forgotten->load(); }));
     };
 }
 
 /// Replays all of the recording, in seconds to minutes.
 std::function<Answer()> RecordedView::explanation(const std::string& request) const {
-    return [request, playback = request_]() -> Answer {
+    return [request, playback = request_, is_forgotten = is_forgotten_]() -> Answer {
+        struct Forgotten {};
         const auto point = point_of(request);
         if (!point) return unexpected(std::string(R"(expected {"point_m": [x, y, z]})"));
-        const auto explained = explain(playback, *point, kContributions);
+        const auto go_on = [&](const ReplayProgress&) {
+            if (*is_forgotten) throw Forgotten{};
+        };
+        const auto explained = [&]() -> Result<Explanation, AppError> {
+            try {
+                return explain(playback, *point, kContributions, go_on);
+            } catch (const Forgotten&) {
+                return fail(ExitCode::unavailable, {ErrorCode::cancelled, "the question was cancelled"});
+            }
+        }();
         if (!explained) return text_of(query_refused(explained.error()));
         return text_of(to_json(*explained));
     };

@@ -2,6 +2,7 @@
 // explain` says of a voxel.
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <functional>
 #include <map>
@@ -30,6 +31,7 @@ class RecordedView final : public PlayerListener {
     /// Reads rig, robot and the times of the recording, and listens. Errors: those of RecordedEvents::open().
     [[nodiscard]] static Result<std::unique_ptr<RecordedView>, AppError> open(const PlaybackRequest& request,
                                                                               WebOptions options);
+    ~RecordedView() override { *is_forgotten_ = true; }
     RecordedView(const RecordedView&) = delete;
     RecordedView& operator=(const RecordedView&) = delete;
 
@@ -77,6 +79,8 @@ class RecordedView final : public PlayerListener {
     [[nodiscard]] nlohmann::ordered_json sensor_status(const HostNode& node, std::size_t index) const;
     [[nodiscard]] Answer voxel(const std::string& request) const;
     [[nodiscard]] Answer play(const std::string& request);
+    /// Questions whose client has gone are not answered, and the one in work is ended.
+    void forget_unwanted();
     [[nodiscard]] std::function<Answer()> query(const std::string& request) const;
     [[nodiscard]] std::function<Answer()> explanation(const std::string& request) const;
 
@@ -88,8 +92,11 @@ class RecordedView final : public PlayerListener {
     std::map<SensorId, NewestRange> ranges_;
     std::vector<nlohmann::ordered_json> problems_;
     std::optional<watch::WatchedMap> map_;
+    bool has_ended_ = false;                      ///< all of the recording was played
     std::vector<std::vector<double>> positions_;  ///< newest, of each joint source; empty: none yet
     std::deque<Question> questions_;              ///< the first one is being answered
+    /// The question in work is not wanted any more.
+    std::shared_ptr<std::atomic<bool>> is_forgotten_ = std::make_shared<std::atomic<bool>>(false);
     SideTask<Answer> answering_;
     std::vector<EventSource> sources_;
     std::optional<RecordedPlayer> player_;  ///< the last member: its events use all others

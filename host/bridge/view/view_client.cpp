@@ -22,11 +22,14 @@ bool ViewClient::put(WebMessage message) {
     return true;
 }
 
+bool ViewClient::has_subscription(std::uint32_t channel, std::uint32_t id) const {
+    return subscriptions_.contains(channel) ||
+           std::ranges::any_of(subscriptions_, [id](const auto& one) { return one.second.id == id; });
+}
+
 bool ViewClient::subscribe(std::uint32_t channel, std::uint32_t id, NewestMessages newest,
                            std::unique_ptr<MessageStream> stream) {
-    const bool is_taken =
-        std::ranges::any_of(subscriptions_, [id](const auto& one) { return one.second.id == id; });
-    if (is_taken || subscriptions_.contains(channel)) return false;
+    if (has_subscription(channel, id)) return false;
     subscriptions_.emplace(channel, Subscription{id, std::move(newest), std::move(stream)});
     return true;
 }

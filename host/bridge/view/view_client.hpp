@@ -32,7 +32,9 @@ class ViewClient {
 
     /// False: kBytesMax would be exceeded.
     [[nodiscard]] bool put(WebMessage message);
-    /// False: the channel or the identifier is subscribed to already.
+    /// Whether the channel or the identifier is subscribed to already.
+    [[nodiscard]] bool has_subscription(std::uint32_t channel, std::uint32_t id) const;
+    /// False: it is.
     [[nodiscard]] bool subscribe(std::uint32_t channel, std::uint32_t id, NewestMessages newest,
                                  std::unique_ptr<MessageStream> stream);
     /// The channel; empty: there is no such subscription.

@@ -102,8 +102,11 @@ void ViewServer::on_robot(bridge::RobotFacts robot) {
         spdlog::error("{}", opened.error().message());
     open_images();
     joints_waiting_.clear();
-    server_.forget_messages(joints_);
-    if (!std::exchange(is_connected_, true)) spdlog::info("daemon with rig '{}'", robot_->rig);
+    ranges_waiting_.clear();
+    urdf_.reset();  // it follows
+    for (const ChannelId channel : {joints_, ranges_, status_}) server_.forget_messages(channel);
+    if (!std::exchange(is_connected_, true))
+        spdlog::info("{} with rig '{}'", mode_ == "live" ? "daemon" : mode_, robot_->rig);
     why_.clear();
     server_.notify(foxglove::Level::warning, "octoskin.daemon", "");
     publish_robot();
@@ -133,8 +136,8 @@ void ViewServer::publish_robot() {
 }
 
 void ViewServer::on_urdf(const std::string& text) {
-    urdf_ = text;
-    urdf_outlet_.send(ros::std_msgs::String{*urdf_}, wall_now());
+    urdf_ = text.empty() ? std::nullopt : std::optional(text);
+    urdf_outlet_.send(ros::std_msgs::String{text}, wall_now());
     publish_robot();
 }
 

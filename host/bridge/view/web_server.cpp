@@ -26,7 +26,8 @@ using boost::system::error_code;
 constexpr std::uint32_t kHeaderBytesMax = 16U << 10U;
 constexpr std::size_t kValueShown = 200;
 constexpr const char* kPolicy =
-    "default-src 'self'; connect-src 'self' ws:; worker-src 'self'; img-src 'self' data: blob:; style-src "
+    "default-src 'self'; connect-src 'self' ws://localhost:* ws://127.0.0.1:*; worker-src "
+    "'self'; img-src 'self' data: blob:; style-src "
     "'self'; frame-ancestors 'none'";
 
 /// A connection that Beast ends without waiting for the other end: a client that sends malformed frames and
@@ -430,10 +431,15 @@ std::uint16_t WebServer::port() const noexcept {
 
 void WebServer::run(EventLoop& loop) {
     parts_->loop_ready.emplace(parts_->io, loop.descriptor());
+    struct Released {  // the descriptor is the loop's, also after an exception
+        Parts& parts;
+        ~Released() {
+            (void)parts.loop_ready->release();
+            parts.loop_ready.reset();
+        }
+    } const released{*parts_};
     asio::post(parts_->io, [this, &loop] { parts_->turn(loop); });
     parts_->io.run();
-    (void)parts_->loop_ready->release();  // the descriptor is the loop's
-    parts_->loop_ready.reset();
 }
 
 void WebServer::drop(ClientId client, Refusal why) {

@@ -1,6 +1,8 @@
 // Modules of the page without a browser: node --test modules.test.mjs
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import v8 from 'node:v8';
+import vm from 'node:vm';
 
 const source = '../../../host/bridge/page/src/';
 const { Bricks, cellsOf, STATE } = await import(`${source}bricks.js`);
@@ -276,6 +278,33 @@ test('the history keeps a minute, and never more than its bytes', () => {
       held.reduce((sum, { bytes }) => sum + 200 + bytes.length, 0),
     );
   }
+});
+
+test('a page that is left open for 10,000 maps keeps its memory', async () => {
+  v8.setFlagsFromString('--expose-gc');
+  const collect = vm.runInNewContext('gc');
+  const store = new MapStore();
+  const memory = [];
+  for (let map = 0; map < 10000; map++) {
+    const payload = new Payload({ clock_s: 100 + Math.floor(map / 10) });
+    for (let brick = 0; brick < 4; brick++) {
+      const number = BRICK + ((map * 7 + brick * 13) % 256); // comes, changes, goes
+      if ((map + brick) % 3 === 0) payload.unknown(number);
+      else payload.alike(number, brick % 2 === 0 ? 2 : -2, 400 + (map % 64));
+    }
+    store.add((map === 0 ? BEGINS : 0) | COMPLETE, 1 + map / 10, payload.buffer, 0);
+    store.takeUpdate();
+    if (map % 500 !== 499) continue;
+    for (let turn = 0; turn < 3; turn++) {
+      collect();
+      await new Promise(setImmediate); // buffers are released beside
+    }
+    const { heapUsed, arrayBuffers } = process.memoryUsage();
+    memory.push(heapUsed + arrayBuffers);
+  }
+  // What is not collected yet comes and goes; what is kept does not go.
+  const [early, late] = [memory.slice(2, 10), memory.slice(12)].map((part) => Math.min(...part));
+  assert.ok(late < 1.1 * early, `${memory}`);
 });
 
 test('a reading that ends in a voxel differs from one that passes through', () => {

@@ -29,6 +29,7 @@ export class Arm {
   setDescription(description, theme) {
     for (const part of [this.robot, this.sensors, this.cameras]) part?.remove();
     this.description = description;
+    this.readings = new Readings(); // those of another rig's sensors are not theirs
     this.kinematics = new Kinematics(description);
     this.robot = new Robot(this.scene.scene, this.kinematics, description, 'robot');
     this.sensors = new Sensors(this.scene.scene, description);

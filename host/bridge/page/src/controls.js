@@ -6,7 +6,7 @@ const TURNS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDo
 const ZOOMS = { '+': 1 / 1.2, '=': 1 / 1.2, '-': 1.2 };
 
 export class Controls {
-  /** @param {object} parts {scene, timeline, picking} @param {function(string, boolean)} onLayer */
+  /** @param {object} parts {scene, timeline, recording, picking} @param {function(string, boolean)} onLayer */
   constructor(parts, onLayer) {
     Object.assign(this, parts);
     this.onLayer = onLayer;
@@ -33,12 +33,14 @@ export class Controls {
     act();
   }
 
-  #actionOf({ key, shiftKey }) {
+  #actionOf({ key: typed, shiftKey }) {
+    const key = typed.length === 1 ? typed.toLowerCase() : typed;
     if (key in TURNS && (shiftKey || key === 'ArrowUp' || key === 'ArrowDown'))
       return () => this.scene.turn(...TURNS[key]);
-    if (key === 'ArrowLeft') return () => this.timeline.step(-1);
-    if (key === 'ArrowRight') return () => this.timeline.step(1);
-    if (key === ' ') return () => this.timeline.toggle();
+    const time = this.recording.isShown ? this.recording : this.timeline;
+    if (key === 'ArrowLeft') return () => time.step(-1);
+    if (key === 'ArrowRight') return () => time.step(1);
+    if (key === ' ') return () => time.toggle();
     if (key === 'Enter') return () => this.picking.pickMiddle();
     if (key in ZOOMS) return () => this.scene.zoom(ZOOMS[key]);
     if (key in VIEW_KEYS) return () => this.scene.look(VIEW_KEYS[key]);

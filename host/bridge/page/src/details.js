@@ -66,7 +66,7 @@ export class Details {
         'Last seen',
         age_s === null ? 'at an unknown time' : `${fixed(age_s, 0)} s before, by ${KIND_NAMES[sight.kind]}`,
       ]);
-    if (last)
+    if (last && !explained)
       rows.push([
         'Newest range',
         last.found ? readingText(last.found, last.until_s, last.name) : 'none met it within the last minute',

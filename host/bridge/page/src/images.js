@@ -60,6 +60,13 @@ export class Images {
     caption.textContent = `${Math.round((100 * seen) / image.depths_mm.length)} % of the pixels have a depth`;
   }
 
+  /** Another rig has other cameras. */
+  clear() {
+    this.cameras.clear();
+    this.body.replaceChildren();
+    this.section.hidden = true;
+  }
+
   #add(name) {
     const canvas = element('canvas', { role: 'img', 'aria-label': `Depth image of ${name}` });
     const caption = element('span');

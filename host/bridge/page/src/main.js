@@ -55,9 +55,8 @@ class Page {
     this.connection.open();
   }
 
-  /** `?server=HOST:PORT` is another server than the page's own. */
   get #url() {
-    return `ws://${new URLSearchParams(location.search).get('server') ?? location.host}/`;
+    return `ws://${location.host}/`;
   }
 
   #prepareDrawing() {
@@ -91,12 +90,22 @@ class Page {
   }
 
   #linkChanged(state) {
-    const pill = document.getElementById('link');
-    pill.className = `pill ${state}`;
-    pill.textContent = { connecting: 'connecting', connected: 'connected', lost: 'not connected' }[state];
+    this.linkState = state;
+    this.#showPill();
     if (state === 'lost')
       this.#notice('octoskin view does not answer. The page connects again as soon as it does.');
     else if (state === 'connected') this.#notice(null);
+  }
+
+  /** The server, and behind it the daemon or the recording. */
+  #showPill() {
+    const hasNone = this.linkState === 'connected' && this.hasDaemon === false;
+    const state = hasNone ? 'lost' : this.linkState;
+    const pill = document.getElementById('link');
+    pill.className = `pill ${state}`;
+    pill.textContent = hasNone
+      ? 'no daemon'
+      : { connecting: 'connecting', connected: 'connected', lost: 'not connected' }[state];
   }
 
   #notice(text) {
@@ -116,6 +125,9 @@ class Page {
 
   #daemonChanged(link) {
     this.#notice(link.connected ? null : link.why);
+    this.hasDaemon = link.connected;
+    this.#showPill();
+    document.body.dataset.mode = link.mode;
     document.getElementById('rejected').hidden = link.mode === 'recording'; // it has no counters
     this.timeline.liveWord = link.mode === 'recording' ? 'newest' : 'live';
     this.recording.show(link);
@@ -128,6 +140,7 @@ class Page {
     this.description = text;
     document.getElementById('rig').textContent = description.rig;
     this.arm.setDescription(description, this.colours);
+    this.images.clear();
     this.posture.setRobot(this.arm.kinematics, description);
   }
 

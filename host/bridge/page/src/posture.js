@@ -79,8 +79,8 @@ export class Posture {
           ' own space 0.1 m',
         ),
       ),
-      this.sliders,
       this.answer,
+      this.sliders,
     );
     this.sliders.hidden = true;
   }

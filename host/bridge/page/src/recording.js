@@ -11,12 +11,15 @@ export class Recording {
     this.speed = 1;
     this.slider = element('input', {
       type: 'range',
-      step: 0.1,
+      step: 'any',
       'aria-label': 'Seconds of the recording',
       onchange: () => this.#ask(Number(this.slider.value)),
       oninput: () => this.#say(Number(this.slider.value)),
+      onpointerdown: () => (this.isHeld = true),
+      onpointerup: () => (this.isHeld = false),
     });
-    this.button = element('button', { type: 'button', onclick: () => this.#toggle() }, 'Stop');
+    this.isHeld = false;
+    this.button = element('button', { type: 'button', onclick: () => this.toggle() }, 'Pause');
     this.rate = element(
       'select',
       { 'aria-label': 'Speed', onchange: () => this.#ask(null) },
@@ -29,16 +32,19 @@ export class Recording {
   }
 
   /** @param {object} link of /octoskin/view/link */
-  show({ mode, begin_s, end_s, now_s }) {
+  show({ mode, begin_s, end_s, now_s, speed }) {
     this.section.hidden = mode !== 'recording';
-    if (this.section.hidden) return;
+    if (!this.isShown || end_s === undefined) return;
+    this.speed = speed; // another client may have changed it
+    if (SPEEDS.includes(speed)) this.rate.value = speed;
     Object.assign(this.slider, { min: begin_s, max: end_s });
     this.begin_s = begin_s;
     this.end_s = end_s;
-    if (document.activeElement !== this.slider) this.slider.value = now_s;
+    this.now_s = now_s;
+    if (!this.isHeld) this.slider.value = now_s;
     this.isAtEnd = now_s >= end_s;
     if (this.isAtEnd) this.button.textContent = 'Play again';
-    else this.button.textContent = this.speed === 0 ? 'Play' : 'Stop';
+    else this.button.textContent = this.speed === 0 ? 'Play' : 'Pause';
     this.#say(now_s);
   }
 
@@ -46,10 +52,19 @@ export class Recording {
     this.label.textContent = `${fixed(now_s - this.begin_s, 1)} of ${fixed(this.end_s - this.begin_s, 1)} s`;
   }
 
-  #toggle() {
+  get isShown() {
+    return !this.section.hidden;
+  }
+
+  /** @param {number} direction -1: a second back, 1: ahead */
+  step(direction) {
+    this.#ask(Math.min(this.end_s, Math.max(this.begin_s, this.now_s + direction)));
+  }
+
+  toggle() {
     const isPlaying = this.speed !== 0 && !this.isAtEnd;
     this.speed = isPlaying ? 0 : Number(this.rate.value);
-    this.button.textContent = isPlaying ? 'Play' : 'Stop';
+    this.button.textContent = isPlaying ? 'Play' : 'Pause';
     this.#ask(this.isAtEnd ? this.begin_s : null);
   }
 

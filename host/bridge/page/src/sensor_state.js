@@ -2,6 +2,10 @@
 
 /** Newest reading older than this: the sensor is silent. */
 const SILENT_S = 3;
+const SILENT_WHY = {
+  usable: 'no readings arrive',
+  recorded: 'none of its readings went into the map lately: it saw no target, or they were rejected',
+};
 
 /**
  * @param {object} node of the status @param {object} sensor of `nodes.sensors`
@@ -11,7 +15,7 @@ export function sensorState(node, sensor) {
   const fault = faultOf(sensor);
   if (fault) return { state: 'faulty', why: fault };
   if (sensor.age_s === null || sensor.age_s > SILENT_S || sensor.state === null) {
-    const why = node.verdict === 'usable' ? 'no readings arrive' : `its node is ${words(node.verdict)}`;
+    const why = SILENT_WHY[node.verdict] ?? `its node is ${words(node.verdict)}`;
     return { state: 'silent', why };
   }
   if (sensor.rejected === null) return { state: 'used', why: 'its newest reading is in the map, or waits' };
