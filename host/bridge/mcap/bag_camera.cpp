@@ -49,7 +49,7 @@ Status<Error> BagCamera::take(const mcap::Message& message, const RecordingPaths
     if (!image) return refuse(image.error());
     if (!problem_.empty()) return refuse("no_camera_info");
     const auto stamp = time_of(image->stamp, message.head.logged, uses_log_time);
-    if (!stamp) return refuse("stamp_off");
+    if (!stamp || !has_bus_time(clock, *stamp)) return refuse("stamp_off");
     const HostTime captured = clock.bus_of(*stamp);
     if (newest_ && captured <= *newest_) return refuse("still");
     newest_ = captured;

@@ -18,6 +18,7 @@
 #include "host/bridge/mcap/bag_joints.hpp"
 #include "host/bridge/mcap/bag_log.hpp"
 #include "host/bridge/mcap/bag_survey.hpp"
+#include "host/bridge/mcap/bag_time.hpp"
 #include "host/bridge/mcap/bag_warnings.hpp"
 #include "host/bridge/mcap/camera_topics.hpp"
 #include "host/bridge/mcap/can_messages.hpp"
@@ -105,8 +106,12 @@ class Import {
     Status<Error> take(const mcap::Message& message) {
         const std::string& topic = message.channel->topic;
         TopicAccount& account = imported_.topics[topic];
-        if (message.schema != nullptr) account.type = message.schema->name;
+        if (message.schema != nullptr && account.type.empty()) account.type = message.schema->name;
         ++account.messages;
+        if (!is_log_time(message.head.logged)) {
+            account.note_rejected("stamp_off");
+            return Done{};
+        }
         log_.advance(message.head.logged);
         if (topics_.is_can(topic)) return take_frame(message, account);
         if (topic == topics_.joint_states) {
@@ -115,7 +120,7 @@ class Import {
         }
         for (BagCamera& camera : cameras_) {
             if (camera.topic() != topic) continue;
-            log_.add(message.head.logged);
+            (void)log_.add(message.head.logged);
             return camera.take(message, paths_, clock_, request_.uses_log_time, account);
         }
         account.note_rejected(kNotNeeded);
@@ -147,8 +152,9 @@ class Import {
         const auto frame = frame_of(message);
         if (!frame) {
             account.note_rejected(frame.error());
+        } else if (!log_.add(message.head.logged, *frame)) {
+            account.note_rejected("stamp_off");
         } else {
-            log_.add(message.head.logged, *frame);
             ++account.used;
         }
         return Done{};

@@ -26,7 +26,8 @@ void BagJoints::take(const mcap::Message& message, const BusClock& clock, bool u
     auto state = read_as<ros::sensor_msgs::JointState>(message);
     if (!state) return account.note_rejected(state.error());
     const auto stamp = time_of(wall_time_of(state->header.stamp), message.head.logged, uses_log_time);
-    if (!stamp) return account.note_rejected("stamp_off");
+    if (!stamp || !has_bus_time(clock, *stamp) || !is_ros_time(*stamp))
+        return account.note_rejected("stamp_off");
     state->header.stamp = ros_time(*stamp);
     const Arrival arrival{clock.bus_of(*stamp), *stamp};
     const auto text = states_.take(*state, message.head.channel_id, arrival);
@@ -36,7 +37,7 @@ void BagJoints::take(const mcap::Message& message, const BusClock& clock, bool u
         return account.note_rejected(names_of(line.error()).at(static_cast<std::size_t>(line.error())));
     ++account.used;
     for (const JointSample& sample : line->samples)
-        log.add(*stamp, line_.sources.at(sample.source).index, sample.position);
+        (void)log.add(*stamp, line_.sources.at(sample.source).index, sample.position);
 }
 
 void BagJoints::finish(TopicAccount& account) const {

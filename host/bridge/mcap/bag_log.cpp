@@ -5,23 +5,33 @@
 
 #include "common/wire/codec.hpp"
 #include "common/wire/frame_type.hpp"
+#include "host/bridge/mcap/bag_time.hpp"
 
 namespace octoskin::bridge {
 
-void BagLog::add(WallTime stamp, const wire::CanFrame& frame) {
-    push(stamp, frame);
+bool BagLog::add(WallTime stamp, const wire::CanFrame& frame) {
+    return push(stamp, frame);
 }
 
-void BagLog::add(WallTime stamp, std::size_t source, std::vector<double> position) {
-    push(stamp, Joints{source, std::move(position)});
+bool BagLog::add(WallTime stamp, std::size_t source, std::vector<double> position) {
+    return push(stamp, Joints{source, std::move(position)});
 }
 
-void BagLog::push(WallTime stamp, Content content) {
+/// A frame of the bag's own bus has its bus's times in itself; all that is made needs one of the clock.
+bool BagLog::can_hold(WallTime stamp, const Content& content) const {
+    const bool is_of_bus = !makes_sync_ && std::holds_alternative<wire::CanFrame>(content);
+    return is_of_bus ? is_log_time(stamp) : has_bus_time(clock_, stamp);
+}
+
+bool BagLog::push(WallTime stamp, Content content) {
+    if (!can_hold(stamp, content)) return false;
     waiting_.push({stamp, number_++, std::move(content)});
     if (waiting_.size() > kWaitingMax) write_oldest();
+    return true;
 }
 
 void BagLog::advance(WallTime now) {
+    if (!is_log_time(now)) return;
     while (!waiting_.empty() && now.ns - waiting_.top().stamp.ns > kWindow.count()) write_oldest();
 }
 
@@ -58,6 +68,11 @@ WallTime BagLog::write_made(WallTime stamp, const wire::CanFrame& frame) {
 }
 
 void BagLog::write_joints(WallTime stamp, const Joints& joints) {
+    // A frame of the bag's own bus, long after its clock's times, may have moved it.
+    if (!has_bus_time(clock_, stamp)) {
+        ++thinned_;
+        return;
+    }
     const auto frames = sources_.at(joints.source)->frames(clock_.bus_of(stamp), joints.position);
     if (!frames) {
         ++thinned_;
@@ -68,6 +83,7 @@ void BagLog::write_joints(WallTime stamp, const Joints& joints) {
 
 /// What the daemon answers for joint states of its machine.
 void BagLog::write_reports(WallTime stamp, std::uint8_t sequence) {
+    if (!has_bus_time(clock_, stamp)) return;
     for (const auto& source : sources_)
         if (source) (void)write_made(stamp, source->report(sequence, clock_.bus_of(stamp)));
 }

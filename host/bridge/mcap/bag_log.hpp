@@ -28,11 +28,12 @@ class BagLog {
            std::vector<std::optional<LocalJoints>> sources)
         : log_(std::move(log)), clock_(clock), makes_sync_(makes_sync), sources_(std::move(sources)) {}
 
-    void add(WallTime stamp, const wire::CanFrame& frame);
+    /// False, as of the other two: the log or its bus cannot hold that time, and nothing is added.
+    bool add(WallTime stamp, const wire::CanFrame& frame);
     /// A sample of a source that has a converter.
-    void add(WallTime stamp, std::size_t source, std::vector<double> position);
+    bool add(WallTime stamp, std::size_t source, std::vector<double> position);
     /// Time passes without an entry: an image came. An exchange may be due.
-    void add(WallTime stamp) { push(stamp, std::monostate()); }
+    bool add(WallTime stamp) { return push(stamp, std::monostate()); }
     /// The bag has been read to this time.
     void advance(WallTime now);
     /// Writes what waits and closes the file. Error: the file could not be written.
@@ -61,7 +62,8 @@ class BagLog {
         }
     };
 
-    void push(WallTime stamp, Content content);
+    [[nodiscard]] bool can_hold(WallTime stamp, const Content& content) const;
+    [[nodiscard]] bool push(WallTime stamp, Content content);
     void write_oldest();
     void write(WallTime stamp, const wire::CanFrame& frame);
     /// Returns the stamp with which it was written.

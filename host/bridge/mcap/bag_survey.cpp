@@ -4,6 +4,7 @@
 
 #include "common/wire/frame_type.hpp"
 #include "host/bridge/mcap/bag_messages.hpp"
+#include "host/bridge/mcap/bag_time.hpp"
 #include "host/bridge/mcap/can_messages.hpp"
 #include "host/bridge/received/depth_image.hpp"
 
@@ -50,15 +51,18 @@ Result<wire::CanFrame, const char*> frame_of(const mcap::Message& message) {
 Result<BagSurvey, Error> survey_bag(mcap::McapReader& reader, const BagTopics& topics, const HostRig& rig) {
     BagSurvey survey;
     BusClockSearch search(rig);
+    FirstOfMost first;
     for (;;) {
         const auto message = reader.next();
         if (!message) return unexpected(message.error());
         if (!*message) break;
-        if (!survey.first) survey.first = (*message)->head.logged;
+        if (!is_log_time((*message)->head.logged)) continue;  // counted by the import
+        first.take((*message)->head.logged);
         if (topics.is_can((*message)->channel->topic)) take_frame(**message, search, survey);
         take_info(**message, topics, survey);
     }
     survey.clock = search.clock();
+    survey.first = first.first();
     return survey;
 }
 

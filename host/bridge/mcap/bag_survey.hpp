@@ -1,6 +1,7 @@
 // What must be known of a bag before its messages are used: the clock of its bus, and the cameras.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,10 +29,36 @@ struct BagSurvey {
     /// From the first SYNC with its FOLLOW_UP; empty: the bag has no bus, or one without its host.
     std::optional<BusClock> clock = {};
     std::set<wire::NodeId> joint_nodes = {};  ///< nodes that send joint states on the bus
-    std::optional<WallTime> first = {};       ///< of all messages
+    /// Of the messages that one bus can hold, of which there are most: those before a clock was set are not.
+    std::optional<WallTime> first = {};
     bool has_can = false;
     /// The first description of each camera, by the topic of its images.
     std::map<std::string, ros::sensor_msgs::CameraInfo> infos = {};
+};
+
+/// Finds the first message of the longest run whose times lie within what a bus can hold.
+class FirstOfMost {
+  public:
+    /// In the order of the log; is_log_time().
+    void take(WallTime logged) {
+        constexpr std::int64_t kSpan_ns = std::int64_t{8} * 365 * 24 * 3600 * 1'000'000'000;
+        const bool continues =
+            begin_ && logged.ns - begin_->ns <= kSpan_ns && begin_->ns - logged.ns <= kSpan_ns;
+        if (!continues) {
+            begin_ = logged;
+            messages_ = 0;
+        }
+        if (++messages_ <= most_) return;
+        most_ = messages_;
+        first_ = begin_;
+    }
+    [[nodiscard]] const std::optional<WallTime>& first() const noexcept { return first_; }
+
+  private:
+    std::optional<WallTime> begin_;  ///< of the present run
+    std::uint64_t messages_ = 0;
+    std::uint64_t most_ = 0;
+    std::optional<WallTime> first_;
 };
 
 /// Reads the whole bag once. Errors: those of McapReader::next.

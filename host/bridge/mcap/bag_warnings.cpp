@@ -21,7 +21,9 @@ void add_damage(const mcap::McapReader& reader, Sentences& sentences) {
 /// What makes each reason go away.
 std::string remedy_of(std::string_view reason, const JointStates& joints) {
     if (reason == "stamp_off")
-        return "the stamps of their headers are of another clock than the log's: give --log-time";
+        return "they are of another clock than the log's, for which --log-time helps, or years from the "
+               "others: "
+               "see docs/reference/mcap.md";
     if (reason == "other_type") return "the topic has another type: give the right topic";
     if (reason == "partial") return "they lack " + joints.missing();
     if (reason == "other_joints")

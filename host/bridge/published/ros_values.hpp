@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "common/time.hpp"
@@ -10,8 +11,16 @@
 
 namespace octoskin::bridge {
 
+/// Whether a message can hold it: seconds of 31 bits, from 1970 to 2038.
+[[nodiscard]] constexpr bool is_ros_time(WallTime time) noexcept {
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    return time.ns >= 0 && time.ns / kSecond <= std::numeric_limits<std::int32_t>::max();
+}
+/// A time that no message can hold is the nearest that one can.
 [[nodiscard]] inline ros::builtin_interfaces::Time ros_time(WallTime time) noexcept {
     constexpr std::int64_t kSecond = 1'000'000'000;
+    if (time.ns < 0) return {0, 0};
+    if (!is_ros_time(time)) return {std::numeric_limits<std::int32_t>::max(), 999'999'999};
     return {static_cast<std::int32_t>(time.ns / kSecond), static_cast<std::uint32_t>(time.ns % kSecond)};
 }
 [[nodiscard]] inline WallTime wall_time_of(const ros::builtin_interfaces::Time& time) noexcept {

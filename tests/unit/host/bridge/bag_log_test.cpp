@@ -5,9 +5,11 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 
 #include "common/wire/codec.hpp"
 #include "common/wire/frame_type.hpp"
+#include "host/bridge/mcap/bag_survey.hpp"
 #include "host/bridge/mcap/bag_time.hpp"
 #include "host/bridge/mcap/can_messages.hpp"
 #include "host/bridge/mcap/mcap_topics.hpp"
@@ -124,6 +126,46 @@ TEST_F(BagLogTest, does_not_fill_a_hole_in_the_bag) {
     EXPECT_EQ(entries(made).size(), 3U * (3U + 4U));  // of each an exchange and a sample
 }
 
+constexpr std::int64_t kYear_ms = std::int64_t{365} * 24 * 3600 * 1000;
+constexpr std::int64_t kInt64Min = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t kInt64Max = std::numeric_limits<std::int64_t>::max();
+
+TEST_F(BagLogTest, takes_no_time_that_its_made_bus_cannot_hold) {
+    BagLog made = log(true);
+    EXPECT_TRUE(made.add(at(0), frame(1)));
+    for (const WallTime stamp : {at(-101'000), at(9 * kYear_ms), WallTime{0}, WallTime{-1},
+                                 WallTime{kInt64Min}, WallTime{kInt64Max}}) {
+        made.advance(stamp);
+        EXPECT_FALSE(made.add(stamp, frame(2))) << stamp.ns;
+        EXPECT_FALSE(made.add(stamp, 0, {0.1})) << stamp.ns;
+        EXPECT_FALSE(made.add(stamp)) << stamp.ns;
+    }
+    EXPECT_TRUE(made.add(at(8 * kYear_ms), 0, {0.1}));
+    (void)entries(made);
+    EXPECT_EQ(made.last()->ns / kMs, at(8 * kYear_ms).ns / kMs);
+}
+
+TEST_F(BagLogTest, keeps_frames_of_a_bags_own_bus_after_its_clock_was_set) {
+    BagLog made = log(false);
+    EXPECT_TRUE(made.add(at(0), wire::encode(wire::Sync{7}, wire::kHostId)));
+    EXPECT_TRUE(made.add(at(20 * kYear_ms), wire::encode(wire::Sync{8}, wire::kHostId)));
+    EXPECT_FALSE(made.add(at(20 * kYear_ms), 0, {0.1}));
+    EXPECT_FALSE(made.add(WallTime{-1}, frame(1)));
+    EXPECT_FALSE(made.add(WallTime{kInt64Max}, frame(1)));
+    EXPECT_EQ(entries(made).size(), 3U);  // the second SYNC without a report: it could not have its time
+}
+
+TEST(FirstOfMost, is_that_of_the_longest_run_which_a_bus_can_hold) {
+    FirstOfMost none;
+    EXPECT_EQ(none.first(), std::nullopt);
+    FirstOfMost first;
+    first.take({30 * 1000 * kMs});  // 1970, before the clock was set
+    EXPECT_EQ(first.first(), (WallTime{30 * 1000 * kMs}));
+    for (int i = 0; i < 3; ++i) first.take(at(i));
+    first.take({std::int64_t{1} << 62});
+    EXPECT_EQ(first.first(), at(0));
+}
+
 TEST(CanMessages, hold_every_frame_and_give_it_back) {
     wire::CanFrame classical{.can_id = 0x1ABCDEF0, .is_extended = true, .payload_len = 8};
     classical.data = {1, 2, 3, 4, 5, 6, 7, 8};
@@ -166,6 +208,26 @@ TEST(TimeOfAMessage, is_its_stamp_unless_that_is_of_another_clock) {
     EXPECT_EQ(time_of(at(-1'001), at(0), false), std::nullopt);
     EXPECT_EQ(time_of({0}, at(0), false), at(0));
     EXPECT_EQ(time_of(at(5'000), at(0), true), at(0));
+}
+
+TEST(TimeOfAMessage, is_none_of_a_log_time_that_no_log_can_hold) {
+    for (const std::int64_t logged : {kInt64Min, std::int64_t{-1}, kInt64Max}) {
+        EXPECT_EQ(time_of({0}, {logged}, false), std::nullopt);
+        EXPECT_EQ(time_of(at(0), {logged}, false), std::nullopt);
+        EXPECT_EQ(time_of(at(0), {logged}, true), std::nullopt);
+    }
+}
+
+TEST(RosTime, holds_1970_to_2038_and_no_more) {
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    const WallTime last{std::int64_t{2'147'483'647} * kSecond + 999'999'999};
+    EXPECT_TRUE(is_ros_time({0}));
+    EXPECT_TRUE(is_ros_time(last));
+    EXPECT_FALSE(is_ros_time({last.ns + 1}));
+    EXPECT_FALSE(is_ros_time({-1}));
+    EXPECT_EQ(wall_time_of(ros_time(last)), last);
+    EXPECT_EQ(wall_time_of(ros_time({last.ns + 5 * kSecond})), last);
+    EXPECT_EQ(wall_time_of(ros_time({-1})), (WallTime{0}));
 }
 
 TEST(TopicChoice, takes_a_topic_and_those_below_it) {
