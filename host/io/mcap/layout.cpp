@@ -64,7 +64,9 @@ class Survey {
         FieldReader reader(std::string_view(bytes.data(), *got));
         const Op op{reader.get<std::uint8_t>()};
         const auto length = reader.get<std::uint64_t>();
-        const bool is_whole = reader.is_sound() && op != Op{0} && length <= size_ - at_ - kRecordHeadBytes;
+        // The file may have grown since its size was taken.
+        const bool has_head = reader.is_sound() && at_ + kRecordHeadBytes <= size_;
+        const bool is_whole = has_head && op != Op{0} && length <= size_ - at_ - kRecordHeadBytes;
         is_over_ = !is_whole || op == Op::footer;
         if (!is_whole) return Done{};
         if (auto taken = take(op, length, reader); !taken) return taken;
