@@ -179,6 +179,15 @@ Result<mcap::McapReader, AppError> open_bag(const BagRequest& request) {
                 in_file(reader.error(), request.bag.shown()));
 }
 
+/// The first pass; what it holds of the bag is given back.
+Result<BagSurvey, AppError> survey_of(const BagRequest& request, const Setup& setup) {
+    auto reader = open_bag(request);
+    if (!reader) return unexpected(reader.error());
+    auto survey = survey_bag(*reader, topics_of(request, setup.facts), setup.host.rig);
+    if (!survey) return fail(ExitCode::bad_data, survey.error());
+    return std::move(survey).value();
+}
+
 Status<AppError> write_setup(const Setup& setup, const RecordingPaths& paths) {
     const auto robot = robot_text(setup.rig);
     if (!robot) return unexpected(robot.error());
@@ -242,10 +251,8 @@ Status<AppError> read_bag(mcap::McapReader& reader, Import& import, const Import
 Result<ImportedBag, AppError> import_bag(const BagRequest& request, const ImportReport& report) {
     auto setup = read_setup(request);
     if (!setup) return unexpected(setup.error());
-    auto reader = open_bag(request);
-    if (!reader) return unexpected(reader.error());
-    const auto survey = survey_bag(*reader, topics_of(request, setup->facts), setup->host.rig);
-    if (!survey) return fail(ExitCode::bad_data, survey.error());
+    const auto survey = survey_of(request, *setup);
+    if (!survey) return unexpected(survey.error());
     auto draft = RecordingDraft::create(request.folder, false);
     if (!draft) return unexpected(draft.error());
     if (const auto written = write_setup(*setup, draft->paths()); !written)

@@ -23,12 +23,12 @@ namespace octoskin::mcap {
 
 /// What of a file is not read; each has a counter.
 enum class Fault : std::uint8_t {
-    cut,              ///< the file ends within a record, or without its end; at most 1
-    data_crc,         ///< the checksum of all data is wrong; at most 1. Messages are read nevertheless
-    oversized,        ///< a record or chunk of more than 128 MiB
-    compression,      ///< a chunk with another compression than lz4 and zstd
-    damaged_chunk,    ///< a chunk that cannot be unpacked, or whose checksum is wrong
-    bad_record,       ///< a record whose fields do not fit its length; it ends its chunk
+    cut,            ///< the file ends within a record, or without its end; at most 1
+    data_crc,       ///< the checksum of all data is wrong; at most 1. Messages are read nevertheless
+    oversized,      ///< a record or chunk of more than 128 MiB
+    compression,    ///< a chunk with another compression than lz4 and zstd
+    damaged_chunk,  ///< a chunk that cannot be unpacked, or whose checksum is wrong
+    bad_record,     ///< a record whose fields do not fit its length, which ends its chunk; a name over 1 KiB
     unknown_channel,  ///< a message of a channel that is not described before it
     out_of_order,     ///< a message that comes after a later one: the chunks overlap by more than 128 MiB
 };

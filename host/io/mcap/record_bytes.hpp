@@ -68,17 +68,6 @@ class FieldReader {
         return taken;
     }
     [[nodiscard]] std::string_view get_text() noexcept { return take(get<std::uint32_t>()); }
-    /// Throws std::bad_alloc.
-    [[nodiscard]] Metadata get_metadata() {
-        FieldReader entries(get_text());
-        Metadata metadata;
-        while (entries.is_sound() && !entries.rest().empty()) {
-            const std::string key(entries.get_text());
-            metadata[key] = std::string(entries.get_text());
-        }
-        is_sound_ = is_sound_ && entries.is_sound();
-        return metadata;
-    }
 
     [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
     [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }

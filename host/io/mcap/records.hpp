@@ -46,7 +46,7 @@ struct Channel {
     std::uint16_t schema_id = 0;  ///< 0: none
     std::string topic;
     std::string message_encoding;  ///< "cdr"
-    Metadata metadata = {};
+    Metadata metadata = {};        ///< of a writer; a reader leaves it out
     friend bool operator==(const Channel&, const Channel&) = default;
 };
 

@@ -1,8 +1,10 @@
 // Schemas and channels from the fields of their records.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -10,7 +12,15 @@
 
 namespace octoskin::mcap {
 
-/// Empty: not the fields of such a record, or the id 0, which no schema has. Throws std::bad_alloc.
+/// Names, topics and encodings are no longer: each may be kept several times.
+inline constexpr std::size_t kNameBytesMax = 1024;
+
+[[nodiscard]] inline bool are_names(const std::string& one, const std::string& other) noexcept {
+    return one.size() <= kNameBytesMax && other.size() <= kNameBytesMax;
+}
+
+/// Empty: not the fields of such a record, a name that is too long, or the id 0, which no schema has. Throws
+/// std::bad_alloc.
 [[nodiscard]] inline std::optional<std::pair<std::uint16_t, Schema>> parse_schema(std::string_view fields) {
     FieldReader reader(fields);
     const auto id = reader.get<std::uint16_t>();
@@ -18,10 +28,11 @@ namespace octoskin::mcap {
     schema.name = reader.get_text();
     schema.encoding = reader.get_text();
     schema.data = reader.get_text();
-    if (!reader.is_sound() || id == 0) return std::nullopt;
+    if (!reader.is_sound() || id == 0 || !are_names(schema.name, schema.encoding)) return std::nullopt;
     return std::pair(id, std::move(schema));
 }
 
+/// Without its metadata. Empty: not the fields of such a record, or a name that is too long.
 [[nodiscard]] inline std::optional<std::pair<std::uint16_t, Channel>> parse_channel(std::string_view fields) {
     FieldReader reader(fields);
     const auto id = reader.get<std::uint16_t>();
@@ -29,8 +40,8 @@ namespace octoskin::mcap {
     channel.schema_id = reader.get<std::uint16_t>();
     channel.topic = reader.get_text();
     channel.message_encoding = reader.get_text();
-    channel.metadata = reader.get_metadata();
-    if (!reader.is_sound()) return std::nullopt;
+    (void)reader.get_text();  // metadata
+    if (!reader.is_sound() || !are_names(channel.topic, channel.message_encoding)) return std::nullopt;
     return std::pair(id, std::move(channel));
 }
 

@@ -141,6 +141,33 @@ TEST_F(DamagedMcap, counts_a_wrong_checksum_of_the_data_and_reads_them) {
     EXPECT_EQ(read.count(Fault::data_crc), 1U);
 }
 
+TEST_F(DamagedMcap, refuses_names_of_more_than_a_kibibyte) {
+    const std::string longest = "/" + std::string(1023, 'a');
+    const std::string message = message_record(1, 10, "data");
+    const Read good = read_bytes(folder_, file_of(channel_record(1, longest) + message));
+    EXPECT_EQ(good.topics, std::vector{longest});
+    EXPECT_EQ(good.count(Fault::bad_record), 0U);
+    const Read bad = read_bytes(folder_, file_of(channel_record(1, longest + "a") + message));
+    EXPECT_TRUE(bad.topics.empty());
+    EXPECT_EQ(bad.count(Fault::bad_record), 1U);
+    EXPECT_EQ(bad.count(Fault::unknown_channel), 1U);
+}
+
+TEST_F(DamagedMcap, refuses_a_schemas_name_of_more_than_a_kibibyte) {
+    for (const std::size_t length : {std::size_t{1024}, std::size_t{1025}}) {
+        std::string fields;
+        FieldWriter writer(fields);
+        writer.put(std::uint16_t{1});
+        writer.put_text(std::string(length, 'a'));
+        writer.put_text("ros2msg");
+        writer.put_text("string data");
+        std::string record;
+        put_record(record, Op::schema, fields);
+        const Read read = read_bytes(folder_, file_of(record));
+        EXPECT_EQ(read.count(Fault::bad_record), length > 1024 ? 1U : 0U);
+    }
+}
+
 TEST_F(DamagedMcap, keeps_the_first_description_of_a_channel) {
     const std::string data =
         channel_record(1, "/first") + channel_record(1, "/second") + message_record(1, 1, "x");
