@@ -294,3 +294,19 @@ test("an interrupted replay leaves nothing behind, nor does the program that imp
   await sleep(500); // in which the other program would have gone on
   assert.deepEqual(fs.readdirSync(temporary), []);
 });
+
+test("links in a folder of ros2 bag are not followed, neither to its file nor to its maps", async (context) => {
+  const [folder, elsewhere] = [scratchFolder(context), scratchFolder(context)];
+  fs.writeFileSync(path.join(folder, "metadata.yaml"), "rosbag2_bagfile_information: {}\n");
+  fs.writeFileSync(path.join(folder, "x.mcap"), await write(bus(messages)));
+  fs.symlinkSync(elsewhere, path.join(folder, "x.maps"));
+  const maps = octoskin("replay", folder, "--rig", rig);
+  assert.notEqual(maps.code, 0);
+  assert.match(maps.err, /x\.maps.*link/);
+  assert.deepEqual(fs.readdirSync(elsewhere), []);
+  fs.renameSync(path.join(folder, "x.mcap"), path.join(elsewhere, "other"));
+  fs.symlinkSync(path.join(elsewhere, "other"), path.join(folder, "x.mcap"));
+  const file = octoskin("bridge", "import", folder, path.join(folder, "out"), "--rig", rig);
+  assert.notEqual(file.code, 0);
+  assert.match(file.err, /x\.mcap.*link/);
+});

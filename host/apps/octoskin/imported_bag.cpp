@@ -2,9 +2,7 @@
 
 #include <stdlib.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <iterator>
 #include <system_error>
 
 #include "host/apps/command_line/command_failure.hpp"
@@ -38,12 +36,6 @@ OpenFolder new_folder(const OpenFolder& parent) {
     return std::move(folder).value();
 }
 
-constexpr const char* kExtension = ".mcap";
-
-bool has_extension(const std::string& name) {
-    return std::filesystem::path(name).extension() == kExtension;
-}
-
 std::vector<std::string> words_of(const std::filesystem::path& bag, const std::filesystem::path& folder,
                                   const std::filesystem::path& rig, const GivenRobot& robot,
                                   const BagOptions& options) {
@@ -73,42 +65,22 @@ void add_bag_options(CLI::App& command, BagOptions& options) {
                      "in their headers");
 }
 
-std::optional<std::filesystem::path> bag_of(const std::filesystem::path& recording) {
-    std::error_code error;
-    if (!std::filesystem::is_directory(recording, error))
-        return recording.extension() == kExtension ? std::optional(recording) : std::nullopt;
-    const auto folder = FilePlace(recording).open_folder();
-    if (!folder || folder->kind_of("metadata.yaml") == EntryKind::absent ||
-        folder->kind_of("can.log") != EntryKind::absent)
-        return std::nullopt;
-    const auto names = folder->names();
-    std::vector<std::string> bags;
-    if (names) std::ranges::copy_if(*names, std::back_inserter(bags), has_extension);
-    if (bags.size() > 1)
-        throw CommandFailure(ExitCode::usage,
-                             {.code = ErrorCode::bad_argument,
-                              .what = "is a bag of several files",
-                              .value = std::to_string(bags.size()),
-                              .remedy = "name one of them, or join them with `ros2 bag convert`",
-                              .file = recording});
-    return bags.empty() ? std::nullopt : std::optional(recording / bags.front());
+TemporaryFolder::TemporaryFolder()
+    : parent_(temporary_parent()),
+      folder_(new_folder(parent_)),
+      unfinished_(parent_, folder_.shown().filename().string()) {}
+
+TemporaryFolder::~TemporaryFolder() {
+    (void)parent_.remove_all(folder_.shown().filename());
 }
 
 ImportedBag::ImportedBag(const CLI::App& command, const std::filesystem::path& bag,
-                         const std::filesystem::path& rig, const GivenRobot& robot, const BagOptions& options)
-    : parent_(temporary_parent()),
-      work_(new_folder(parent_)),
-      unfinished_(parent_, work_.shown().filename().string()) {
+                         const std::filesystem::path& rig, const GivenRobot& robot,
+                         const BagOptions& options) {
     (void)flush_standard_output();  // the other program's lines follow
     const int code =
         run_bridge(with_form_of_errors(command, words_of(bag, recording(), rig, robot, options)));
-    if (code == 0) return;
-    (void)parent_.remove_all(work_.shown().filename());
-    throw CLI::RuntimeError(code);
-}
-
-ImportedBag::~ImportedBag() {
-    (void)parent_.remove_all(work_.shown().filename());
+    if (code != 0) throw CLI::RuntimeError(code);
 }
 
 }  // namespace octoskin::app

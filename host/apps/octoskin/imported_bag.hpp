@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,28 +22,36 @@ struct BagOptions {
 /// --joint-states, --can and --log-time. `options` has to outlive `command`.
 void add_bag_options(CLI::App& command, BagOptions& options);
 
-/// A file whose name ends with .mcap, or the only one of a folder of `ros2 bag` (with a metadata.yaml and
-/// without a can.log). Empty: neither. Throws CommandFailure (usage) if the folder has several.
-[[nodiscard]] std::optional<std::filesystem::path> bag_of(const std::filesystem::path& recording);
-
-class ImportedBag {
+/// A new folder in $TMPDIR for this user only, removed at the end of this object.
+class TemporaryFolder {
   public:
-    /// Imports the bag into a new folder in $TMPDIR; the program prints what it uses, or its error: then this
-    /// throws CLI::RuntimeError with its exit code. `command`: of this program. Throws CommandFailure if the
-    /// program or the folder is missing.
-    ImportedBag(const CLI::App& command, const std::filesystem::path& bag, const std::filesystem::path& rig,
-                const GivenRobot& robot, const BagOptions& options);
-    /// Removes the folder.
-    ~ImportedBag();
-    ImportedBag(const ImportedBag&) = delete;
-    ImportedBag& operator=(const ImportedBag&) = delete;
+    /// Throws CommandFailure (cannot_create).
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-    [[nodiscard]] std::filesystem::path recording() const { return work_.shown("recording"); }
+    [[nodiscard]] std::filesystem::path shown(const std::filesystem::path& name) const {
+        return folder_.shown(name);
+    }
 
   private:
     OpenFolder parent_;
-    OpenFolder work_;
+    OpenFolder folder_;
     Unfinished unfinished_;
+};
+
+class ImportedBag {
+  public:
+    /// Imports the bag, a file or a folder of `ros2 bag`, into a new folder in $TMPDIR; the program prints
+    /// what it uses, or its error: then this throws CLI::RuntimeError with its exit code. `command`: of this
+    /// program. Throws CommandFailure if the program or the folder is missing.
+    ImportedBag(const CLI::App& command, const std::filesystem::path& bag, const std::filesystem::path& rig,
+                const GivenRobot& robot, const BagOptions& options);
+    [[nodiscard]] std::filesystem::path recording() const { return work_.shown("recording"); }
+
+  private:
+    TemporaryFolder work_;
 };
 
 }  // namespace octoskin::app

@@ -22,6 +22,7 @@
 #include "host/apps/playback/ordered_playback.hpp"
 #include "host/apps/playback/playback.hpp"
 #include "host/apps/playback/playback_options.hpp"
+#include "host/apps/recording/given_bag.hpp"
 #include "hw/rigfile/joined.hpp"
 
 namespace octoskin::app {
@@ -31,7 +32,8 @@ struct ReplayOptions {
     PlaybackOptions playback;
     BagOptions bag;
     std::filesystem::path out;
-    std::optional<std::string> speed;  ///< empty: max into maps, 1 onto a bus
+    std::optional<FilePlace> maps_of_bag = {};  ///< where they are without --out
+    std::optional<std::string> speed;           ///< empty: max into maps, 1 onto a bus
     std::string onto;
     bool is_fused_only = false;
     bool is_stepped = false;
@@ -118,6 +120,7 @@ void refuse_failed(const Playback& playback) {
 /// `maps` in a recording; for a film named itself, a folder of its name beside it.
 FilePlace maps_place(const ReplayOptions& options, const RecordingPaths& recording) {
     if (!options.out.empty()) return FilePlace(options.out);
+    if (options.maps_of_bag) return *options.maps_of_bag;
     const std::filesystem::path& named = options.playback.recording;
     if (lone_film(recording) && !std::filesystem::is_directory(named))
         return FilePlace(std::filesystem::path(named).replace_extension(".maps"));
@@ -205,7 +208,7 @@ void replay_recording(const ReplayOptions& options, const std::filesystem::path&
 }
 
 /// An MCAP file has neither rig nor robot.
-void check_bag_options(const ReplayOptions& options) {
+void check_bag_options(const ReplayOptions& options, const FilePlace& bag) {
     const bool has_rig = !options.playback.rig.empty();
     if (has_rig && options.onto.empty()) return;
     throw CommandFailure(
@@ -214,26 +217,23 @@ void check_bag_options(const ReplayOptions& options) {
          .what = has_rig ? "cannot be sent onto a bus" : "needs the rig of its robot",
          .remedy =
              has_rig ? "make a recording of it with `octoskin bridge import`, and replay that" : "give --rig",
-         .file = options.playback.recording,
+         .file = bag.shown(),
          .key = has_rig ? "--onto" : "--rig"});
 }
 
 /// Through a temporary recording; the maps are beside the file.
-void replay_bag(ReplayOptions options, const CLI::App& command) {
-    check_bag_options(options);
-    const std::filesystem::path bag = options.playback.recording;
-    if (options.out.empty()) options.out = std::filesystem::path(bag).replace_extension(".maps");
-    const ImportedBag imported(command, bag, options.playback.rig, options.playback.robot, options.bag);
+void replay_bag(const FilePlace& bag, ReplayOptions options, const CLI::App& command) {
+    check_bag_options(options, bag);
+    options.maps_of_bag = maps_beside(bag);
+    const ImportedBag imported(command, options.playback.recording, options.playback.rig,
+                               options.playback.robot, options.bag);
     options.playback.recording = imported.recording();
-    replay_recording(options, bag);
+    replay_recording(options, bag.shown());
 }
 
 void replay_any(const ReplayOptions& options, const CLI::App& command) {
-    if (auto bag = bag_of(options.playback.recording)) {
-        ReplayOptions of_bag = options;
-        of_bag.playback.recording = std::move(*bag);
-        return replay_bag(std::move(of_bag), command);
-    }
+    if (const auto bag = value_or_fail(find_bag(options.playback.recording)))
+        return replay_bag(*bag, options, command);
     if (options.bag.is_any_given())
         throw CommandFailure(ExitCode::usage,
                              {.code = ErrorCode::conflict,

@@ -3,12 +3,16 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <system_error>
 
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
 #include "host/apps/command_line/interruption.hpp"
 #include "host/apps/command_line/standard_output.hpp"
+#include "host/apps/recording/given_bag.hpp"
 #include "host/bridge/mcap/bag_import.hpp"
 #include "host/bridge/octoskin_bridge/commands.hpp"
 
@@ -55,6 +59,15 @@ void import_to_folder(const BagRequest& request) {
     for (const std::string& warning : imported.warnings) spdlog::warn("{}", warning);
 }
 
+/// A file, or a folder of which given_bag() decides.
+CLI::Validator existing_bag() {
+    return {[](std::string& path) -> std::string {
+                std::error_code error;
+                return std::filesystem::is_directory(path, error) ? "" : app::existing_file()(path);
+            },
+            ""};
+}
+
 }  // namespace
 
 void add_import_command(CLI::App& app) {
@@ -66,7 +79,11 @@ void add_import_command(CLI::App& app) {
     BagRequest& request = options->request;
     CLI::App* command = app.add_subcommand(
         "import", "Make a recording of an MCAP file: joint states, depth images and CAN frames of a bag");
-    command->add_option("bag", options->bag, "MCAP file of ROS 2")->required()->check(app::existing_file());
+    command
+        ->add_option("bag", options->bag,
+                     "MCAP file of ROS 2, or a folder of `ros2 bag` with one and its metadata.yaml")
+        ->required()
+        ->check(existing_bag());
     command->add_option("out", request.folder, "Directory of the recording, new or empty")->required();
     command->add_option("--rig", request.rig, "Rig (YAML); its cameras name the topics: device: ros:/TOPIC")
         ->required()
@@ -84,7 +101,7 @@ void add_import_command(CLI::App& app) {
         "--log-time", request.uses_log_time,
         "Times are those at which messages were logged, in place of the stamps in their headers");
     command->callback([options] {
-        options->request.bag = options->bag;
+        options->request.bag = app::value_or_fail(given_bag(options->bag));
         import_to_folder(options->request);
     });
 }
