@@ -67,6 +67,7 @@ Status<Error> BagCamera::take(const mcap::Message& message, const RecordingPaths
         image->pixels.depth_mm, [](std::uint16_t mm) { return mm > openni2::kDepthMaxMm; }));
     if (auto written = writer_->write(captured, image->pixels.depth_mm); !written) return written;
     ++frames_;
+    bytes_ += image->pixels.depth_mm.size() * sizeof(std::uint16_t);
     ++account.used;
     return Done{};
 }

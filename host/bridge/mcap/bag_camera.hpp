@@ -29,6 +29,8 @@ class BagCamera {
     [[nodiscard]] Status<Error> close();
 
     [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
+    /// Of all frames that were written, before the recorder compresses them.
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
     /// Why no image is used, as a sentence; empty if they can be.
     [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
     /// Pixels beyond 32.767 m, which a recording cannot hold.
@@ -41,6 +43,7 @@ class BagCamera {
     std::optional<openni2::OniWriter> writer_;
     std::optional<HostTime> newest_;
     std::uint64_t frames_ = 0;
+    std::uint64_t bytes_ = 0;
     std::uint64_t pixels_too_far_ = 0;
 };
 

@@ -22,6 +22,7 @@
 #include "host/bridge/mcap/bag_warnings.hpp"
 #include "host/bridge/mcap/camera_topics.hpp"
 #include "host/bridge/mcap/can_messages.hpp"
+#include "host/bridge/mcap/output_room.hpp"
 #include "host/bridge/robot/first_names.hpp"
 #include "host/bridge/robot/robot_facts.hpp"
 #include "host/io/rig/host_rig_reader.hpp"
@@ -142,6 +143,14 @@ class Import {
         return std::move(imported_);
     }
 
+    /// About as many bytes as were written so far.
+    [[nodiscard]] std::uint64_t produced() const {
+        constexpr std::uint64_t kLineBytes = 64;
+        std::uint64_t bytes = kLineBytes * log_.frames();
+        for (const BagCamera& camera : cameras_) bytes += camera.bytes();
+        return bytes;
+    }
+
     [[nodiscard]] const BagTopics& topics() const noexcept { return topics_; }
     [[nodiscard]] const std::vector<BagCamera>& cameras() const noexcept { return cameras_; }
     [[nodiscard]] const JointStates& joint_states() const noexcept { return joints_.states(); }
@@ -231,7 +240,8 @@ AppError nothing_used(const BagRequest& request, const ImportedBag& imported) {
 }
 
 /// Messages of the bag to the import, with reports.
-Status<AppError> read_bag(mcap::McapReader& reader, Import& import, const ImportReport& report) {
+Status<AppError> read_bag(mcap::McapReader& reader, Import& import, OutputRoom& room,
+                          const ImportReport& report) {
     for (;;) {
         const auto message = reader.next();
         if (!message) return fail(ExitCode::bad_data, message.error());
@@ -240,6 +250,8 @@ Status<AppError> read_bag(mcap::McapReader& reader, Import& import, const Import
             const bool is_helper = taken.error().code == ErrorCode::no_program;
             return fail(is_helper ? ExitCode::unavailable : ExitCode::cannot_create, taken.error());
         }
+        if (const auto checked = room.check(import.produced()); !checked)
+            return fail(ExitCode::cannot_create, checked.error());
         if (report && reader.bytes_of_data() > 0)
             report(0.5 + 0.5 * static_cast<double>(reader.bytes_read()) /
                              static_cast<double>(reader.bytes_of_data()));
@@ -262,7 +274,11 @@ Result<ImportedBag, AppError> import_bag(const BagRequest& request, const Import
     auto again = open_bag(request);
     if (!again) return unexpected(again.error());
     Import import(request, *setup, *survey, draft->paths(), std::move(log).value());
-    if (const auto read = read_bag(*again, import, report); !read) return unexpected(read.error());
+    OutputRoom room(again->bytes_of_data(), [&draft]() -> Result<OutputRoom::Use, Error> {
+        const auto folder = draft->paths().folder.open();
+        return folder ? use_of(*folder) : unexpected(to_error(folder.error()));
+    });
+    if (const auto read = read_bag(*again, import, room, report); !read) return unexpected(read.error());
     auto imported = import.finish();
     if (!imported) return fail(ExitCode::cannot_create, imported.error());
     imported->warnings = warnings_about(*imported, *again, *survey, import.topics(), import.cameras(),
