@@ -131,6 +131,8 @@ TEST(WatchServer, gives_an_image_of_each_camera_in_a_period_and_the_newest_robot
     Reader reader(server, {.images = true, .robot = true});
     (void)reader.line();
     ASSERT_TRUE(reader.read());
+    EXPECT_EQ(reader.header.kind, watch::FrameKind::reload);
+    ASSERT_TRUE(reader.read());
     EXPECT_EQ(reader.header.kind, watch::FrameKind::robot);
     EXPECT_EQ(reader.payload, "<robot/>");
     constexpr std::int64_t kTenth_ns = 100'000'000;
@@ -154,6 +156,8 @@ TEST(WatchServer, gives_an_image_of_each_camera_in_a_period_and_the_newest_robot
     EXPECT_EQ(reader.payload, "<other/>");
     Reader late(server, {.robot = true});
     (void)late.line();
+    ASSERT_TRUE(late.read());
+    EXPECT_EQ(late.header.kind, watch::FrameKind::reload);
     ASSERT_TRUE(late.read());
     EXPECT_EQ(late.payload, "<other/>");
 }
