@@ -134,6 +134,7 @@ test("messages that were written late are sorted by their times, if the file has
 test("joint states and images without a bus give the map of the camera", async (context) => {
   const done = replay(context, await write(withoutBus(messages)));
   assert.equal(done.code, 0, done.err);
+  assert.match(done.err, /no CAN frames \(\/from_can_bus, .*--also \/from_can_bus --also \/from_can_bus_fd/);
   assert.ok(done.maps["depth.ot"].equals(maps["depth.ot"]));
 });
 
@@ -236,6 +237,10 @@ test("a bag that has nothing for the rig is refused by a code", async (context) 
   assert.ok(!fs.existsSync(path.join(done.recording, "can.log")));
   const none = imported(context, await write([]));
   assert.deepEqual([none.code, none.error.code], [65, "no_content"]);
+  for (const option of ["--can", "--joint-states"]) {
+    const unknown = imported(context, await write(messages.slice(0, 500)), option, "/joint_statess");
+    assert.deepEqual([unknown.code, unknown.error.code], [64, "unknown_name"]);
+  }
   const foreign = imported(context, Buffer.from("SQLite format 3"));
   assert.deepEqual([foreign.code, foreign.error.code], [65, "foreign_format"]);
 });

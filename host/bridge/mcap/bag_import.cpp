@@ -22,6 +22,7 @@
 #include "host/bridge/mcap/bag_warnings.hpp"
 #include "host/bridge/mcap/camera_topics.hpp"
 #include "host/bridge/mcap/can_messages.hpp"
+#include "host/bridge/mcap/given_topics.hpp"
 #include "host/bridge/mcap/output_room.hpp"
 #include "host/bridge/robot/first_names.hpp"
 #include "host/bridge/robot/robot_facts.hpp"
@@ -32,6 +33,8 @@ namespace {
 
 /// Before the first message of a bag without a bus: the bus has 48 bits of microseconds, 9 years.
 constexpr Nanoseconds kBusTimeOfFirst{100'000'000'000};
+
+constexpr const char* kJointStates = "/joint_states";
 
 struct Setup {
     rig::Rig rig;
@@ -51,7 +54,7 @@ Result<Setup, AppError> read_setup(const BagRequest& request) {
 
 BagTopics topics_of(const BagRequest& request, const RobotFacts& robot) {
     BagTopics topics{
-        .joint_states = request.joint_states,
+        .joint_states = request.joint_states.empty() ? kJointStates : request.joint_states,
         .can = request.can.empty() ? std::vector<std::string>{kCanTopic, kCanFdTopic} : request.can,
         .images = {}};
     for (const CameraFacts& camera : robot.cameras) topics.images.push_back(image_topic_of(camera));
@@ -197,6 +200,16 @@ Result<BagSurvey, AppError> survey_of(const BagRequest& request, const Setup& se
     return std::move(survey).value();
 }
 
+/// A name that is wrong would cost a part of the map.
+Status<AppError> check_topics(const BagRequest& request, const BagSurvey& survey) {
+    const auto of_can = check_given_topics(request.can, survey.topics, "--can");
+    if (!of_can) return fail(ExitCode::usage, in_file(of_can.error(), request.bag.shown()));
+    if (request.joint_states.empty()) return Done{};
+    const auto of_joints = check_given_topics({request.joint_states}, survey.topics, "--joint-states");
+    if (!of_joints) return fail(ExitCode::usage, in_file(of_joints.error(), request.bag.shown()));
+    return Done{};
+}
+
 Status<AppError> write_setup(const Setup& setup, const RecordingPaths& paths) {
     const auto robot = robot_text(setup.rig);
     if (!robot) return unexpected(robot.error());
@@ -265,6 +278,7 @@ Result<ImportedBag, AppError> import_bag(const BagRequest& request, const Import
     if (!setup) return unexpected(setup.error());
     const auto survey = survey_of(request, *setup);
     if (!survey) return unexpected(survey.error());
+    if (const auto checked = check_topics(request, *survey); !checked) return unexpected(checked.error());
     auto draft = RecordingDraft::create(request.folder, false);
     if (!draft) return unexpected(draft.error());
     if (const auto written = write_setup(*setup, draft->paths()); !written)

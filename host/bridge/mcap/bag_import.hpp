@@ -19,8 +19,8 @@ struct BagRequest {
     std::filesystem::path folder;  ///< new or empty; becomes the recording
     std::filesystem::path rig;
     GivenRobot robot = {};
-    std::string joint_states = "/joint_states";
-    std::vector<std::string> can;  ///< empty: the topics of ros2_socketcan
+    std::string joint_states = {};  ///< empty: /joint_states
+    std::vector<std::string> can;   ///< empty: the topics of ros2_socketcan
     /// Times are those of the log in place of the headers' stamps.
     bool uses_log_time = false;
 };

@@ -61,6 +61,8 @@ Result<BagSurvey, Error> survey_bag(mcap::McapReader& reader, const BagTopics& t
         if (topics.is_can((*message)->channel->topic)) take_frame(**message, search, survey);
         take_info(**message, topics, survey);
     }
+    for (const auto& [id, channel] : reader.channels()) survey.topics.insert(channel.topic);
+    survey.needs_can = std::ranges::any_of(rig.nodes, [](const auto& node) { return !node.sensors.empty(); });
     survey.clock = search.clock();
     survey.first = first.first();
     return survey;

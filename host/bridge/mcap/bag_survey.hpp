@@ -32,6 +32,8 @@ struct BagSurvey {
     /// Of the messages that one bus can hold, of which there are most: those before a clock was set are not.
     std::optional<WallTime> first = {};
     bool has_can = false;
+    bool needs_can = false;  ///< the rig has sensors
+    std::set<std::string> topics = {};
     /// The first description of each camera, by the topic of its images.
     std::map<std::string, ros::sensor_msgs::CameraInfo> infos = {};
 };

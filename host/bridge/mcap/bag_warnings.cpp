@@ -74,6 +74,10 @@ Sentences warnings_about(const ImportedBag& imported, const mcap::McapReader& re
             "the CAN frames have no SYNC with its FOLLOW_UP of a host: their readings cannot be placed. "
             "Record "
             "the topic with all frames of the bus");
+    if (survey.needs_can && !survey.has_can)
+        sentences.push_back(fmt::format(
+            "the bag has no CAN frames ({0}): no ranges; export with --also {1}, or record these topics",
+            fmt::join(topics.can, ", "), fmt::join(topics.can, " --also ")));
     if (joints.has_local_source() && !imported.topics.contains(topics.joint_states))
         sentences.push_back("the bag has no " + topics.joint_states +
                             ", and its bus no joint states: give the topic with --joint-states");

@@ -89,8 +89,8 @@ void add_import_command(CLI::App& app) {
         ->required()
         ->check(app::existing_file());
     app::add_robot_options(*command, request.robot, "Robot (URDF) in place of the rig's");
-    command->add_option("--joint-states", request.joint_states, "Topic of sensor_msgs/JointState")
-        ->capture_default_str();
+    command->add_option("--joint-states", request.joint_states,
+                        "Topic of sensor_msgs/JointState (default: /joint_states)");
     command
         ->add_option(
             "--can", request.can,
