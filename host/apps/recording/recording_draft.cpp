@@ -86,9 +86,7 @@ Result<std::optional<FileLock>, AppError> check_former(const OpenFolder& folder,
     if (!may_replace) {
         return cannot_create(
             paths.directory,
-            {.code = ErrorCode::already_exists,
-             .what = "is not empty",
-             .remedy = "give another directory, or --force to replace a simulated recording"});
+            {.code = ErrorCode::already_exists, .what = "is not empty", .remedy = "give another directory"});
     }
     // Checked before any work: an obstacle at the end was there at the beginning.
     if (const auto checked = FileSet::check_places(folder, places_of(paths)); !checked)

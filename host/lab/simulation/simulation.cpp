@@ -148,6 +148,14 @@ Result<std::optional<std::uint32_t>, AppError> record_scene(const Scene& scene, 
     return std::optional<std::uint32_t>();
 }
 
+/// The remedy that the command has and an import does not.
+AppError with_force(AppError error, const SimulationRequest& request) {
+    const bool can_force = !request.may_replace && error.error.code == ErrorCode::already_exists;
+    if (can_force)
+        error.error = with_remedy(std::move(error.error), "--force to replace a simulated recording");
+    return error;
+}
+
 }  // namespace
 
 void report_world_warnings(const SimulationRequest& request, const sim::World& world) {
@@ -158,11 +166,11 @@ void report_world_warnings(const SimulationRequest& request, const sim::World& w
 Result<sim::ExperimentSummary, AppError> simulate_recording(const SimulationRequest& request,
                                                             const std::function<void(double)>& on_progress) {
     if (const auto checked = RecordingDraft::check(request.out, request.may_replace); !checked)
-        return unexpected(checked.error());
+        return unexpected(with_force(checked.error(), request));
     auto inputs = read_inputs(request);
     if (!inputs) return unexpected(inputs.error());
     auto draft = RecordingDraft::create(request.out, request.may_replace);
-    if (!draft) return unexpected(draft.error());
+    if (!draft) return unexpected(with_force(draft.error(), request));
     auto recorder = Recorder::create(draft->paths(), inputs->rig);
     if (!recorder) return unexpected(recorder.error());
     const auto scene_crc32 = record_scene(inputs->scene, draft->paths(), request);
