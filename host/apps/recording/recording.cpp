@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "host/apps/recording/file_set.hpp"
+#include "host/apps/recording/given_bag.hpp"
 #include "hw/rigfile/table.hpp"
 
 namespace octoskin {
@@ -36,6 +37,13 @@ Unexpected<Error> failure(const FolderError& error) {
     return unexpected(to_error(error));
 }
 
+/// Of a file where a recording's directory is expected.
+std::string remedy_for_file(const std::filesystem::path& file) {
+    if (is_named_as_bag(file))
+        return "make a recording of it: `octoskin bridge import " + file.string() + " DIR --rig RIG`";
+    return "give the recording's directory, " + std::filesystem::absolute(file).parent_path().string();
+}
+
 /// Checks that it is a folder, and complete.
 Status<Error> check_folder(const RecordingPaths& recording) {
     const auto folder = recording.folder.open();
@@ -47,11 +55,9 @@ Status<Error> check_folder(const RecordingPaths& recording) {
                         .remedy = "`octoskin repair " + recording.directory.string() + "` completes that"});
     }
     if (folder.error().fault == FolderFault::not_a_folder) {
-        return failure(recording.directory,
-                       {.code = ErrorCode::wrong_kind_of_file,
-                        .what = "is a file",
-                        .remedy = "give the recording's directory, " +
-                                  std::filesystem::absolute(recording.directory).parent_path().string()});
+        return failure(recording.directory, {.code = ErrorCode::wrong_kind_of_file,
+                                             .what = "is a file",
+                                             .remedy = remedy_for_file(recording.directory)});
     }
     if (folder.error().fault == FolderFault::absent) {
         return failure(

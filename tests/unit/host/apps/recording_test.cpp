@@ -90,6 +90,16 @@ TEST_F(RecordingTest, a_file_in_its_place_is_said_to_be_one) {
     EXPECT_THAT(checked.error().remedy, testing::HasSubstr(recording_.directory.string()));
 }
 
+TEST_F(RecordingTest, an_mcap_file_in_its_place_is_to_be_imported) {
+    const FilePlace bag = recording_.file("out.mcap");
+    write(bag, "x");
+    const auto checked = check_recording(RecordingPaths(bag));
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().code, ErrorCode::wrong_kind_of_file);
+    EXPECT_THAT(checked.error().remedy, testing::HasSubstr("octoskin bridge import"));
+    EXPECT_THAT(checked.error().remedy, testing::HasSubstr("out.mcap DIR --rig RIG"));
+}
+
 TEST_F(RecordingTest, needs_no_rig_of_its_own_if_another_is_given) {
     write(recording_.can_log(), "x");
     write(recording_.meta(), "x");
