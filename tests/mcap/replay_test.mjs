@@ -229,6 +229,18 @@ test("each message that is not used has a reason", async (context) => {
     assert.equal(topic.messages, topic.used + Object.values(topic.reasons).reduce((a, b) => a + b, 0));
 });
 
+test("messages of odd times are counted and cost no others", async (context) => {
+  const list = withoutBus(messages);
+  const joint = list.find((one) => one.topic === "/joint_states");
+  const picture = list.find((one) => one.topic === images);
+  const early = { ...picture, time: 30n * second };
+  const odd = [30n * second, 2n ** 63n - 1n, 2n ** 64n - 1n].map((time) => ({ ...joint, time }));
+  const done = imported(context, await write([early, odd[0], ...list, odd[1], odd[2]]));
+  assert.equal(done.code, 0);
+  assert.deepEqual(done.topics["/joint_states"].reasons, { stamp_off: 3 });
+  assert.deepEqual(done.topics[images].reasons, { stamp_off: 1 });
+});
+
 test("a bag that has nothing for the rig is refused by a code", async (context) => {
   const others = withoutBus(messages).filter((one) => one.topic === "/joint_states").slice(0, 50)
     .map((one) => changed(one, (message) => (message.name = message.name.map((name) => `${name}_of_another`))));
