@@ -33,7 +33,7 @@ TEST(WatchFrame, has_a_header_of_32_bytes_that_reads_back) {
 
 TEST(WatchFrame, refuses_another_version_kind_or_flag_and_a_payload_that_is_too_long) {
     EXPECT_FALSE(parse_header(bytes_of({.kind = static_cast<FrameKind>(0)})));
-    EXPECT_FALSE(parse_header(bytes_of({.kind = static_cast<FrameKind>(6)})));
+    EXPECT_FALSE(parse_header(bytes_of({.kind = static_cast<FrameKind>(8)})));
     EXPECT_FALSE(parse_header(bytes_of({.kind = FrameKind::map, .flags = 4})));
     EXPECT_FALSE(parse_header(bytes_of({.kind = FrameKind::range, .flags = kBegins})));
     EXPECT_FALSE(parse_header(bytes_of({.kind = FrameKind::reload, .flags = kBegins})));
