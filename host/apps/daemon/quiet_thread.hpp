@@ -39,10 +39,10 @@ template <class Work>
     });
 }
 
-/// Gives this thread less of a busy processor than the loop, for which readings wait.
-inline void yield_to_the_loop() noexcept {
-    constexpr int kNicer = 5;
-    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNicer);
+/// Gives this thread less of a busy processor than the loop, for which readings wait. `nicer`: 1 to 19, the
+/// more the less.
+inline void yield_to_the_loop(int nicer = 5) noexcept {
+    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nicer);
 }
 
 /// `start_without_signals` for work that a disk may block in a write: the wait for its end is limited. So the
