@@ -17,20 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kVoxelWord = "voxel";
 
-/// Empty: no object with only this key, and three finite numbers.
-std::optional<Eigen::Vector3d> point_of(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object() || json.size() != 1 || !json.contains("point_m")) return std::nullopt;
-    const Json& list = json["point_m"];
-    if (!list.is_array() || list.size() != 3) return std::nullopt;
-    Eigen::Vector3d point;
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (!list[i].is_number()) return std::nullopt;
-        point[static_cast<Eigen::Index>(i)] = list[i].get<double>();
-    }
-    return point.allFinite() ? std::optional(point) : std::nullopt;
-}
-
 /// The same words as in the answer of a query: occupied space is occupied however old it is.
 const char* state_name(const FusedMap& map, VoxelKey key) {
     switch (map.occupancy(key)) {
@@ -50,13 +36,26 @@ Json number_or_null(float value) {
 
 }  // namespace
 
+std::optional<Eigen::Vector3d> requested_point(std::string_view text) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object() || json.size() != 1 || !json.contains("point_m")) return std::nullopt;
+    const Json& list = json["point_m"];
+    if (!list.is_array() || list.size() != 3) return std::nullopt;
+    Eigen::Vector3d point;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!list[i].is_number()) return std::nullopt;
+        point[static_cast<Eigen::Index>(i)] = list[i].get<double>();
+    }
+    return point.allFinite() ? std::optional(point) : std::nullopt;
+}
+
 bool is_voxel_request(const std::string& line) {
     return line.starts_with(kVoxelWord) && line.size() > kVoxelWord.size() &&
            (line[kVoxelWord.size()] == ' ' || line[kVoxelWord.size()] == '{');
 }
 
 Json answer_voxel(const std::string& line, const FusedMap& map) {
-    const auto point = point_of(std::string_view(line).substr(kVoxelWord.size()));
+    const auto point = requested_point(std::string_view(line).substr(kVoxelWord.size()));
     if (!point)
         return query_refused({ExitCode::usage,
                               {.code = ErrorCode::bad_argument,

@@ -28,20 +28,6 @@ double seconds_between(HostTime begin, HostTime end) {
     return std::chrono::duration<double>(end - begin).count();
 }
 
-/// Of {"point_m": [x, y, z]}.
-std::optional<Eigen::Vector3d> point_of(const std::string& request) {
-    const Json json = Json::parse(request, nullptr, false);
-    if (!json.is_object() || !json.contains("point_m")) return std::nullopt;
-    const Json& list = json["point_m"];
-    if (!list.is_array() || list.size() != 3) return std::nullopt;
-    Eigen::Vector3d point;
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (!list[i].is_number()) return std::nullopt;
-        point[static_cast<Eigen::Index>(i)] = list[i].get<double>();
-    }
-    return point.allFinite() ? std::optional(point) : std::nullopt;
-}
-
 /// A map of the same voxels without any brick.
 watch::WatchedMap emptied(const watch::WatchedMap& map) {
     const FusedMap none(map.map().config());
@@ -300,7 +286,7 @@ std::function<Answer()> RecordedView::query(const std::string& request) const {
 std::function<Answer()> RecordedView::explanation(const std::string& request) const {
     return [request, playback = request_, is_forgotten = is_forgotten_]() -> Answer {
         struct Forgotten {};
-        const auto point = point_of(request);
+        const auto point = requested_point(request);
         if (!point) return unexpected(std::string(R"(expected {"point_m": [x, y, z]})"));
         const auto go_on = [&](const ReplayProgress&) {
             if (*is_forgotten) throw Forgotten{};
