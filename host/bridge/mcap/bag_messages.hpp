@@ -3,6 +3,7 @@
 
 #include "common/result.hpp"
 #include "host/bridge/cdr/cdr_reader.hpp"
+#include "host/bridge/messages/type_name.hpp"
 #include "host/io/mcap/mcap_reader.hpp"
 
 namespace octoskin::bridge {
