@@ -5,11 +5,12 @@ import v8 from 'node:v8';
 import vm from 'node:vm';
 
 const source = '../../../host/bridge/page/src/';
-const { Bricks, cellsOf, STATE } = await import(`${source}bricks.js`);
+const { Bricks, bytesOf, STATE, stateOf } = await import(`${source}bricks.js`);
 const { facesOf, FACE_BYTES } = await import(`${source}faces.js`);
 const { History } = await import(`${source}history.js`);
 const { readImage } = await import(`${source}images.js`);
 const { brickAt, brickNumber, centreOf, keyAt } = await import(`${source}lattice.js`);
+const { logOddsAt, stampsOf } = await import(`${source}layers.js`);
 const { readMapPayload } = await import(`${source}map_payload.js`);
 const { MapStore } = await import(`${source}map_store.js`);
 const { Readings, readBatch } = await import(`${source}readings.js`);
@@ -74,6 +75,19 @@ class Payload {
   }
 }
 
+/** A brick of log-odds of voxels x fastest. */
+function cellsOf(logOdds) {
+  const payload = new Payload().each(
+    BRICK,
+    (code) => {
+      const [x, y, z] = voxelOf(code);
+      return logOdds[x + 8 * y + 64 * z];
+    },
+    401,
+  );
+  return readMapPayload(payload.buffer, 0).bricks[0].cells;
+}
+
 /** The voxel of a Morton code, bit by bit. */
 function voxelOf(code) {
   const at = [0, 0, 0];
@@ -119,9 +133,13 @@ test('a payload is read voxel by voxel in Morton order', () => {
   );
   for (let code = 0; code < 512; code++) {
     const [x, y, z] = voxelOf(code);
-    const value = bricks[0].logOdds[x + 8 * y + 64 * z];
+    const { cells } = bricks[0];
+    const voxel = x + 8 * y + 64 * z;
+    const value = logOddsAt(cells.logOdds, voxel);
+    const state = code % 3 === 0 ? STATE.unknown : code < 256 ? STATE.free : STATE.occupied;
     assert.ok(code % 3 === 0 ? Number.isNaN(value) : value === code - 256, `voxel ${code}`);
-    assert.equal(bricks[0].stamps[code], 401);
+    assert.equal(stateOf(cells, voxel), state, `voxel ${code}`);
+    assert.equal(stampsOf(cells.stamps)[voxel], 401);
   }
 });
 
@@ -154,38 +172,68 @@ test('forms, runs and numbers that do not exist are refused', () => {
     assert.throws(() => readMapPayload(new Payload({ resolution_m }).buffer, 0), RangeError);
 });
 
-test('each visible face is made once, also between bricks', () => {
+const DIRECTIONS = [0, 1, 2, 3, 4, 5];
+
+function besideOf(at, direction) {
+  const beside = [...at];
+  beside[direction >> 1] += direction & 1 ? 1 : -1;
+  return beside;
+}
+
+/** Shade of a face, voxel by voxel: of each corner, how many of the three voxels before the face are occupied. */
+function shadeOf(at, direction, isOccupied) {
+  const front = besideOf(at, direction);
+  const [u, v] = [1, 2].map((next) => ((direction >> 1) + next) % 3);
+  const corners = [
+    [-1, -1],
+    [1, -1],
+    [-1, 1],
+    [1, 1],
+  ];
+  return corners.reduce((shade, [du, dv], corner) => {
+    const moved = (alongU, alongV) =>
+      isOccupied(front.map((x, axis) => x + (axis === u ? alongU : axis === v ? alongV : 0))) ? 1 : 0;
+    const [sideU, sideV] = [moved(du, 0), moved(0, dv)];
+    return shade | ((sideU && sideV ? 3 : sideU + sideV + moved(du, dv)) << (2 * corner));
+  }, 0);
+}
+
+test('each visible face is made once, with its shade, also between bricks', () => {
   const next = numbers(7);
   const bricks = new Bricks(() => {});
-  const occupied = new Set();
-  for (const [x, y, z] of [
-    [0, 0, 0],
-    [1, 0, 0],
-    [0, 1, 0],
-    [0, 0, 1],
-  ]) {
+  const states = new Map(); // key -> state; no key: unknown
+  for (let brick = 0; brick < 27; brick++) {
+    if (brick % 5 === 1) continue;
+    const [x, y, z] = [brick % 3, Math.floor(brick / 3) % 3, Math.floor(brick / 9)];
+    const share = next();
     const logOdds = Float32Array.from({ length: 512 }, (_, voxel) => {
-      const isOccupied = next() < 0.5;
-      if (isOccupied) occupied.add([8 * x + (voxel & 7), 8 * y + ((voxel >> 3) & 7), 8 * z + (voxel >> 6)].join());
-      return isOccupied ? 1 : next() < 0.5 ? -1 : NaN;
+      const key = [8 * x + (voxel & 7), 8 * y + ((voxel >> 3) & 7), 8 * z + (voxel >> 6)].join();
+      if (next() < 0.2) return NaN;
+      states.set(key, next() < share ? STATE.occupied : STATE.free);
+      return states.get(key) === STATE.occupied ? 1 : -1;
     });
-    bricks.set(brickNumber(x, y, z), cellsOf(logOdds, new Uint16Array(512), 0));
+    bricks.set(brickNumber(x, y, z), cellsOf(logOdds));
   }
-  const made = [];
-  for (const number of bricks.cells.keys()) {
-    const { occupied: faces } = facesOf(bricks, number, { unknown: false, free: false });
-    for (let at = 0; at < faces.length; at += FACE_BYTES) made.push(faces.slice(at, at + 4).join());
-  }
-  const expected = [];
-  for (const key of occupied) {
+  const stateOfKey = (at) => states.get(at.join()) ?? STATE.unknown;
+  const isOccupied = (at) => stateOfKey(at) === STATE.occupied;
+  const made = { occupied: [], unknown: [], free: [] };
+  for (const number of bricks.cells.keys())
+    for (const [layer, faces] of Object.entries(facesOf(bricks, number, { unknown: true, free: true })))
+      for (let at = 0; at < faces.length; at += FACE_BYTES)
+        made[layer].push(faces.slice(at, at + FACE_BYTES).join());
+  const expected = { occupied: [], unknown: [], free: [] };
+  for (const [key, state] of states) {
     const at = key.split(',').map(Number);
-    for (let direction = 0; direction < 6; direction++) {
-      const beside = [...at];
-      beside[direction >> 1] += direction & 1 ? 1 : -1;
-      if (!occupied.has(beside.join())) expected.push([...at, direction].join());
+    const face = (direction, shade) => [...at, direction, 401 & 255, 401 >> 8, shade, 0].join();
+    if (state === STATE.free) expected.free.push(face(0, 0));
+    for (const direction of DIRECTIONS) {
+      const beside = besideOf(at, direction);
+      if (state === STATE.occupied && !isOccupied(beside))
+        expected.occupied.push(face(direction, shadeOf(at, direction, isOccupied)));
+      if (state === STATE.free && stateOfKey(beside) === STATE.unknown) expected.unknown.push(face(direction, 0));
     }
   }
-  assert.deepEqual(made.sort(), expected.sort());
+  for (const layer of Object.keys(expected)) assert.deepEqual(made[layer].sort(), expected[layer].sort(), layer);
 });
 
 test('a corner is darker the more of the voxels beside it are occupied', () => {
@@ -194,7 +242,7 @@ test('a corner is darker the more of the voxels beside it are occupied', () => {
   const place = (x, y, z) => (logOdds[x + 8 * y + 64 * z] = 1);
   place(3, 3, 3);
   place(4, 3, 4); // beside the upper face, on the side of x
-  bricks.set(0, cellsOf(logOdds, new Uint16Array(512), 0));
+  bricks.set(0, cellsOf(logOdds));
   const { occupied } = facesOf(bricks, 0, { unknown: false, free: false });
   const face = [...Array(occupied.length / FACE_BYTES).keys()]
     .map((each) => occupied.slice(each * FACE_BYTES, (each + 1) * FACE_BYTES))
@@ -265,7 +313,7 @@ test('the history keeps a minute, and never more than its bytes', () => {
     const history = new History(bytesMax);
     for (let time_s = 0; time_s < 200; time_s++) {
       const logOdds = Float32Array.from({ length: 512 }, () => next() - 0.5);
-      history.add(time_s, time_s, 0, new Map([[time_s % 4, cellsOf(logOdds, new Uint16Array(512), 0)]]));
+      history.add(time_s, time_s, 0, new Map([[time_s % 4, cellsOf(logOdds)]]));
       assert.ok(history.bytes <= bytesMax);
     }
     assert.equal(history.end_s, 199);
@@ -275,7 +323,7 @@ test('the history keeps a minute, and never more than its bytes', () => {
     assert.ok(held.length < 70);
     assert.equal(
       history.bytes,
-      held.reduce((sum, { bytes }) => sum + 200 + bytes.length, 0),
+      held.reduce((sum, { cells }) => sum + 100 + bytesOf(cells), 0),
     );
   }
 });
@@ -380,7 +428,8 @@ test('a sensor has one state, the worst that applies', () => {
 test('states of voxels: unknown, free, and occupied from the threshold on', () => {
   const logOdds = new Float32Array(512).fill(NaN);
   logOdds.set([-0.1, 0, 0.1]);
-  const { states, occupied } = cellsOf(logOdds, new Uint16Array(512), 0);
-  assert.deepEqual([...states.slice(0, 4)], [STATE.free, STATE.occupied, STATE.occupied, STATE.unknown]);
-  assert.equal(occupied, 2);
+  const cells = cellsOf(logOdds);
+  const states = [0, 1, 2, 3].map((voxel) => stateOf(cells, voxel));
+  assert.deepEqual(states, [STATE.free, STATE.occupied, STATE.occupied, STATE.unknown]);
+  assert.equal(cells.count, 2);
 });

@@ -5,6 +5,7 @@ export class ByteReader {
   /** @param {ArrayBuffer} buffer @param {number} [offset] bytes */
   constructor(buffer, offset = 0) {
     this.view = new DataView(buffer);
+    this.bytes = new Uint8Array(buffer);
     this.offset = offset;
   }
 
@@ -16,6 +17,11 @@ export class ByteReader {
     const at = this.offset;
     this.offset += bytes;
     return at;
+  }
+
+  /** Bytes from an offset to where the reader is, as an array of their own. */
+  copyFrom(begin) {
+    return this.bytes.slice(begin, this.offset);
   }
 
   u8() {

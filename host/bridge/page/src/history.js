@@ -1,48 +1,12 @@
 // The map of the last minute: of each brick the versions in which it differed.
-import { BRICK_VOXELS } from './lattice.js';
-import { areEqual, withCount } from './bricks.js';
+import { bytesOf, haveEqualStates } from './bricks.js';
 
 const MINUTE_S = 60;
 const BYTES_MAX = 64 * 1024 * 1024;
 /** A brick in which only ages changed gets a version this often: an age of the past may be this much too high. */
 const AGES_EVERY_S = 5;
-/** What the JavaScript engine needs beside the bytes of a version, at most. */
-const OVERHEAD = 200;
 
-const scratch = new Uint8Array(BRICK_VOXELS + 3 * BRICK_VOXELS);
-
-/** Runs of states (6 bits of length less 1, 2 bits of state), then runs of stamps (length less 1, 16 bits). */
-function encode({ states, stamps }) {
-  let size = 0;
-  for (let voxel = 0, end; voxel < BRICK_VOXELS; voxel = end) {
-    for (end = voxel + 1; end < BRICK_VOXELS && end < voxel + 64 && states[end] === states[voxel];) end++;
-    scratch[size++] = ((end - voxel - 1) << 2) | states[voxel];
-  }
-  for (let voxel = 0, end; voxel < BRICK_VOXELS; voxel = end) {
-    for (end = voxel + 1; end < BRICK_VOXELS && end < voxel + 256 && stamps[end] === stamps[voxel];) end++;
-    scratch[size++] = end - voxel - 1;
-    scratch[size++] = stamps[voxel] & 255;
-    scratch[size++] = stamps[voxel] >> 8;
-  }
-  return scratch.slice(0, size);
-}
-
-function decode(bytes) {
-  const states = new Uint8Array(BRICK_VOXELS);
-  const stamps = new Uint16Array(BRICK_VOXELS);
-  let at = 0;
-  for (let voxel = 0; voxel < BRICK_VOXELS; at++) {
-    const end = voxel + (bytes[at] >> 2) + 1;
-    states.fill(bytes[at] & 3, voxel, end);
-    voxel = end;
-  }
-  for (let voxel = 0; voxel < BRICK_VOXELS; at += 3) {
-    const end = voxel + bytes[at] + 1;
-    stamps.fill(bytes[at + 1] | (bytes[at + 2] << 8), voxel, end);
-    voxel = end;
-  }
-  return withCount(states, stamps);
-}
+const bytesOfVersion = ({ cells }) => 100 + (cells ? bytesOf(cells) : 0);
 
 /** Times are seconds of the bus, and do not go back: then it is to be cleared. */
 export class History {
@@ -53,9 +17,8 @@ export class History {
   }
 
   clear() {
-    this.versions = new Map(); // number -> [{time_s, bytes | null}], oldest first
+    this.versions = new Map(); // number -> [{time_s, cells: Cells | null}], oldest first
     this.replaced = []; // [{at_s, number}]: the oldest version of this brick was replaced then
-    this.newest = new Map(); // number -> {time_s, states}: what the newest version has
     this.marks = []; // times and clocks of the map
     this.bytes = 0;
     this.begin_s = null;
@@ -72,23 +35,15 @@ export class History {
   }
 
   #addBrick(time_s, number, cells) {
-    const newest = this.newest.get(number);
-    const states = cells ? cells.states : null;
-    if (
-      newest &&
-      time_s - newest.time_s < AGES_EVERY_S &&
-      newest.states &&
-      states &&
-      areEqual(newest.states, states)
-    )
-      return;
     const list = this.versions.get(number) ?? [];
-    if (list.length > 0) this.replaced.push({ at_s: time_s, number });
-    const bytes = cells ? encode(cells) : null;
-    list.push({ time_s, bytes });
+    const newest = list.at(-1);
+    const isOfAges = newest?.cells && cells && haveEqualStates(newest.cells, cells);
+    if (isOfAges && time_s - newest.time_s < AGES_EVERY_S) return;
+    if (newest) this.replaced.push({ at_s: time_s, number });
+    const version = { time_s, cells: cells && { ...cells, logOdds: null } };
+    list.push(version);
     this.versions.set(number, list);
-    this.newest.set(number, { time_s, states });
-    this.bytes += OVERHEAD + (bytes ? bytes.length : 0);
+    this.bytes += bytesOfVersion(version);
   }
 
   #forget() {
@@ -98,7 +53,7 @@ export class History {
       const { at_s, number } = this.replaced[count++];
       begin_s = Math.max(begin_s, at_s);
       const oldest = this.versions.get(number).shift();
-      this.bytes -= OVERHEAD + (oldest.bytes ? oldest.bytes.length : 0);
+      this.bytes -= bytesOfVersion(oldest);
     }
     this.replaced.splice(0, count);
     this.begin_s = begin_s;
@@ -115,14 +70,14 @@ export class History {
 
   /**
    * Writes the map of a time into `bricks`, which holds that of `from` (a Map of versions, changed too).
-   * O(bricks), and 5 us for each that differs.
+   * O(bricks).
    */
   restore(time_s, bricks, from) {
     for (const [number, list] of this.versions) {
       const version = list.findLast((each) => each.time_s <= time_s) ?? null;
       if (from.get(number) === version) continue;
       from.set(number, version);
-      bricks.set(number, version?.bytes ? decode(version.bytes) : null);
+      bricks.set(number, version?.cells ?? null);
     }
   }
 }

@@ -3,6 +3,7 @@
 export const ORIGIN_KEY = 32768;
 export const BRICK_EDGE = 8; // voxels
 export const BRICK_VOXELS = 512;
+export const ROWS = 64; // rows along x of a brick, each of eight voxels
 
 /** Bits 0, 3, 6, ... of a number below 2^24, as bits 0, 1, 2, ... */
 function gathered(bits) {
@@ -11,12 +12,12 @@ function gathered(bits) {
   return value;
 }
 
-/** Bit i of a byte to bit 3 i. */
-function spread(byte) {
+/** Bit i of a byte at bit 3 i. */
+const SPREAD = Uint32Array.from({ length: 256 }, (_, byte) => {
   let bits = 0;
   for (let bit = 0; bit < 8; bit++) bits |= ((byte >>> bit) & 1) << (3 * bit);
   return bits;
-}
+});
 
 /** Linear index (x + 8 y + 64 z) of each voxel of a brick in Morton order. */
 export const LINEAR_OF_MORTON = Uint16Array.from(
@@ -37,8 +38,8 @@ export function brickAt(number) {
 /** The inverse. @returns {number} -1 outside the octree */
 export function brickNumber(x, y, z) {
   if (x < 0 || y < 0 || z < 0 || x > 8191 || y > 8191 || z > 8191) return -1;
-  const low = spread(x & 255) + 2 * spread(y & 255) + 4 * spread(z & 255);
-  return low + 2 ** 24 * (spread(x >> 8) + 2 * spread(y >> 8) + 4 * spread(z >> 8));
+  const low = SPREAD[x & 255] + 2 * SPREAD[y & 255] + 4 * SPREAD[z & 255];
+  return low + 2 ** 24 * (SPREAD[x >> 8] + 2 * SPREAD[y >> 8] + 4 * SPREAD[z >> 8]);
 }
 
 /** The voxel that contains a point. @param {number[]} p_map metres @returns {number[]} key */

@@ -1,9 +1,10 @@
 // The map that is shown: takes updates, keeps the last minute, and says what to draw anew. Runs in a worker, or in a
 // page that shows one map alone.
-import { Bricks, cellsOf, isUnknown } from './bricks.js';
+import { Bricks, isUnknown } from './bricks.js';
 import { facesOf, GROUP_BRICKS } from './faces.js';
 import { History } from './history.js';
 import { brickAt, brickNumber } from './lattice.js';
+import { logOddsAt, stampsOf } from './layers.js';
 import { readMapPayload } from './map_payload.js';
 import { pickAlong, stateAt } from './ray_walk.js';
 
@@ -51,8 +52,7 @@ export class MapStore {
     if (this.head && this.head.resolution_m !== head.resolution_m) this.#forgetAll();
     if (flags & BEGINS) this.seen = new Set();
     this.head = head;
-    for (const { number, logOdds, stamps } of head.bricks) {
-      const cells = cellsOf(logOdds, stamps, head.occupiedFrom);
+    for (const { number, cells } of head.bricks) {
       this.seen?.add(number);
       this.live.set(number, isUnknown(cells) ? null : cells);
     }
@@ -187,11 +187,11 @@ export class MapStore {
     const [x, y, z] = key;
     const cells = this.shown.get(brickNumber(x >> 3, y >> 3, z >> 3));
     const index = (x & 7) + 8 * (y & 7) + 64 * (z & 7);
-    const logOdds = cells?.logOdds ? cells.logOdds[index] : null;
+    const logOdds = cells?.logOdds ? logOddsAt(cells.logOdds, index) : null;
     return {
       key,
       state: stateAt(this.shown, key),
-      stamp: cells ? cells.stamps[index] : 0,
+      stamp: cells ? stampsOf(cells.stamps)[index] : 0,
       logOdds: Number.isNaN(logOdds) ? null : logOdds,
     };
   }

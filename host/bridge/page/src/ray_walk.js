@@ -1,11 +1,11 @@
 // Which voxel a ray meets first (Amanatides and Woo 1987).
 import { brickNumber, ORIGIN_KEY } from './lattice.js';
-import { STATE } from './bricks.js';
+import { STATE, stateOf } from './bricks.js';
 
 /** State of a voxel in `bricks`. @param {number[]} key */
 export function stateAt(bricks, [x, y, z]) {
   const cells = bricks.get(brickNumber(x >> 3, y >> 3, z >> 3));
-  return cells ? cells.states[(x & 7) + 8 * (y & 7) + 64 * (z & 7)] : STATE.unknown;
+  return cells ? stateOf(cells, (x & 7) + 8 * (y & 7) + 64 * (z & 7)) : STATE.unknown;
 }
 
 /**
