@@ -6,6 +6,7 @@
 
 #include "host/apps/command_line/json_at.hpp"
 #include "host/apps/daemon/daemon_client.hpp"
+#include "host/bridge/view/json_text.hpp"
 #include "host/io/snapshot/bytes.hpp"
 
 namespace octoskin::foxglove {
@@ -14,16 +15,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 using snapshot::ByteReader;
 using snapshot::ByteWriter;
+using view::text_of;
 
 constexpr std::uint8_t kMessageOpcode = 1;
 constexpr std::uint8_t kResponseOpcode = 3;
 constexpr std::uint8_t kClientMessageOpcode = 1;
 constexpr std::uint8_t kCallOpcode = 2;
-
-/// Names of a robot may have bytes that are no UTF-8.
-std::string text_of(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 Json service_schema(const std::string& name) {
     return {{"encoding", "json"},

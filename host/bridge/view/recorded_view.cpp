@@ -8,6 +8,7 @@
 #include "host/apps/query/query_answer.hpp"
 #include "host/apps/query/query_request.hpp"
 #include "host/apps/query/voxel_answer.hpp"
+#include "host/bridge/view/json_text.hpp"
 #include "host/io/candump/log_source.hpp"
 #include "host/io/watch/map_changes.hpp"
 
@@ -19,10 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds kQueryWorkMax = 10s;
 constexpr std::size_t kContributions = 20;
-
-std::string text_of(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 double seconds_between(HostTime begin, HostTime end) {
     return std::chrono::duration<double>(end - begin).count();

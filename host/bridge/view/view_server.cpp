@@ -8,6 +8,7 @@
 #include "host/apps/daemon/clocks.hpp"
 #include "host/bridge/published/ros_values.hpp"
 #include "host/bridge/received/stamp.hpp"
+#include "host/bridge/view/json_text.hpp"
 #include "host/io/snapshot/bytes.hpp"
 
 namespace octoskin::view {
@@ -22,10 +23,6 @@ constexpr Nanoseconds kJointsPeriod = 33ms;
 constexpr Nanoseconds kRangesPeriod = 50ms;
 /// Readings of one period; beyond this the oldest are left out.
 constexpr std::size_t kRangeBytesMax = std::size_t{256} << 10U;
-
-std::string text_of(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 /// Between now and `due` there is less than half a turn.
 bool is_due(std::optional<HostTime> sent, Nanoseconds period, HostTime now) {
