@@ -150,11 +150,7 @@ void WatchServer::on_beam(const Beam& beam) noexcept try {
 
 void WatchServer::on_image(const DepthFrame& frame) noexcept try {
     if (!wants(watch::FrameKind::image)) return;
-    if (images_given_.size() <= frame.camera) images_given_.resize(frame.camera + std::size_t{1});
-    std::optional<HostTime>& newest = images_given_[frame.camera];
-    const Nanoseconds since = newest ? frame.captured - *newest : kImagePeriod;
-    if (since >= Nanoseconds{0} && since < kImagePeriod) return;  // a clock may step back
-    newest = frame.captured;
+    if (!images_.takes(frame.camera, frame.captured)) return;
     give(watch::FrameKind::image, frame.captured, watch::image_payload(frame));
 } catch (const std::bad_alloc&) {
     ++lost_;
@@ -162,27 +158,38 @@ void WatchServer::on_image(const DepthFrame& frame) noexcept try {
 
 void WatchServer::give(watch::FrameKind kind, HostTime time, std::string payload) {
     auto shared = std::make_shared<const std::string>(std::move(payload));
-    const std::lock_guard lock(mutex_);
-    if (given_.events.size() >= kEventsMax && kind != watch::FrameKind::robot) {
-        ++lost_;
-        return;
+    {
+        const std::lock_guard lock(mutex_);
+        put({kind, time, std::move(shared)});
     }
-    given_.events.push_back({kind, time, std::move(shared)});
     wake_.wake();
+}
+
+/// Under the mutex. Beyond the limit there is of each lasting kind the newest event.
+void WatchServer::put(WatchEvent event) {
+    std::vector<WatchEvent>& events = given_.events;
+    if (events.size() >= kEventsMax) {
+        if (!watch::is_lasting(event.kind)) {
+            ++lost_;
+            return;
+        }
+        const auto first = events.begin() + static_cast<std::ptrdiff_t>(kEventsMax);
+        events.erase(std::remove_if(first, events.end(),
+                                    [&](const WatchEvent& other) { return other.kind == event.kind; }),
+                     events.end());
+    }
+    events.push_back(std::move(event));
 }
 
 void WatchServer::change_rig(const HostRig& rig, std::uint64_t reloads) {
     joint_counts_ = rig.joint_counts();
-    const WatchEvent reload = reload_event(reloads);
+    WatchEvent reload = reload_event(reloads);
     std::optional<MapNow> before;  // released without the lock
     {
         const std::lock_guard lock(mutex_);
         before = std::exchange(given_.map, std::nullopt);
         given_.reloads = reloads;
-        // Of reloads one after the other the last one counts: no more than one is beyond the limit.
-        std::vector<WatchEvent>& events = given_.events;
-        if (!events.empty() && events.back().kind == watch::FrameKind::reload) events.pop_back();
-        events.push_back(reload);
+        put(std::move(reload));
     }
     wake_.wake();
 }
@@ -248,6 +255,7 @@ void WatchServer::welcome(std::unique_ptr<Client> client, std::uint64_t reloads)
 void WatchServer::spread(MapNow map) {
     const watch::BrickCodes changed = map_ ? watch::changed_bricks(map.map, map_->map) : watch::BrickCodes{};
     map_ = std::move(map);
+    if (clients_.size() > 1) map_->changed = watch::BrickRecords(map_->map, changed);
     is_map_old_ = false;
     for (const auto& client : clients_) client->output.on_map(*map_, changed);
 }

@@ -17,6 +17,7 @@
 #include "host/apps/daemon/watcher.hpp"
 #include "host/core/pipeline/measurement_observer.hpp"
 #include "host/core/rig/host_rig.hpp"
+#include "host/io/watch/image_pace.hpp"
 
 namespace octoskin {
 
@@ -25,7 +26,7 @@ class WatchServer final : public MeasurementObserver {
     static constexpr std::size_t kWatchersMax = 8;
     /// A watcher that takes nothing for this long, although something waits for it, is dropped.
     static constexpr Nanoseconds kStalledMax{30'000'000'000};
-    /// Events that wait for the thread; beyond this the newest are lost for all, but for a reload.
+    /// Events that wait for the thread; beyond this the newest are lost for all, but for lasting ones.
     static constexpr std::size_t kEventsMax = 8192;
 
     /// Throws std::system_error if there is no thread or descriptor left.
@@ -56,9 +57,8 @@ class WatchServer final : public MeasurementObserver {
     void give_robot(const std::string& urdf);
     void on_sample(const JointMeasurement& joints) noexcept override;
     void on_beam(const Beam& beam) noexcept override;
-    /// Of each camera one image in kImagePeriod goes to the watchers, reduced.
+    /// Of each camera one image in watch::ImagePace::kPeriod goes to the watchers, reduced.
     void on_image(const DepthFrame& frame) noexcept override;
-    static constexpr Nanoseconds kImagePeriod{200'000'000};
     /// Another rig. Each watcher gets a frame that says so, after all that was given before and ahead of all
     /// that is given later. `reloads`: since the daemon's start.
     void change_rig(const HostRig& rig, std::uint64_t reloads);
@@ -80,6 +80,7 @@ class WatchServer final : public MeasurementObserver {
         std::uint64_t reloads = 0;  ///< so far; `map` is of their newest rig
     };
     void give(watch::FrameKind kind, HostTime time, std::string payload);
+    void put(WatchEvent event);
     void run();
     [[nodiscard]] Given taken();
     void spread(Given given);
@@ -93,7 +94,7 @@ class WatchServer final : public MeasurementObserver {
 
     Nanoseconds stalled_max_;
     std::vector<std::size_t> joint_counts_;
-    std::vector<std::optional<HostTime>> images_given_;  ///< by camera: capture of the newest
+    watch::ImagePace images_;
     WakeEvent wake_;
     mutable std::mutex mutex_;
     Given given_;

@@ -1,5 +1,6 @@
 #include "host/apps/daemon/watcher.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace octoskin {
@@ -38,20 +39,19 @@ void Watcher::on_event(const WatchEvent& event) {
     if (events_.size() > kEventsMax) drop_oldest();
 }
 
-/// A reload or a robot is never lost: of several that are overdue, the newest one goes out.
 void Watcher::drop_oldest() {
     WatchEvent oldest = std::move(events_.front());
     events_.pop_front();
-    if (oldest.kind == watch::FrameKind::robot) {
-        overdue_robot_ = std::move(oldest);
-        return;
-    }
-    if (oldest.kind != watch::FrameKind::reload) {
+    if (!watch::is_lasting(oldest.kind)) {
         ++lost_;
         return;
     }
-    if (overdue_reload_) --reloads_waiting_;
-    overdue_reload_ = std::move(oldest);
+    const auto older = std::ranges::find(overdue_, oldest.kind, &WatchEvent::kind);
+    if (older != overdue_.end()) {
+        if (older->kind == watch::FrameKind::reload) --reloads_waiting_;
+        overdue_.erase(older);
+    }
+    overdue_.push_back(std::move(oldest));
 }
 
 std::string_view Watcher::pending(const MapNow* now) {
@@ -60,7 +60,7 @@ std::string_view Watcher::pending(const MapNow* now) {
         sent_ = 0;
         put_events();
         const bool may_follow = now != nullptr && reloads_waiting_ == 0;
-        const auto piece = may_follow ? map_.next(now->map, kChunkBytes) : std::nullopt;
+        const auto piece = may_follow ? map_.next(now->map, kChunkBytes, now->changed) : std::nullopt;
         if (piece) put(watch::FrameKind::map, piece->flags, now->time, piece->payload);
     }
     return std::string_view(bytes_).substr(sent_);
@@ -71,8 +71,8 @@ void Watcher::on_sent(std::size_t bytes) {
 }
 
 void Watcher::put_events() {
-    if (overdue_reload_) put(*std::exchange(overdue_reload_, std::nullopt));
-    if (overdue_robot_) put(*std::exchange(overdue_robot_, std::nullopt));
+    for (const WatchEvent& event : overdue_) put(event);
+    overdue_.clear();
     while (!events_.empty() && bytes_.size() < kChunkBytes) {
         const WatchEvent event = std::move(events_.front());
         events_.pop_front();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/time.hpp"
 #include "host/core/mapping/fused_map.hpp"
@@ -20,6 +21,7 @@ namespace octoskin {
 struct MapNow {
     FusedMap map;
     HostTime time{0};
+    watch::BrickRecords changed = {};  ///< bricks of it that the map before had in another way; may be empty
 };
 
 /// What goes to all watchers alike.
@@ -41,7 +43,7 @@ struct WatchWants {
 
 class Watcher {
   public:
-    /// Events that wait; beyond this the oldest is dropped and counted, but for a reload.
+    /// Events that wait; beyond this the oldest is dropped and counted, but for the newest of a lasting kind.
     static constexpr std::size_t kEventsMax = 1024;
     /// Bytes that are made at once.
     static constexpr std::size_t kChunkBytes = std::size_t{64} << 10U;
@@ -76,9 +78,8 @@ class Watcher {
     std::uint64_t number_ = 0;
     std::uint64_t lost_ = 0;
     std::deque<WatchEvent> events_;
-    std::optional<WatchEvent> overdue_reload_;  ///< older than all of events_
-    std::optional<WatchEvent> overdue_robot_;   ///< the same
-    std::size_t reloads_waiting_ = 0;           ///< in events_ and overdue
+    std::vector<WatchEvent> overdue_;  ///< older than all of events_; of lasting kinds, one of each
+    std::size_t reloads_waiting_ = 0;  ///< in events_ and overdue_
     watch::MapReader map_;
 };
 

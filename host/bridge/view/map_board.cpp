@@ -18,7 +18,7 @@ class MapBoard::Reader final : public MessageStream {
 
     [[nodiscard]] std::optional<StreamMessage> next() override {
         if (!board_.newest_) return std::nullopt;
-        const auto piece = lacks_.next(board_.newest_->map, kFrameBytes);
+        const auto piece = lacks_.next(board_.newest_->map, kFrameBytes, board_.newest_->changed);
         if (!piece) return std::nullopt;
         StreamMessage message{{}, board_.newest_->when};
         snapshot::ByteWriter writer(message.payload);
@@ -41,7 +41,8 @@ void MapBoard::on_map(const watch::WatchedMap& map, WallTime when) {
     const bool has_reader = !readers_.empty();
     const auto changed =
         has_reader && !begins ? watch::changed_bricks(now, newest_->map) : watch::BrickCodes{};
-    newest_.emplace(Newest{std::move(now), map.time(), when});
+    auto records = readers_.size() > 1 ? watch::BrickRecords(now, changed) : watch::BrickRecords();
+    newest_.emplace(Newest{std::move(now), map.time(), when, std::move(records)});
     for (Reader* const reader : readers_) {
         if (begins) reader->lacks().begin_again();
         reader->lacks().on_map(newest_->map, changed);

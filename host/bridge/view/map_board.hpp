@@ -34,6 +34,7 @@ class MapBoard final : public StreamSource {
         FusedMap map;
         HostTime time;
         WallTime when;
+        watch::BrickRecords changed;  ///< may be empty
     };
     std::optional<Newest> newest_;
     bool is_another_ = true;

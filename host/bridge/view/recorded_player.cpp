@@ -1,10 +1,9 @@
 #include "host/bridge/view/recorded_player.hpp"
 
-#include <cstdint>
-#include <map>
 #include <utility>
 
 #include "host/apps/daemon/quiet_thread.hpp"
+#include "host/io/watch/image_pace.hpp"
 
 namespace octoskin::view {
 
@@ -37,7 +36,7 @@ class RecordedPlayer::Relay final : public bridge::DaemonListener, public bridge
     }
     void on_time(HostTime bus, WallTime) override { player_.wait_for(bus); }
     void on_depth(const DepthFrame& frame) override {
-        if (player_.is_passing() || !is_due(frame)) return;
+        if (player_.is_passing() || !images_.takes(frame.camera, frame.captured)) return;
         if (auto image = watch::parse_image(watch::image_payload(frame)))
             post([image = std::move(*image), captured = frame.captured](PlayerListener& to) {
                 to.on_image(image, captured);
@@ -45,15 +44,6 @@ class RecordedPlayer::Relay final : public bridge::DaemonListener, public bridge
     }
 
   private:
-    /// Of each camera five images in a second, as from a daemon.
-    bool is_due(const DepthFrame& frame) {
-        constexpr Nanoseconds kPeriod{200'000'000};
-        const auto before = images_.find(frame.camera);
-        if (before != images_.end() && frame.captured - before->second < kPeriod) return false;
-        images_[frame.camera] = frame.captured;
-        return true;
-    }
-
     template <class Event>
     void post(Event event) {
         player_.post(
@@ -61,7 +51,7 @@ class RecordedPlayer::Relay final : public bridge::DaemonListener, public bridge
     }
 
     RecordedPlayer& player_;
-    std::map<std::uint8_t, HostTime> images_;  ///< by camera: capture of the newest
+    watch::ImagePace images_;
 };
 
 RecordedPlayer::RecordedPlayer(EventLoop& loop, bridge::RecordedEvents events, PlayerListener& listener)

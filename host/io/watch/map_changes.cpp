@@ -64,11 +64,28 @@ BrickCodes changed_bricks(const FusedMap& now, const FusedMap& before) {
     return merged(written, dated);
 }
 
+BrickRecords::BrickRecords(const FusedMap& map, const BrickCodes& bricks) {
+    ByteWriter writer(bytes_);
+    for (auto brick = bricks.begin(); brick != bricks.end() && bytes_.size() < kBytesMax; ++brick) {
+        put_brick(writer, map, *brick);
+        codes_.push_back(*brick);
+        ends_.push_back(bytes_.size());
+    }
+}
+
+std::string_view BrickRecords::find(MortonCode brick) const noexcept {
+    const auto found = std::ranges::lower_bound(codes_, brick);
+    if (found == codes_.end() || *found != brick) return {};
+    const auto index = static_cast<std::size_t>(found - codes_.begin());
+    const std::size_t begin = index == 0 ? 0 : ends_[index - 1];
+    return std::string_view(bytes_).substr(begin, ends_[index] - begin);
+}
+
 void MissingBricks::add(const BrickCodes& bricks) {
     codes_ = merged(codes_, bricks);
 }
 
-std::string MissingBricks::take(const FusedMap& map, std::size_t bytes_max) {
+std::string MissingBricks::take(const FusedMap& map, std::size_t bytes_max, const BrickRecords& made) {
     std::string payload;
     ByteWriter writer(payload);
     put_head(writer, map);
@@ -76,7 +93,10 @@ std::string MissingBricks::take(const FusedMap& map, std::size_t bytes_max) {
     if (first == codes_.end()) first = codes_.begin();
     auto last = first;
     for (; last != codes_.end() && (last == first || payload.size() < bytes_max); ++last)
-        put_brick(writer, map, *last);
+        if (const std::string_view record = made.find(*last); !record.empty())
+            payload += record;
+        else
+            put_brick(writer, map, *last);
     next_ = last == codes_.end() ? 0 : *last;
     codes_.erase(first, last);
     return payload;
@@ -88,9 +108,10 @@ void MapReader::on_map(const FusedMap& now, const BrickCodes& changed) {
     is_behind_ = true;
 }
 
-std::optional<MapReader::Piece> MapReader::next(const FusedMap& now, std::size_t bytes_max) {
+std::optional<MapReader::Piece> MapReader::next(const FusedMap& now, std::size_t bytes_max,
+                                                const BrickRecords& made) {
     if (!is_behind_) return std::nullopt;
-    Piece piece{0, missing_.take(now, bytes_max)};
+    Piece piece{0, missing_.take(now, bytes_max, made)};
     is_behind_ = !missing_.empty();
     if (!is_behind_) piece.flags |= kComplete;
     if (!std::exchange(has_begun_, true)) piece.flags |= kBegins;

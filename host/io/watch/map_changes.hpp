@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/core/mapping/fused_map.hpp"
@@ -27,6 +28,22 @@ using BrickCodes = std::vector<MortonCode>;
 /// between them).
 [[nodiscard]] BrickCodes changed_bricks(const FusedMap& now, const FusedMap& before);
 
+/// Bricks of a map as they are in payloads, made once for many readers.
+class BrickRecords {
+  public:
+    BrickRecords() = default;
+    /// Those of the first `bricks`, within about kBytesMax. Throws std::bad_alloc. O(bricks).
+    BrickRecords(const FusedMap& map, const BrickCodes& bricks);
+    /// Empty: it is not among them. O(log bricks).
+    [[nodiscard]] std::string_view find(MortonCode brick) const noexcept;
+
+  private:
+    static constexpr std::size_t kBytesMax = std::size_t{8} << 20U;
+    BrickCodes codes_;
+    std::vector<std::size_t> ends_;  ///< of each record in bytes_
+    std::string bytes_;
+};
+
 /// The bricks that one reader lacks. They go out in turn, beginning behind the one that went out last: with a
 /// slow reader, bricks that change all the time do not keep the others from it.
 class MissingBricks {
@@ -36,9 +53,9 @@ class MissingBricks {
     [[nodiscard]] bool empty() const noexcept { return codes_.empty(); }
     [[nodiscard]] std::size_t size() const noexcept { return codes_.size(); }
     /// The payload with the next bricks as they are in `map`, of about `bytes_max`, and at least one brick;
-    /// these are no longer missing. Without any brick the payload has the beginning only. Throws
-    /// std::bad_alloc.
-    [[nodiscard]] std::string take(const FusedMap& map, std::size_t bytes_max);
+    /// these are no longer missing. Without any brick the payload has the beginning only. `made`:
+    /// records of `map`. Throws std::bad_alloc.
+    [[nodiscard]] std::string take(const FusedMap& map, std::size_t bytes_max, const BrickRecords& made = {});
 
   private:
     BrickCodes codes_;
@@ -61,9 +78,10 @@ class MapReader {
         std::uint8_t flags = 0;  ///< kBegins, kComplete (watch_frame.hpp)
         std::string payload;
     };
-    /// The next piece of `now`, of about `bytes_max`; empty: the reader has all of the newest map. Throws
-    /// std::bad_alloc.
-    [[nodiscard]] std::optional<Piece> next(const FusedMap& now, std::size_t bytes_max);
+    /// The next piece of `now`, of about `bytes_max`; empty: the reader has all of the newest map. `made`:
+    /// records of `now`. Throws std::bad_alloc.
+    [[nodiscard]] std::optional<Piece> next(const FusedMap& now, std::size_t bytes_max,
+                                            const BrickRecords& made = {});
 
   private:
     MissingBricks missing_;

@@ -37,6 +37,11 @@ enum class FrameKind : std::uint8_t {
     robot = 7,   ///< the robot's URDF as text
 };
 
+/// True for a kind of which the newest frame reaches a watcher, however slowly it reads.
+[[nodiscard]] constexpr bool is_lasting(FrameKind kind) noexcept {
+    return kind == FrameKind::reload || kind == FrameKind::robot;
+}
+
 /// A frame of a map: nothing that was sent before holds; an empty map begins.
 inline constexpr std::uint8_t kBegins = 1;
 /// A frame of a map: with this one, the reader has the whole map of that time.

@@ -99,6 +99,20 @@ TEST(Watcher, loses_samples_and_no_reload_when_too_many_wait) {
     EXPECT_EQ(next(watcher, &now), (Frames{"reload 3"}));
 }
 
+TEST(Watcher, loses_no_newest_robot_when_too_many_wait) {
+    Watcher watcher({.joints = true, .robot = true}, "");
+    constexpr auto kMax = static_cast<std::int64_t>(Watcher::kEventsMax);
+    watcher.on_event(event(FrameKind::robot, "first"));
+    watcher.on_event(reload(1));
+    watcher.on_event(event(FrameKind::robot, "second"));
+    for (std::int64_t i = 0; i < kMax; ++i) watcher.on_event(event(FrameKind::joints, "", i));
+    const std::string bytes(watcher.pending(nullptr));
+    EXPECT_EQ(bytes.find("first"), std::string::npos);
+    EXPECT_LT(bytes.find(watch::reload_payload(1)), bytes.find("second"));
+    EXPECT_LT(bytes.find("second"), 200U);
+    EXPECT_EQ(next(watcher, nullptr).size(), Watcher::kEventsMax + 1) << "the reload, and all samples";
+}
+
 TEST(Watcher, gets_a_reload_whatever_it_asked_for) {
     Watcher watcher({.status = true}, "");
     watcher.on_event(event(FrameKind::joints, "", 1));

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "host/core/bricks/cell_term.hpp"
+#include "host/io/watch/image_pace.hpp"
 #include "host/io/watch/map_changes.hpp"
 #include "tests/support/cases.hpp"
 #include "tests/support/evidence.hpp"
@@ -78,8 +79,8 @@ class Reader {
         lacks_.on_map(now, before == nullptr ? BrickCodes{} : changed_bricks(now, *before));
     }
     /// False if it lacks nothing.
-    bool read(const FusedMap& now, std::size_t bytes_max) {
-        const auto piece = lacks_.next(now, bytes_max);
+    bool read(const FusedMap& now, std::size_t bytes_max, const BrickRecords& made = {}) {
+        const auto piece = lacks_.next(now, bytes_max, made);
         if (!piece) return false;
         EXPECT_EQ(map.take({.kind = FrameKind::map, .flags = piece->flags}, piece->payload),
                   WatchedMap::Taken::all);
@@ -111,7 +112,8 @@ TEST(WatchedMap, is_the_map_after_a_hundred_thousand_random_changes_however_slow
         const bool is_new = !again;
         if (is_new) again.emplace();
         again->on_map(now, is_new ? nullptr : last);
-        while (quick.read(now, 4'000)) continue;
+        const BrickRecords made(now, last == nullptr ? BrickCodes{} : changed_bricks(now, *last));
+        while (quick.read(now, 4'000, made)) continue;
         if (round % 25 == 0) expect_equal(quick.map, now);
         if (random() % 3 != 0) (void)slow.read(now, 2'000);
         if (round % 50 > 25) (void)again->read(now, 100'000);
@@ -158,6 +160,40 @@ TEST(WatchedMap, takes_no_payload_that_is_cut_or_changed_to_something_impossible
         (void)watched.take(begins, other);  // ends, within its memory
         EXPECT_LE(watched.log_odds().bricks() * BrickTree::kBrickBytes, std::size_t{9} << 20U);
     }
+}
+
+TEST(BrickRecords, are_those_of_a_payload_and_of_no_other_brick) {
+    FusedMap map(ageing());
+    Changer(9).change(map, 400);
+    const BrickCodes bricks = bricks_of(map);
+    ASSERT_GT(bricks.size(), 20U);
+    BrickCodes half;
+    for (std::size_t i = 0; i < bricks.size(); i += 2) half.push_back(bricks[i]);
+    const BrickRecords made(map, half);
+    for (std::size_t i = 0; i < bricks.size(); ++i) {
+        MissingBricks alone;
+        alone.add({bricks[i]});
+        const std::string payload = alone.take(map, 1);
+        if (i % 2 == 0)
+            EXPECT_TRUE(payload.ends_with(made.find(bricks[i])) && !made.find(bricks[i]).empty());
+        else
+            EXPECT_TRUE(made.find(bricks[i]).empty());
+    }
+    MissingBricks all;
+    all.add(bricks);
+    MissingBricks again = all;
+    EXPECT_EQ(all.take(map, 1U << 20U, made), again.take(map, 1U << 20U));
+}
+
+TEST(ImagePace, lets_one_image_in_200_ms_through_of_each_camera) {
+    ImagePace pace;
+    constexpr std::int64_t kMs = 1'000'000;
+    EXPECT_TRUE(pace.takes(1, {0}));
+    EXPECT_FALSE(pace.takes(1, {199 * kMs}));
+    EXPECT_TRUE(pace.takes(0, {199 * kMs})) << "another camera";
+    EXPECT_TRUE(pace.takes(1, {200 * kMs}));
+    EXPECT_TRUE(pace.takes(1, {100 * kMs})) << "its clock has stepped back";
+    EXPECT_FALSE(pace.takes(1, {150 * kMs}));
 }
 
 TEST(MissingBricks, come_in_turn_so_that_none_waits_for_ever) {
