@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the named ones.
+/// Of the named ones, both of each.
 std::vector<FilePlace> files_of_cameras(const RecordingPaths& paths) {
     std::vector<FilePlace> files;
     for (const std::string& camera : paths.cameras()) {
@@ -19,6 +19,18 @@ std::vector<FilePlace> files_of_cameras(const RecordingPaths& paths) {
         files.push_back(paths.depth_epoch(camera));
     }
     return files;
+}
+
+/// A recording has both files of a camera: a single .oni or .epoch.yaml is the user's own.
+std::vector<FilePlace> files_of_former_cameras(const RecordingPaths& paths) {
+    std::vector<FilePlace> files = files_of_cameras(paths);
+    std::vector<FilePlace> recorded;
+    for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
+        if (!files[i].is_there() || !files[i + 1].is_there()) continue;
+        recorded.push_back(std::move(files[i]));
+        recorded.push_back(std::move(files[i + 1]));
+    }
+    return recorded;
 }
 
 /// meta.yaml is the last.
@@ -133,7 +145,7 @@ Status<AppError> RecordingDraft::commit() {
     for (const FilePlace& file : files_of(draft_)) (file.is_there() ? files : retired).push_back(file.name());
     // Those of another world, and of other cameras.
     std::vector<FilePlace> former = final_.meshes();
-    for (FilePlace& file : files_of_cameras(final_)) former.push_back(std::move(file));
+    for (FilePlace& file : files_of_former_cameras(final_)) former.push_back(std::move(file));
     for (const FilePlace& file : former) {
         const bool is_replaced = std::find(files.begin(), files.end(), file.name()) != files.end();
         const bool is_known = std::find(retired.begin(), retired.end(), file.name()) != retired.end();
