@@ -41,10 +41,15 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
 
 std::optional<std::string> nearest_word(std::string_view word, std::span<const std::string> known) {
     const std::string_view short_word = word.substr(0, 64);
-    const auto near = std::find_if(known.begin(), known.end(), [&](const std::string& one) {
-        return edit_distance(short_word, one) <= kSlipMax;
-    });
-    return near == known.end() ? std::nullopt : std::optional(*near);
+    std::optional<std::string> nearest;
+    std::size_t least = kSlipMax + 1;
+    for (const std::string& one : known) {
+        const std::size_t distance = edit_distance(short_word, one);
+        if (distance >= least) continue;
+        least = distance;
+        nearest = one;
+    }
+    return nearest;
 }
 
 std::string hint_for_key(std::string_view key, std::span<const std::string_view> known_keys,

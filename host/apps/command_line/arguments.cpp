@@ -159,6 +159,27 @@ void check_command_name(const CLI::App& app, const std::string& others, int argc
                                                "; --help explains them" + others});
 }
 
+void check_option_names(const CLI::App& app, const std::string& program) {
+    std::string command = program;
+    std::vector<std::string> names;
+    for (const CLI::App* at = &app; at != nullptr;) {
+        for (const CLI::Option* option : at->get_options())
+            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        const auto chosen = at->get_subcommands();
+        at = chosen.empty() ? nullptr : chosen.front();
+        if (at != nullptr) command += " " + at->get_name();
+    }
+    for (const std::string& word : app.remaining(true)) {
+        const std::string name = word.substr(0, word.find('='));
+        if (!name.starts_with("--") || name.size() == 2) continue;
+        const auto near = rig::nearest_word(name, names);
+        throw CommandFailure(
+            ExitCode::usage,
+            {ErrorCode::unknown_word, "expected an option of '" + command + "'", "'" + name + "'",
+             (near ? "did you mean '" + *near + "'? " : "") + ("'" + command + " --help' lists them")});
+    }
+}
+
 std::optional<int> descriptor_of(const std::string& interface) {
     constexpr std::string_view kPrefix = "fd:";
     check_interface_name(interface);

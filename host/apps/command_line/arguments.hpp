@@ -55,6 +55,10 @@ void check_json_errors(int argc, const char* const* argv);
 /// most similar command and `others`.
 void check_command_name(const CLI::App& app, const std::string& others, int argc, const char* const* argv);
 
+/// After a failed parse: throws CommandFailure with ExitCode::usage if an option is none of the command. The
+/// remedy contains the most similar one.
+void check_option_names(const CLI::App& app, const std::string& program);
+
 /// The descriptor of "fd:N", which is used in place of an interface name; the calling program left it open.
 /// Empty for any other name. CommandFailure (usage) if no open descriptor has that number.
 [[nodiscard]] std::optional<int> descriptor_of(const std::string& interface);

@@ -69,6 +69,24 @@ std::string harmless_message(const CLI::App* app, const CLI::Error& error) {
     return octoskin::printable(what) + (whole.starts_with(what) ? whole.substr(what.size()) : "\n");
 }
 
+/// A misspelt option is the cause of what else is wrong: its value is taken for an argument, or the option
+/// that was meant is missing.
+void parse(CLI::App& app, const std::string& program, int argc, char** argv) {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success&) {  // --help, --version
+        throw;
+    } catch (const CLI::RuntimeError&) {  // reported already
+        throw;
+    } catch (const CLI::ParseError&) {
+        octoskin::app::check_option_names(app, program);
+        throw;
+    } catch (const octoskin::app::CommandFailure&) {
+        octoskin::app::check_option_names(app, program);
+        throw;
+    }
+}
+
 int run(const octoskin::app::Program& program, int argc, char** argv) {
     using namespace octoskin;
     CLI::App app{program.description};
@@ -83,7 +101,7 @@ int run(const octoskin::app::Program& program, int argc, char** argv) {
     try {
         app::check_json_errors(argc, argv);
         app::check_command_name(app, program.others, argc, argv);
-        app.parse(argc, argv);
+        parse(app, program.name, argc, argv);
         return static_cast<int>(ExitCode::ok);
     } catch (const CLI::RuntimeError& outcome) {  // reported already
         return outcome.get_exit_code();

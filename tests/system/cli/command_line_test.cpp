@@ -38,6 +38,20 @@ TEST_F(CommandLine, names_the_command_that_is_none_and_the_one_that_is_like_it) 
                            remedy_is(HasSubstr("octoskin-lab"))));
 }
 
+TEST_F(CommandLine, names_the_option_that_is_none_and_the_one_that_is_like_it) {
+    const auto names = [](const std::string& word, const std::string& near) {
+        return fails_with(64, code_is(ErrorCode::unknown_word), value_is("'" + word + "'"),
+                          remedy_is(HasSubstr("did you mean '" + near + "'?")));
+    };
+    EXPECT_THAT(failure_of("run --rgi x"), names("--rgi", "--rig")) << "--rig is missing, too";
+    EXPECT_THAT(failure_of("replay --ot=x y"), names("--ot", "--out")) << "y is no recording, either";
+    EXPECT_THAT(failure_of("status --jsno"), names("--jsno", "--json"));
+    EXPECT_THAT(failure_of("status --nothing-of-the-kind"),
+                fails_with(64, code_is(ErrorCode::unknown_word), value_is("'--nothing-of-the-kind'"),
+                           remedy_is(Not(HasSubstr("did you mean")))));
+    EXPECT_EQ(octoskin("status --jsno --help").exit_code, 0);
+}
+
 TEST_F(CommandLine, helps_with_options_as_they_are_typed_and_with_exit_codes) {
     for (const std::string command : {"run", "joints"}) {
         const Said said = octoskin(command + " --help");
