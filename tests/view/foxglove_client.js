@@ -1,7 +1,7 @@
 // Foxglove's own client of its protocol, with the reader of ROS 2 messages that Foxglove and Lichtblick use. It prints
 // what it gets as lines of JSON.
 //
-// usage: OCTOSKIN_NPM=FOLDER node foxglove_client.js PORT SUBPROTOCOL SECONDS TOPIC... [-- SERVICE JSON]...
+// usage: OCTOSKIN_NPM=FOLDER node foxglove_client.js PORT SUBPROTOCOL SECONDS TOPIC... [-- SERVICE JSON|asset URI]...
 // FOLDER has the installed packages in oracles/node_modules.
 "use strict";
 
@@ -33,7 +33,13 @@ const readers = new Map();
 client.on("error", (error) => print("error", { message: error.message }));
 client.on("close", () => process.exit(0));
 client.on("open", () => print("open", { subprotocol: socket.protocol }));
-client.on("serverInfo", (info) => print("serverInfo", { info }));
+client.on("serverInfo", (info) => {
+  print("serverInfo", { info });
+  for (let i = 0; i + 1 < calls.length; i += 2)
+    if (calls[i] === "asset") client.fetchAsset(calls[i + 1], i / 2);
+});
+client.on("fetchAssetResponse", ({ requestId, status, error, data }) =>
+  print("asset", { call: requestId, status, error, data: data && Buffer.from(data.buffer, data.byteOffset, data.byteLength).toString("base64") }));
 client.on("status", (status) => print("status", { status }));
 client.on("advertise", (channels) => {
   for (const channel of channels) {

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <utility>
 
 #include "host/apps/command_line/arguments.hpp"
 #include "host/apps/command_line/command_failure.hpp"
@@ -85,10 +86,13 @@ void run_view(ViewOptions& options) {
                              {.code = ErrorCode::conflict,
                               .what = "--rig and --robot are of a recording: a daemon has its own",
                               .remedy = "give a recording, too, or leave them out"});
+    MeshSearch meshes = mesh_search(options.playback.robot.packages);
     if (is_live)
-        serve(view::LiveView::open(options.control, options.web), has_page);
+        serve(view::LiveView::open(options.control, options.web, std::move(meshes)), has_page);
     else
-        serve(view::RecordedView::open(app::playback_request(options.playback), options.web), has_page);
+        serve(
+            view::RecordedView::open(app::playback_request(options.playback), options.web, std::move(meshes)),
+            has_page);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ using view::text_of;
 
 constexpr std::uint8_t kMessageOpcode = 1;
 constexpr std::uint8_t kResponseOpcode = 3;
+constexpr std::uint8_t kAssetOpcode = 4;
 constexpr std::uint8_t kClientMessageOpcode = 1;
 constexpr std::uint8_t kCallOpcode = 2;
 
@@ -56,6 +57,25 @@ Result<Request, Fault> unsubscribe_of(const Json& list) {
         request.subscriptions.push_back(one.get<std::uint32_t>());
     }
     return Request(std::move(request));
+}
+
+Result<Request, Fault> fetch_of(const Json& message) {
+    const Json& uri = at(message, "uri");
+    if (!uri.is_string() || !is_identifier(at(message, "requestId"))) return unexpected(Fault::bad_member);
+    FetchAsset request{at(message, "requestId").get<std::uint32_t>(), uri.get<std::string>()};
+    if (request.uri.size() > kUriMax) return unexpected(Fault::too_many);
+    return Request(std::move(request));
+}
+
+std::string asset_answer(std::uint32_t request, std::uint8_t status, std::string_view message) {
+    std::string bytes;
+    ByteWriter writer(bytes);
+    writer.put(kAssetOpcode);
+    writer.put(request);
+    writer.put(status);
+    writer.put(static_cast<std::uint32_t>(message.size()));
+    bytes += message;
+    return bytes;
 }
 
 }  // namespace
@@ -129,6 +149,16 @@ std::string response_head(std::uint32_t service, std::uint32_t call, std::string
     return bytes;
 }
 
+std::string asset_head(std::uint32_t request) {
+    constexpr std::uint8_t kSuccess = 0;
+    return asset_answer(request, kSuccess, {});
+}
+
+std::string asset_failure(std::uint32_t request, std::string_view message) {
+    constexpr std::uint8_t kError = 1;
+    return asset_answer(request, kError, message);
+}
+
 std::string_view name_of(Fault fault) noexcept {
     switch (fault) {
         case Fault::no_json:
@@ -138,7 +168,7 @@ std::string_view name_of(Fault fault) noexcept {
         case Fault::bad_member:
             return "a list or an identifier is missing or has another type";
         case Fault::too_many:
-            return "more than 1024 entries";
+            return "more than 1024 entries, or a URI of more than 2048 bytes";
         case Fault::truncated:
             return "a length is beyond the end";
         case Fault::bad_opcode:
@@ -156,6 +186,7 @@ Result<Request, Fault> parse_text(std::string_view text) {
     const auto operation = op.get<std::string>();
     if (operation == "subscribe") return subscribe_of(at(message, "subscriptions"));
     if (operation == "unsubscribe") return unsubscribe_of(at(message, "subscriptionIds"));
+    if (operation == "fetchAsset") return fetch_of(message);
     constexpr std::size_t kShownMax = 64;
     return Request(Unsupported{operation.substr(0, kShownMax)});
 }

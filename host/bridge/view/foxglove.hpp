@@ -54,6 +54,10 @@ enum class Level : std::uint8_t { info, warning, error };
                                             const std::string& message);
 /// The 13 bytes before the payload of a message.
 [[nodiscard]] std::string message_head(std::uint32_t subscription, WallTime time);
+/// The bytes before the file of an answer to FetchAsset.
+[[nodiscard]] std::string asset_head(std::uint32_t request);
+/// The whole answer.
+[[nodiscard]] std::string asset_failure(std::uint32_t request, std::string_view message);
 /// The bytes before the payload of an answer to a call.
 [[nodiscard]] std::string response_head(std::uint32_t service, std::uint32_t call, std::string_view encoding);
 
@@ -74,17 +78,23 @@ struct ServiceCall {
     std::string encoding;
     std::string payload;
 };
+/// Asks for a file, as a mesh of the robot.
+struct FetchAsset {
+    std::uint32_t request = 0;  ///< chosen by the client
+    std::string uri;            ///< at most kUriMax bytes
+};
+inline constexpr std::size_t kUriMax = 2048;
 /// An operation of the protocol that this server does not have.
 struct Unsupported {
     std::string operation;  ///< at most 64 bytes
 };
-using Request = std::variant<Subscribe, Unsubscribe, ServiceCall, Unsupported>;
+using Request = std::variant<Subscribe, Unsubscribe, ServiceCall, FetchAsset, Unsupported>;
 
 enum class Fault : std::uint8_t {
     no_json,       ///< the text is not JSON, or nests too deep
     no_operation,  ///< the JSON is no object with a text `op`
     bad_member,    ///< a list or an identifier is missing or has another type
-    too_many,      ///< over kListMax
+    too_many,      ///< over kListMax, or a URI over kUriMax
     truncated,     ///< a length is beyond the message's end
     bad_opcode,    ///< the first byte is no operation
 };

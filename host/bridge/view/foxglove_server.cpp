@@ -87,6 +87,11 @@ void FoxgloveServer::add_service(std::string name, std::string type,
     services_.emplace(id, Service{std::move(info), std::move(handler)});
 }
 
+void FoxgloveServer::serve_assets(ReadAsset read) {
+    info_.capabilities.emplace_back("assets");
+    read_asset_ = std::move(read);
+}
+
 void FoxgloveServer::notify(foxglove::Level level, const std::string& id, const std::string& sentence) {
     const auto found = notices_.find(id);
     if (found == notices_.end() ? sentence.empty() : found->second.sentence == sentence) return;
@@ -209,6 +214,27 @@ void FoxgloveServer::answer(ClientId id, std::uint32_t service, std::uint32_t ca
              std::make_shared<const std::string>(std::move(answer).value()), true});
 }
 
+void FoxgloveServer::take(ClientId id, foxglove::FetchAsset request) {
+    if (!read_asset_) return take(id, foxglove::Unsupported{"fetchAsset"});
+    std::deque<foxglove::FetchAsset>& waiting = clients_[id].assets;
+    if (waiting.size() >= kAssetsMax) {
+        const auto failure = foxglove::asset_failure(request.request, "256 files wait: wait for one of them");
+        return put(id, {failure, nullptr, true});
+    }
+    waiting.push_back(std::move(request));
+    transport_.wake(id);
+}
+
+WebMessage FoxgloveServer::next_asset(ViewClient& client) {
+    const foxglove::FetchAsset asked = std::move(client.assets.front());
+    client.assets.pop_front();
+    client.had_asset = true;
+    auto file = read_asset_(asked.uri);
+    if (!file) return {foxglove::asset_failure(asked.request, file.error()), nullptr, true};
+    return {foxglove::asset_head(asked.request), std::make_shared<const std::string>(std::move(file).value()),
+            true};
+}
+
 void FoxgloveServer::take(ClientId id, const foxglove::Unsupported& request) {
     ++counts_.unsupported;
     warn(id, "this server does not have the operation '" + request.operation + "'");
@@ -220,7 +246,14 @@ void FoxgloveServer::warn(ClientId id, const std::string& sentence) {
 
 std::optional<WebMessage> FoxgloveServer::next(ClientId client) {
     const auto found = clients_.find(client);
-    return found == clients_.end() ? std::nullopt : found->second.next();
+    if (found == clients_.end()) return std::nullopt;
+    ViewClient& ready = found->second;
+    // Files and other messages in turn: neither keeps the other from the client.
+    if (!ready.assets.empty() && !ready.had_asset) return next_asset(ready);
+    ready.had_asset = false;
+    auto message = ready.next();
+    if (!message && !ready.assets.empty()) return next_asset(ready);
+    return message;
 }
 
 void FoxgloveServer::on_close(ClientId client) {

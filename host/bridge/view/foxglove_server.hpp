@@ -36,6 +36,8 @@ class FoxgloveServer final : public WebClients {
     /// Calls of one client without an answer; further ones fail at once.
     static constexpr std::size_t kCallsMax = 4;
     static constexpr std::size_t kSubscriptionsMax = foxglove::kListMax;
+    /// Files that one client waits for; further ones fail at once.
+    static constexpr std::size_t kAssetsMax = 256;
 
     /// What it needs of the transport.
     struct Transport {
@@ -63,6 +65,11 @@ class FoxgloveServer final : public WebClients {
 
     /// Takes requests, which are JSON objects in one line.
     void add_service(std::string name, std::string type, std::function<void(std::string, Reply)> handler);
+
+    /// Files for clients, by URI. `read` is called when the client is ready for the file: it gives the bytes,
+    /// or a sentence why there are none. To be called before a client is there.
+    using ReadAsset = std::function<Result<std::string, std::string>(const std::string& uri)>;
+    void serve_assets(ReadAsset read);
 
     /// A sentence that all clients show, now and later, until another one with this `id`, or an empty one,
     /// replaces it.
@@ -103,7 +110,9 @@ class FoxgloveServer final : public WebClients {
     void take(ClientId id, const foxglove::Subscribe& request);
     void take(ClientId id, const foxglove::Unsubscribe& request);
     void take(ClientId id, foxglove::ServiceCall request);
+    void take(ClientId id, foxglove::FetchAsset request);
     void take(ClientId id, const foxglove::Unsupported& request);
+    [[nodiscard]] WebMessage next_asset(ViewClient& client);
     void subscribe(ClientId id, const foxglove::Subscription& wanted);
     void answer(ClientId id, std::uint32_t service, std::uint32_t call, Answer answer);
     void warn(ClientId id, const std::string& sentence);
@@ -113,6 +122,7 @@ class FoxgloveServer final : public WebClients {
     std::map<ChannelId, Channel> channels_;
     ChannelId next_channel_ = 1;
     std::map<std::uint32_t, Service> services_;
+    ReadAsset read_asset_;
     std::map<ClientId, ViewClient> clients_;
     std::map<std::string, Notice> notices_;
     ViewCounts counts_;

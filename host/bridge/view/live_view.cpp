@@ -21,9 +21,9 @@ LiveView::LiveView(std::unique_ptr<ViewHost> host, const std::filesystem::path& 
     add_services();
 }
 
-Result<std::unique_ptr<LiveView>, AppError> LiveView::open(std::filesystem::path control,
-                                                           WebOptions options) {
-    auto host = ViewHost::open(std::move(options), "live");
+Result<std::unique_ptr<LiveView>, AppError> LiveView::open(std::filesystem::path control, WebOptions options,
+                                                           MeshSearch meshes) {
+    auto host = ViewHost::open(std::move(options), std::move(meshes), "live");
     if (!host) return unexpected(host.error());
     return std::unique_ptr<LiveView>(new LiveView(std::move(host).value(), control));
 }

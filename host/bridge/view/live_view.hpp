@@ -17,9 +17,10 @@ namespace octoskin::view {
 
 class LiveView {
   public:
-    /// Listens. A daemon need not be there. `control`: its socket.
+    /// Listens. A daemon need not be there. `control`: its socket; `meshes`: where those of the robot are.
     [[nodiscard]] static Result<std::unique_ptr<LiveView>, AppError> open(std::filesystem::path control,
-                                                                          WebOptions options);
+                                                                          WebOptions options,
+                                                                          MeshSearch meshes);
     LiveView(const LiveView&) = delete;
     LiveView& operator=(const LiveView&) = delete;
 

@@ -39,7 +39,7 @@ watch::WatchedMap emptied(const watch::WatchedMap& map) {
 }  // namespace
 
 Result<std::unique_ptr<RecordedView>, AppError> RecordedView::open(const PlaybackRequest& request,
-                                                                   WebOptions options) {
+                                                                   WebOptions options, MeshSearch meshes) {
     auto events = bridge::RecordedEvents::open(request);
     if (!events) return unexpected(events.error());
     const auto span = span_of(request.recording, events->clock());
@@ -47,7 +47,7 @@ Result<std::unique_ptr<RecordedView>, AppError> RecordedView::open(const Playbac
         return fail(ExitCode::bad_data, {.code = ErrorCode::no_data,
                                          .what = "has no frame: there is nothing to show",
                                          .file = request.recording.directory});
-    auto host = ViewHost::open(std::move(options), "recording");
+    auto host = ViewHost::open(std::move(options), std::move(meshes), "recording");
     if (!host) return unexpected(host.error());
     return std::unique_ptr<RecordedView>(
         new RecordedView(std::move(host).value(), request, std::move(events).value(), *span));

@@ -29,8 +29,10 @@ class RecordedView final : public PlayerListener {
     static constexpr std::size_t kQuestionsMax = 8;
 
     /// Reads rig, robot and the times of the recording, and listens. Errors: those of RecordedEvents::open().
+    /// `meshes`: where those of the robot are; none are in a recording.
     [[nodiscard]] static Result<std::unique_ptr<RecordedView>, AppError> open(const PlaybackRequest& request,
-                                                                              WebOptions options);
+                                                                              WebOptions options,
+                                                                              MeshSearch meshes);
     ~RecordedView() override { *is_forgotten_ = true; }
     RecordedView(const RecordedView&) = delete;
     RecordedView& operator=(const RecordedView&) = delete;

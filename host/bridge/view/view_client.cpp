@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/bridge/view/foxglove.hpp"
-
 namespace octoskin::view {
 namespace {
 

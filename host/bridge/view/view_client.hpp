@@ -11,6 +11,7 @@
 #include <string>
 
 #include "common/time.hpp"
+#include "host/bridge/view/foxglove.hpp"
 #include "host/bridge/view/message_stream.hpp"
 #include "host/bridge/view/web_server.hpp"
 
@@ -50,6 +51,9 @@ class ViewClient {
     /// Messages that were replaced before they left.
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
 
+    /// Files that it asked for and did not get yet.
+    std::deque<foxglove::FetchAsset> assets;
+    bool had_asset = false;  ///< its last message was one
     /// Calls without an answer yet.
     std::size_t calls = 0;
     /// How many of `dropped` the client knows of.

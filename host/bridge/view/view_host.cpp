@@ -27,8 +27,10 @@ foxglove::ServerInfo server_info(const std::string& mode) {
 ViewHost::ViewHost(std::string host, const std::string& mode)
     : host_(std::move(host)), server_(server_info(mode)), view_(ViewServer::open(server_, mode).value()) {}
 
-Result<std::unique_ptr<ViewHost>, AppError> ViewHost::open(WebOptions options, const std::string& mode) {
+Result<std::unique_ptr<ViewHost>, AppError> ViewHost::open(WebOptions options, MeshSearch meshes,
+                                                           const std::string& mode) {
     std::unique_ptr<ViewHost> made(new ViewHost(options.host, mode));
+    made->view_->serve_meshes(std::move(meshes));
     auto web = WebServer::open(std::move(options), made->server_);
     if (!web) return unexpected(web.error());
     made->web_ = std::move(web).value();

@@ -16,8 +16,9 @@ namespace octoskin::view {
 
 class ViewHost {
   public:
-    /// Listens. `mode`: "live" or "recording".
+    /// Listens. `mode`: "live" or "recording"; `meshes`: where those of the robot are.
     [[nodiscard]] static Result<std::unique_ptr<ViewHost>, AppError> open(WebOptions options,
+                                                                          MeshSearch meshes,
                                                                           const std::string& mode);
     ~ViewHost() { server_.disconnect(); }
     ViewHost(const ViewHost&) = delete;

@@ -132,7 +132,13 @@ void ViewServer::publish_robot() {
     server_.publish(robot_channel_, wall_now(), text_of(robot));
 }
 
+void ViewServer::serve_meshes(MeshSearch search) {
+    meshes_.emplace(std::move(search));
+    server_.serve_assets([this](const std::string& uri) { return meshes_->read(uri); });
+}
+
 void ViewServer::on_urdf(const std::string& text) {
+    if (meshes_) meshes_->on_urdf(text);
     urdf_ = text.empty() ? std::nullopt : std::optional(text);
     urdf_outlet_.send(ros::std_msgs::String{text}, wall_now());
     publish_robot();

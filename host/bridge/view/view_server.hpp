@@ -14,6 +14,7 @@
 #include "host/bridge/robot/robot_now.hpp"
 #include "host/bridge/view/foxglove_server.hpp"
 #include "host/bridge/view/map_board.hpp"
+#include "host/bridge/view/robot_meshes.hpp"
 #include "host/bridge/view/view_topics.hpp"
 
 namespace octoskin::view {
@@ -38,6 +39,8 @@ class ViewServer final : public bridge::DaemonListener {
     void on_lost(const std::string& why) override;
     void on_urdf(const std::string& text) override;
     void on_image(const watch::WatchedImage& image, HostTime captured) override;
+    /// Clients get the meshes that the robot's URDF names. To be called before a client is there.
+    void serve_meshes(MeshSearch search);
     /// What a recording says of its place in time.
     void change_place(nlohmann::ordered_json place);
 
@@ -83,6 +86,7 @@ class ViewServer final : public bridge::DaemonListener {
     std::optional<bridge::RobotNow> robot_now_;
     nlohmann::ordered_json described_;
     std::optional<std::string> urdf_;
+    std::optional<RobotMeshes> meshes_;
     bool is_connected_ = false;
     std::string why_ = "not connected yet";
     nlohmann::ordered_json place_;

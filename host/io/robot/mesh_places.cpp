@@ -141,6 +141,7 @@ Result<std::optional<MeshPlaces::PackageFolder>, Error> MeshPlaces::folder_of(
 
 /// Folders that may be a copy of the package under another name: none if their package.xml has another one.
 std::vector<fs::path> MeshPlaces::copies_of(const std::string& package) const {
+    if (urdf_folder_.empty()) return {};
     const auto name = package_name_in(root_);
     if (name && !name->empty() && *name != package) return {};
     std::vector<fs::path> copies;
@@ -238,6 +239,9 @@ Result<FilePlace, Error> MeshPlaces::find(const std::string& uri) const {
         (uri.starts_with(kPackage) || uri.starts_with(kFile) || uri.find("://") == std::string::npos))
         return find_in_recording(uri);
     if (uri.starts_with(kPackage)) return find_in_package(uri);
+    if (urdf_folder_.empty())
+        return unexpected(Error{ErrorCode::unsupported,
+                                "expected package://, because the folder of the URDF is not known", uri});
     if (uri.starts_with(kFile)) return find_below_roots(uri.substr(kFile.size()), uri);
     if (uri.find("://") == std::string::npos) return find_below_roots(uri, uri);
     return unexpected(Error{ErrorCode::unsupported, "expected package://, file:// or a path", uri,

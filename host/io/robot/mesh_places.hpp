@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/result.hpp"
@@ -36,6 +37,8 @@ class MeshPlaces {
   public:
     /// `urdf`: if it is below a named folder (confined_to_recording()), all meshes are below that folder.
     MeshPlaces(const FilePlace& urdf, MeshSearch search);
+    /// Of a URDF whose place is not known: only package:// below the folders of `search`.
+    explicit MeshPlaces(MeshSearch search) : search_(std::move(search)) {}
 
     /// The file of a <mesh filename="...">:
     /// - package://NAME/FILE: below the folder of that package, the first of these that exists: the one given
@@ -66,7 +69,7 @@ class MeshPlaces {
     [[nodiscard]] std::vector<std::filesystem::path> copies_of(const std::string& package) const;
     [[nodiscard]] Result<FilePlace, Error> find_in_recording(const std::string& uri) const;
 
-    std::filesystem::path urdf_folder_;  ///< absolute
+    std::filesystem::path urdf_folder_;  ///< absolute; empty: not known
     std::filesystem::path root_;         ///< of relative paths
     MeshSearch search_;
     std::optional<NamedFolder> recording_;

@@ -5,11 +5,16 @@ usage: page_test.py PROGRAMS NODE MODULES [--screenshots FOLDER] [unittest's arg
   PROGRAMS  folder of octoskin     MODULES  folder with node_modules/playwright-core
 """
 import argparse
+import base64
+import json
 import math
+import os
 import pathlib
+import subprocess
 import sys
 import unittest
 
+import mesh_files
 from browser import Browser
 from page_world import ORIGIN_KEY, RESOLUTION_M, World, surface
 
@@ -184,6 +189,27 @@ class Page(unittest.TestCase):
             turn = poses.product(T_root_map["q"], drawn[link]["q"])
             self.assertGreater(abs(sum(a * b for a, b in zip(turn, T_root_link["q"]))), 1 - 1e-6, link)
         self.assertGreater(max(abs(position) for position in joints.values()), 0.5)
+
+    def test_4_draws_the_meshes_that_the_robot_names(self):
+        visuals = self.browser.until(
+            "(({triangles, missing}) => Object.keys({...triangles, ...missing}).length === 5 && {triangles, missing})"
+            "(window.octoskin.visuals())")
+        self.assertEqual(visuals["triangles"], {f"panda_link{link}": 12 for link in (1, 2, 3)})
+        self.assertEqual(sorted(visuals["missing"]), ["panda_link4", "panda_link6"])
+        self.assertIn("none.stl", visuals["missing"]["panda_link4"])
+        self.assertIn("none.stl", self.browser.evaluate("document.getElementById('meshes').textContent"))
+
+    def test_4_gives_meshes_to_foxglove_s_client(self):
+        client = pathlib.Path(__file__).resolve().parents[1] / "foxglove_client.js"
+        names = [f"package://meshes_of_test/{name}" for name in ("box.stl", "none.stl", "../recording/rig.yaml")]
+        said = subprocess.run(
+            [*self.world.prefix, OPTIONS.node, client, str(self.world.port), "foxglove.sdk.v1", "3", "--",
+             *(word for name in names for word in ("asset", name))],
+            env={**os.environ, "OCTOSKIN_NPM": str(pathlib.Path(OPTIONS.modules).parent)}, check=True,
+            capture_output=True, text=True).stdout
+        answers = {answer["call"]: answer for answer in map(json.loads, said.splitlines()) if answer["event"] == "asset"}
+        self.assertEqual([answers[call]["status"] for call in range(3)], [0, 1, 1])
+        self.assertEqual(base64.b64decode(answers[0]["data"]), mesh_files.stl())
 
     def test_5_picks_the_voxel_under_the_pixel(self):
         self.world.wait_for_save()

@@ -9,6 +9,10 @@ import sys
 import tempfile
 import time
 
+import mesh_files
+
+# Links with a mesh as visual; that of link 4 does not exist, that of link 6 has no triangle.
+VISUALS = {1: "box.stl", 2: "box.dae", 3: "box.OBJ", 4: "none.stl", 6: "empty.stl"}
 # A slow circle: tests have 20 s while no range comes.
 SCENARIO = """extends: {}/hw/worlds/experiment.scenario.yaml
 motion: {{circle: {{ticks_per_revolution: 750}}}}
@@ -64,8 +68,23 @@ class World:
                  self.path / "scenario.yaml")
         self.run(self.bin / "octoskin", "replay", self.path / "recording", "--fused-only", "--configuration",
                  self.path / "mapping.yaml", "--out", self.path / "replayed")
+        self.add_meshes()
         (self.path / "maps").mkdir()
         shutil.copy(self.path / "replayed/fused.ot", self.path / "maps")
+
+    def add_meshes(self):
+        (self.path / "meshes").mkdir()
+        files = {"box.stl": mesh_files.stl(), "box.dae": mesh_files.dae(), "box.OBJ": mesh_files.obj(),
+                 "empty.stl": b"solid empty\nendsolid\n"}
+        for name, content in files.items():
+            (self.path / "meshes" / name).write_bytes(content)
+        robot = self.path / "recording/robot.urdf"
+        text = robot.read_text()
+        for link, file in VISUALS.items():
+            begin = f'<link name="panda_link{link}">'
+            assert begin in text, begin
+            text = text.replace(begin, begin + mesh_files.visual(file))
+        robot.write_text(text)
 
     def start_daemon(self):
         daemon_end, self.bus = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -80,7 +99,8 @@ class World:
     def start_view(self, port=0):
         """At any free port, or at the one that a page already knows."""
         self.view = subprocess.Popen([*self.prefix, self.bin / "octoskin", "view", "--socket", self.path / "control",
-                                      "--port", str(port)], stderr=self.log_file("view"))
+                                      "--port", str(port), "--package-path",
+                                      f"meshes_of_test={self.path / 'meshes'}"], stderr=self.log_file("view"))
         self.wait_for(self.url_of_view, "view")
         self.url = self.url_of_view()
         self.port = int(re.search(r":(\d+)", self.url)[1])

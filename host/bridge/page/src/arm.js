@@ -1,6 +1,7 @@
 // The robot with its sensors and cameras, as it is or was at the time that is shown.
 import { Cameras } from './cameras.js';
 import { Kinematics } from './kinematics.js';
+import { meshOf } from './meshes.js';
 import { Past } from './past.js';
 import { Readings } from './readings.js';
 import { Robot } from './robot.js';
@@ -8,9 +9,15 @@ import { Sensors } from './sensors.js';
 import { sensorStates } from './sensor_state.js';
 
 export class Arm {
-  /** @param {import('./scene.js').Scene} scene */
-  constructor(scene) {
+  /**
+   * @param {import('./scene.js').Scene} scene
+   * @param {{fetchAsset: function(string): Promise<ArrayBuffer>, onMeshes: function()}} hears `onMeshes`: the robot
+   *   looks otherwise, or it is known why not
+   */
+  constructor(scene, { fetchAsset, onMeshes }) {
     this.scene = scene;
+    this.fetchMesh = async (uri) => meshOf(uri, await fetchAsset(uri));
+    this.onMeshes = onMeshes;
     this.visible = { robot: true, sensors: true, cameras: true };
     this.description = null;
     this.forget();
@@ -31,7 +38,13 @@ export class Arm {
     this.description = description;
     this.readings = new Readings(); // those of another rig's sensors are not theirs
     this.kinematics = new Kinematics(description);
-    this.robot = new Robot(this.scene.scene, this.kinematics, description, 'robot');
+    this.robot = new Robot(this.scene.scene, this.kinematics, description, 'robot', {
+      fetchMesh: this.fetchMesh,
+      onChange: () => {
+        this.scene.request();
+        this.onMeshes();
+      },
+    });
     this.sensors = new Sensors(this.scene.scene, description);
     this.cameras = new Cameras(this.scene.scene, description);
     this.setTheme(theme);

@@ -1,7 +1,7 @@
 // A client of Foxglove's WebSocket protocol that connects again when the connection ends.
 
 const SUBPROTOCOLS = ['foxglove.sdk.v1', 'foxglove.websocket.v1'];
-const OPCODE = { message: 1, request: 2, response: 3 };
+const OPCODE = { message: 1, request: 2, response: 3, asset: 4 };
 const RETRY_MS = 1000;
 const ANSWER_MS = 30000;
 
@@ -34,6 +34,7 @@ export class Connection {
     this.onState('connecting');
     this.topics = new Map(); // subscription id -> {topic, handle}
     this.services = new Map(); // name -> id
+    this.hasAssets = false;
     this.socket = new WebSocket(this.url, SUBPROTOCOLS);
     this.socket.binaryType = 'arraybuffer';
     this.socket.onmessage = ({ data }) => this.#take(data);
@@ -67,6 +68,7 @@ export class Connection {
   #takeText(message) {
     if (message.op === 'serverInfo') {
       this.counts.connections += 1;
+      this.hasAssets = message.capabilities?.includes('assets') ?? false;
       this.onServer(message);
       this.onState('connected');
     } else if (message.op === 'advertise') this.#subscribe(message.channels);
@@ -98,7 +100,13 @@ export class Connection {
       const encodingLength = view.getUint32(9, true);
       const text = new TextDecoder().decode(new Uint8Array(buffer, 13 + encodingLength));
       this.#settle(view.getUint32(5, true), { answer: JSON.parse(text) });
-    }
+    } else if (opcode === OPCODE.asset) this.#takeAsset(view);
+  }
+
+  #takeAsset(view) {
+    const [request, status, length] = [view.getUint32(1, true), view.getUint8(5), view.getUint32(6, true)];
+    const failure = new TextDecoder().decode(new Uint8Array(view.buffer, 10, length));
+    this.#settle(request, status === 0 ? { answer: view.buffer.slice(10 + length) } : { failure });
   }
 
   #settle(call, { answer, failure }) {
@@ -131,6 +139,19 @@ export class Connection {
     bytes.set(encoding, 13);
     bytes.set(payload, 13 + encoding.length);
     this.socket.send(bytes);
+    return this.#answerOf(call);
+  }
+
+  /** A file that the server has, as a mesh of the robot. @returns {Promise<ArrayBuffer>} rejected with a sentence */
+  fetchAsset(uri) {
+    if (!this.hasAssets || this.socket.readyState !== WebSocket.OPEN)
+      return Promise.reject(new Error('octoskin serves no files'));
+    const requestId = this.nextCall++;
+    this.socket.send(JSON.stringify({ op: 'fetchAsset', uri, requestId }));
+    return this.#answerOf(requestId);
+  }
+
+  #answerOf(call) {
     return new Promise((resolve, reject) => {
       const timer = setTimeout(
         () => this.#settle(call, { failure: `no answer within ${ANSWER_MS / 1000} s` }),

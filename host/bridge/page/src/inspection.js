@@ -19,6 +19,12 @@ export function inspection(page) {
     linkPoses: () =>
       Object.fromEntries([...(page.arm.robot?.drawnPoses() ?? [])].map(([name, matrix]) => [name, poseOf(matrix)])),
 
+    /** Triangles of the robot's visuals by link, and why other links have their capsules. */
+    visuals: () => ({
+      triangles: Object.fromEntries(page.arm.robot?.drawnTriangles() ?? []),
+      missing: Object.fromEntries(page.arm.robot?.missing ?? []),
+    }),
+
     /** "#rrggbb" of the drawn cones, by "node sensor". */
     coneColours: () => page.arm.sensors?.drawnColours() ?? {},
 

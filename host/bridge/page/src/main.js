@@ -26,7 +26,10 @@ class Page {
     this.taken_ms = []; // of the maps that are not drawn yet
     this.scene = new Scene(document.getElementById('canvas'));
     this.layer = new MapLayer(this.scene.scene);
-    this.arm = new Arm(this.scene);
+    this.arm = new Arm(this.scene, {
+      fetchAsset: (uri) => this.connection.fetchAsset(uri),
+      onMeshes: () => this.panels.showMeshes(this.arm.robot.missing),
+    });
     this.panels = new Panels();
     this.details = new Details();
     this.images = new Images();

@@ -48,6 +48,14 @@ export class Panels {
     this.#showRejected(this.samples[0].status, status);
   }
 
+  /** Links that are drawn as capsules, although the robot has meshes of them. @param {Map<string, string>} missing */
+  showMeshes(missing) {
+    const line = document.getElementById('meshes');
+    line.hidden = missing.size === 0;
+    const [first] = missing.values();
+    line.textContent = `Drawn as capsules: ${[...missing.keys()].join(', ')}. ${first ?? ''}`;
+  }
+
   /** Forgets earlier samples: after a restart counters begin at 0. */
   #keep(status) {
     const newest = this.samples.at(-1);

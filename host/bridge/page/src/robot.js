@@ -1,4 +1,4 @@
-// The arm in the scene: its body as capsules, and the visuals of its URDF that are not meshes.
+// The arm in the scene: the visuals of its URDF, or its body as capsules.
 import * as THREE from 'three';
 import URDFLoader from 'urdf-loader';
 
@@ -15,16 +15,34 @@ function capsule({ a, b, radius_m }, material) {
   return mesh;
 }
 
-/** Visuals by link. The files of meshes are not served: those links have their capsules. */
-function visualsOf(urdf) {
+/**
+ * Visuals by link. A link whose meshes are not all there has none: its capsules remain.
+ * @param {string} urdf @param {function(string): Promise<THREE.Object3D>} fetchMesh
+ * @returns {Map<string, Promise<THREE.Object3D[]>>} rejected with the reason
+ */
+function visualsOf(urdf, fetchMesh) {
   const loader = new URDFLoader();
-  loader.loadMeshCb = (_path, _manager, _material, done) => done(new THREE.Group());
-  const visuals = new Map();
-  for (const [name, link] of Object.entries(parsedLinks(loader, urdf)))
-    visuals.set(
-      name,
-      link.children.filter((child) => child.isURDFVisual && hasSurface(child)),
+  const fetched = new Map(); // group of the visual -> mesh
+  loader.packages = (name) => `package://${name}`;
+  loader.loadMeshCb = (uri, _manager, _material, done) => {
+    const group = new THREE.Group();
+    fetched.set(
+      group,
+      fetchMesh(uri).then((mesh) => group.add(mesh)),
     );
+    done(group);
+  };
+  const visuals = new Map();
+  for (const [name, link] of Object.entries(parsedLinks(loader, urdf))) {
+    const own = link.children.filter((child) => child.isURDFVisual);
+    const meshes = [];
+    for (const visual of own) visual.traverse((part) => fetched.has(part) && meshes.push(fetched.get(part)));
+    if (own.length > 0)
+      visuals.set(
+        name,
+        Promise.all(meshes).then(() => own.filter(hasSurface)),
+      );
+  }
   return visuals;
 }
 
@@ -49,8 +67,10 @@ export class Robot {
   /**
    * @param {THREE.Object3D} parent in the map frame @param {import('./kinematics.js').Kinematics} kinematics
    * @param {object} description the answer to `describe`, and `urdf` @param {string} name
+   * @param {{fetchMesh: function(string): Promise<THREE.Object3D>, onChange: function()}} [hears] `onChange`: visuals
+   *   have come
    */
-  constructor(parent, kinematics, description, name) {
+  constructor(parent, kinematics, description, name, hears) {
     this.parent = parent;
     this.kinematics = kinematics;
     this.root = new THREE.Group();
@@ -60,7 +80,9 @@ export class Robot {
     for (const link of description.links) this.#addLink(link);
     for (const body of description.body)
       this.links.get(body.link)?.add(capsule(body, this.materials.get(body.link)));
-    if (description.urdf) this.#addVisuals(description.urdf);
+    /** Why links are drawn as capsules, although the URDF has visuals of them: a sentence each. */
+    this.missing = new Map();
+    if (description.urdf && hears) this.#addVisuals(description.urdf, hears);
     parent.add(this.root);
   }
 
@@ -73,13 +95,25 @@ export class Robot {
     this.root.add(group);
   }
 
-  #addVisuals(urdf) {
-    for (const [name, visuals] of visualsOf(urdf)) {
-      const group = this.links.get(name);
-      if (!group || visuals.length === 0) continue;
-      for (const body of group.children) body.visible = false;
-      group.add(...visuals);
+  #addVisuals(urdf, { fetchMesh, onChange }) {
+    for (const [name, visuals] of visualsOf(urdf, fetchMesh)) {
+      if (!this.links.has(name)) continue;
+      visuals
+        .then((parts) => this.#showVisuals(name, parts))
+        .catch(({ message }) => this.missing.set(name, message))
+        .finally(onChange);
     }
+  }
+
+  #showVisuals(name, visuals) {
+    if (visuals.length === 0 || this.isRemoved) return;
+    const group = this.links.get(name);
+    for (const body of group.children) body.visible = false;
+    for (const visual of visuals)
+      visual.traverse((part) => {
+        if (part.isMesh) part.material = this.materials.get(name);
+      });
+    group.add(...visuals);
   }
 
   /** @param {Map<string, number>} positions rad or m */
@@ -110,7 +144,22 @@ export class Robot {
     return new Map(drawn.map(([name, group]) => [name, group.matrixWorld]));
   }
 
+  /** Triangles of the visuals by link. @returns {Map<string, number>} */
+  drawnTriangles() {
+    const drawn = new Map();
+    for (const [name, group] of this.links) {
+      let triangles = 0;
+      group.traverse((part) => {
+        if (!part.isMesh || part.geometry.type === 'CapsuleGeometry') return;
+        triangles += (part.geometry.index ?? part.geometry.attributes.position).count / 3;
+      });
+      if (triangles > 0) drawn.set(name, triangles);
+    }
+    return drawn;
+  }
+
   remove() {
+    this.isRemoved = true;
     this.parent.remove(this.root);
     this.root.traverse((part) => part.geometry?.dispose());
     for (const material of this.materials.values()) material.dispose();

@@ -281,6 +281,52 @@ TEST_F(FoxgloveServerTest, drops_a_client_that_asks_and_does_not_read) {
     EXPECT_GT(server.counts().of(Refusal::stalled), 0U);
 }
 
+TEST_F(FoxgloveServerTest, serves_files_one_at_a_time_between_other_messages) {
+    std::vector<std::string> read;
+    server.serve_assets([&](const std::string& uri) -> Result<std::string, std::string> {
+        read.push_back(uri);
+        if (uri == "none") return unexpected(std::string("there is none"));
+        return std::string(std::size_t{8} << 20U, 'm');  // more than a client's texts may have
+    });
+    const ChannelId busy = channel("/busy", false);
+    server.on_open(1);
+    const Json info = Json::parse(server.next(1)->head);
+    EXPECT_EQ(info.at("capabilities"), Json::array({"assets"}));
+    (void)all(1);
+    subscribe(1, 5, busy);
+    (void)all(1);
+    const auto fetch = [&](const std::string& uri, std::uint32_t request) {
+        say(1, {{"op", "fetchAsset"}, {"uri", uri}, {"requestId", request}});
+    };
+    for (std::uint32_t i = 0; i < 3; ++i) fetch(i == 1 ? "none" : "mesh", i);
+    EXPECT_TRUE(read.empty()) << "a file is read when the client is ready for it";
+    std::vector<std::uint8_t> opcodes;
+    for (int i = 0; i < 5; ++i) {
+        server.publish(busy, WallTime{i}, "busy");
+        const auto message = server.next(1);
+        ASSERT_TRUE(message);
+        EXPECT_EQ(read.size(), static_cast<std::size_t>(i / 2 + 1)) << i;
+        opcodes.push_back(static_cast<std::uint8_t>(message->head.at(0)));
+        if (i == 0) {
+            EXPECT_EQ(message->head + message->body->substr(0, 1), foxglove::asset_head(0) + "m");
+        }
+        if (i == 2) {
+            EXPECT_EQ(message->head, foxglove::asset_failure(1, "there is none"));
+        }
+    }
+    EXPECT_EQ(opcodes, (std::vector<std::uint8_t>{4, 1, 4, 1, 4}));
+    for (std::uint32_t i = 0; i <= FoxgloveServer::kAssetsMax; ++i) fetch("mesh", i);
+    EXPECT_EQ(server.next(1)->head.substr(0, 6), "\x04" + std::string("\0\x01\0\0\x01", 5))
+        << "the last one is refused";
+    EXPECT_TRUE(dropped.empty());
+}
+
+TEST_F(FoxgloveServerTest, has_no_files_unless_it_is_given_some) {
+    server.on_open(1);
+    say(1, {{"op", "fetchAsset"}, {"uri", "mesh"}, {"requestId", 1}});
+    EXPECT_EQ(server.counts().unsupported, 1U);
+}
+
 TEST_F(FoxgloveServerTest, shows_a_sentence_once_until_it_changes) {
     server.on_open(1);
     (void)all(1);

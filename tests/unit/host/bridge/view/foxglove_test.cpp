@@ -95,6 +95,22 @@ TEST(Foxglove, takes_calls) {
     EXPECT_EQ(call.payload, "{}");
 }
 
+TEST(Foxglove, takes_requests_for_files_and_answers_them) {
+    const auto asked = std::get<FetchAsset>(
+        *parse_text(R"({"op":"fetchAsset","uri":"package://arm/a.stl","requestId":258})"));
+    EXPECT_EQ(asked.uri, "package://arm/a.stl");
+    EXPECT_EQ(asked.request, 258U);
+    EXPECT_EQ(asset_head(258), "\x04\x02\x01\0\0\0\0\0\0\0"s);
+    EXPECT_EQ(asset_failure(258, "none"), "\x04\x02\x01\0\0\x01\x04\0\0\0none"s);
+    const auto with = [](const std::string& members) {
+        return fault_of(parse_text(R"({"op":"fetchAsset")" + members + "}"));
+    };
+    EXPECT_EQ(with(R"(,"uri":"package://arm/a.stl")"), Fault::bad_member);
+    EXPECT_EQ(with(R"(,"requestId":1,"uri":7)"), Fault::bad_member);
+    EXPECT_EQ(with(R"(,"requestId":-1,"uri":"a")"), Fault::bad_member);
+    EXPECT_EQ(with(R"(,"requestId":1,"uri":")" + std::string(kUriMax + 1, 'a') + '"'), Fault::too_many);
+}
+
 TEST(Foxglove, names_operations_that_it_does_not_have) {
     EXPECT_EQ(std::get<Unsupported>(*parse_text(R"({"op":"getParameters"})")).operation, "getParameters");
     EXPECT_EQ(std::get<Unsupported>(*parse_binary("\x01\0\0\0\0"s)).operation, "message");
@@ -147,6 +163,7 @@ TEST(Foxglove, refuses_every_cut_of_a_call_and_lengths_beyond_its_end) {
 TEST(Foxglove, survives_a_hundred_thousand_changed_requests) {
     const std::vector<std::string> seeds = {
         R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":5},{"id":1,"channelId":6}]})",
+        R"({"op":"fetchAsset","uri":"package://arm/a.stl","requestId":3})",
         R"({"op":"unsubscribe","subscriptionIds":[1,2]})", R"({"op":"getParameters","parameterNames":[]})",
         "\x02\x07\0\0\0\x01\0\0\0\x04\0\0\0json{\"point_m\":[0,0,0]}"s};
     std::mt19937 random(11);

@@ -1,0 +1,40 @@
+#include "host/bridge/view/robot_meshes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+#include "host/io/folder/folder_error.hpp"
+
+namespace octoskin::view {
+namespace {
+
+bool is_mesh(std::string uri) {
+    constexpr std::array<std::string_view, 3> kEndings = {".stl", ".dae", ".obj"};
+    std::ranges::transform(uri, uri.begin(),
+                           [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return std::ranges::any_of(kEndings, [&](std::string_view ending) { return uri.ends_with(ending); });
+}
+
+/// As an attribute. A name with characters that XML escapes is not found.
+bool names(const std::string& urdf, const std::string& uri) {
+    if (uri.find_first_of("\"'<>&") != std::string::npos) return false;
+    return urdf.find('"' + uri + '"') != std::string::npos ||
+           urdf.find('\'' + uri + '\'') != std::string::npos;
+}
+
+}  // namespace
+
+Result<std::string, std::string> RobotMeshes::read(const std::string& uri) const {
+    if (!is_mesh(uri) || !names(urdf_, uri))
+        return unexpected(std::string("the robot has no mesh of this name"));
+    const auto place = places_.find(uri);
+    if (!place) return unexpected(place.error().message());
+    auto bytes = place->read(kBytesMax);
+    if (!bytes) return unexpected(to_error(bytes.error()).message());
+    if (bytes->size() > kBytesMax) return unexpected("the file has more than 32 MiB: " + uri);
+    return std::move(bytes).value();
+}
+
+}  // namespace octoskin::view
