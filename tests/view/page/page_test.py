@@ -265,6 +265,7 @@ class Page(unittest.TestCase):
         self.world.start_view(self.world.port)
         self.browser.until(f"window.octoskin.stats().then((stats) => stats.connections > {before})")
         self.assert_draws(occupied)
+        self.browser.until("Object.keys(window.octoskin.visuals().triangles).length === 3")  # fetched again
 
     def test_9_asks_no_other_host_and_has_no_error(self):
         seen = self.browser.ask("seen")

@@ -16,7 +16,8 @@ export class Arm {
    */
   constructor(scene, { fetchAsset, onMeshes }) {
     this.scene = scene;
-    this.fetchMesh = async (uri) => meshOf(uri, await fetchAsset(uri));
+    this.fetchAsset = fetchAsset;
+    this.fetched = Promise.resolve();
     this.onMeshes = onMeshes;
     this.visible = { robot: true, sensors: true, cameras: true };
     this.description = null;
@@ -38,15 +39,36 @@ export class Arm {
     this.description = description;
     this.readings = new Readings(); // those of another rig's sensors are not theirs
     this.kinematics = new Kinematics(description);
-    this.robot = new Robot(this.scene.scene, this.kinematics, description, 'robot', {
-      fetchMesh: this.fetchMesh,
+    this.robot = this.#newRobot();
+    this.sensors = new Sensors(this.scene.scene, description);
+    this.cameras = new Cameras(this.scene.scene, description);
+    this.setTheme(theme);
+    this.#applyVisible();
+    this.showAt(null);
+  }
+
+  #newRobot() {
+    return new Robot(this.scene.scene, this.kinematics, this.description, 'robot', {
+      fetchMesh: (uri) => this.#fetchMesh(uri),
       onChange: () => {
         this.scene.request();
         this.onMeshes();
       },
     });
-    this.sensors = new Sensors(this.scene.scene, description);
-    this.cameras = new Cameras(this.scene.scene, description);
+  }
+
+  /** One file at a time: on a slow line each has its own time. */
+  #fetchMesh(uri) {
+    const bytes = this.fetched.catch(() => {}).then(() => this.fetchAsset(uri));
+    this.fetched = bytes;
+    return bytes.then((read) => meshOf(uri, read));
+  }
+
+  /** The server is there again: meshes that it did not give before may come now. */
+  fetchMissing(theme) {
+    if (!this.robot || this.robot.missing.size === 0) return;
+    this.robot.remove();
+    this.robot = this.#newRobot();
     this.setTheme(theme);
     this.#applyVisible();
     this.showAt(null);

@@ -121,6 +121,7 @@ class Page {
   #serverFound({ sessionId, metadata }) {
     if (this.session !== undefined && this.session !== sessionId) this.arm.forget();
     this.session = sessionId;
+    this.arm.fetchMissing(this.colours);
     const mode = document.getElementById('mode');
     mode.hidden = metadata?.mode === undefined;
     mode.textContent = metadata?.mode ?? '';

@@ -97,9 +97,8 @@ export class Robot {
 
   #addVisuals(urdf, { fetchMesh, onChange }) {
     for (const [name, visuals] of visualsOf(urdf, fetchMesh)) {
-      if (!this.links.has(name)) continue;
       visuals
-        .then((parts) => this.#showVisuals(name, parts))
+        .then((parts) => this.links.has(name) && this.#showVisuals(name, parts))
         .catch(({ message }) => this.missing.set(name, message))
         .finally(onChange);
     }
