@@ -2,8 +2,11 @@
 import itertools
 import struct
 
-# Corners by bits x, y, z of a cube of 6 cm; each side as two triangles, outward.
-CORNERS = [tuple(0.06 * bit - 0.03 for bit in (index & 1, index >> 1 & 1, index >> 2)) for index in range(8)]
+# The box, metres: other sides along each axis, and not about the origin.
+LOW, HIGH = (-0.02, 0.01, 0.0), (0.04, 0.11, 0.18)
+# Corners by bits x, y, z; each side as two triangles, outward.
+CORNERS = [tuple((low, high)[index >> axis & 1] for axis, (low, high) in enumerate(zip(LOW, HIGH)))
+           for index in range(8)]
 SIDES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
 TRIANGLES = [triangle for a, b, c, d in SIDES for triangle in ((a, b, c), (a, c, d))]
 

@@ -51,17 +51,21 @@ class Payload {
     return this;
   }
 
-  /** One value for each voxel in Morton order, by runs of at most 128 different ones. */
+  /** Values of each voxel by its Morton code, in runs of at most 128 different ones. */
   each(number, logOdds, stamp) {
+    const stampAt = typeof stamp === 'function' ? stamp : () => stamp;
     this.count(number);
+    this.runs('setFloat32', 4, logOdds);
+    this.runs('setUint16', 2, stampAt);
+    return this;
+  }
+
+  runs(set, size, valueAt) {
     this.bytes.push(2);
     for (let from = 0; from < 512; from += 128) {
       this.bytes.push(127);
-      for (let code = from; code < from + 128; code++) this.number('setFloat32', 4, logOdds(code));
+      for (let code = from; code < from + 128; code++) this.number(set, size, valueAt(code));
     }
-    this.bytes.push(1);
-    this.number('setUint16', 2, stamp);
-    return this;
   }
 
   unknown(number) {
@@ -75,6 +79,9 @@ class Payload {
   }
 }
 
+/** The stamp of a voxel, another one for each. */
+const stampOf = (x, y, z) => 401 + x + 8 * y + 64 * z;
+
 /** A brick of log-odds of voxels x fastest. */
 function cellsOf(logOdds) {
   const payload = new Payload().each(
@@ -83,7 +90,7 @@ function cellsOf(logOdds) {
       const [x, y, z] = voxelOf(code);
       return logOdds[x + 8 * y + 64 * z];
     },
-    401,
+    (code) => stampOf(...voxelOf(code)),
   );
   return readMapPayload(payload.buffer, 0).bricks[0].cells;
 }
@@ -125,7 +132,11 @@ test('keys are those of OctoMap', () => {
 });
 
 test('a payload is read voxel by voxel in Morton order', () => {
-  const payload = new Payload().each(BRICK, (code) => (code % 3 === 0 ? NaN : code - 256), 401);
+  const payload = new Payload().each(
+    BRICK,
+    (code) => (code % 3 === 0 ? NaN : code - 256),
+    (code) => stampOf(...voxelOf(code)),
+  );
   const { bricks, clock_s, staleStamp, resolution_m } = readMapPayload(payload.buffer, 0);
   assert.deepEqual(
     [clock_s, staleStamp, resolution_m, bricks.length, bricks[0].number],
@@ -139,7 +150,7 @@ test('a payload is read voxel by voxel in Morton order', () => {
     const state = code % 3 === 0 ? STATE.unknown : code < 256 ? STATE.free : STATE.occupied;
     assert.ok(code % 3 === 0 ? Number.isNaN(value) : value === code - 256, `voxel ${code}`);
     assert.equal(stateOf(cells, voxel), state, `voxel ${code}`);
-    assert.equal(stampsOf(cells.stamps)[voxel], 401);
+    assert.equal(stampsOf(cells.stamps)[voxel], stampOf(x, y, z));
   }
 });
 
@@ -224,7 +235,8 @@ test('each visible face is made once, with its shade, also between bricks', () =
   const expected = { occupied: [], unknown: [], free: [] };
   for (const [key, state] of states) {
     const at = key.split(',').map(Number);
-    const face = (direction, shade) => [...at, direction, 401 & 255, 401 >> 8, shade, 0].join();
+    const stamp = stampOf(...at.map((along) => along % 8));
+    const face = (direction, shade) => [...at, direction, stamp & 255, stamp >> 8, shade, 0].join();
     if (state === STATE.free) expected.free.push(face(0, 0));
     for (const direction of DIRECTIONS) {
       const beside = besideOf(at, direction);

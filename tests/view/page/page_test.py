@@ -192,12 +192,19 @@ class Page(unittest.TestCase):
 
     def test_4_draws_the_meshes_that_the_robot_names(self):
         visuals = self.browser.until(
-            "(({triangles, missing}) => Object.keys({...triangles, ...missing}).length === 5 && {triangles, missing})"
+            "(({drawn, missing}) => Object.keys({...drawn, ...missing}).length === 5 && {drawn, missing})"
             "(window.octoskin.visuals())")
-        self.assertEqual(visuals["triangles"], {f"panda_link{link}": 12 for link in (1, 2, 3)})
+        self.assertEqual(sorted(visuals["drawn"]), [f"panda_link{link}" for link in (1, 2, 3)])
+        for link, drawn in visuals["drawn"].items():
+            self.assertEqual(drawn["triangles"], 12, link)
+            for end, expected in (("min", mesh_files.LOW), ("max", mesh_files.HIGH)):
+                self.assertLess(math.dist(drawn[end], expected), 1e-6, f"{link}: {end}")
         self.assertEqual(sorted(visuals["missing"]), ["panda_link4", "panda_link6"])
         self.assertIn("none.stl", visuals["missing"]["panda_link4"])
-        self.assertIn("none.stl", self.browser.evaluate("document.getElementById('meshes').textContent"))
+        said = self.browser.evaluate("document.getElementById('meshes').textContent")
+        self.assertEqual(said.count("Drawn as capsules: panda_link"), 2, said)
+        self.taken["fetched"] = self.browser.evaluate("window.octoskin.visuals().fetched")
+        self.assertEqual(self.taken["fetched"], 4)  # each file once, the empty one, too
 
     def test_4_gives_meshes_to_foxglove_s_client(self):
         client = pathlib.Path(__file__).resolve().parents[1] / "foxglove_client.js"
@@ -265,7 +272,8 @@ class Page(unittest.TestCase):
         self.world.start_view(self.world.port)
         self.browser.until(f"window.octoskin.stats().then((stats) => stats.connections > {before})")
         self.assert_draws(occupied)
-        self.browser.until("Object.keys(window.octoskin.visuals().triangles).length === 3")  # fetched again
+        self.browser.until(f"window.octoskin.visuals().fetched > {self.taken['fetched']}")
+        self.browser.until("Object.keys(window.octoskin.visuals().drawn).length === 3")
 
     def test_9_asks_no_other_host_and_has_no_error(self):
         seen = self.browser.ask("seen")

@@ -1,7 +1,7 @@
 // The robot with its sensors and cameras, as it is or was at the time that is shown.
 import { Cameras } from './cameras.js';
 import { Kinematics } from './kinematics.js';
-import { meshOf } from './meshes.js';
+import { MeshFiles } from './mesh_files.js';
 import { Past } from './past.js';
 import { Readings } from './readings.js';
 import { Robot } from './robot.js';
@@ -11,13 +11,12 @@ import { sensorStates } from './sensor_state.js';
 export class Arm {
   /**
    * @param {import('./scene.js').Scene} scene
-   * @param {{fetchAsset: function(string): Promise<ArrayBuffer>, onMeshes: function()}} hears `onMeshes`: the robot
-   *   looks otherwise, or it is known why not
+   * @param {{fetchAsset: function(string): Promise<ArrayBuffer>, onMeshes: function(Map<string, string>)}} hears
+   *   `onMeshes`: why links have their capsules, by link
    */
   constructor(scene, { fetchAsset, onMeshes }) {
     this.scene = scene;
-    this.fetchAsset = fetchAsset;
-    this.fetched = Promise.resolve();
+    this.meshFiles = new MeshFiles(fetchAsset);
     this.onMeshes = onMeshes;
     this.visible = { robot: true, sensors: true, cameras: true };
     this.description = null;
@@ -36,6 +35,7 @@ export class Arm {
   /** @param {object} description the answer to `describe`, and `urdf` */
   setDescription(description, theme) {
     for (const part of [this.robot, this.sensors, this.cameras]) part?.remove();
+    if (this.description?.reloads !== description.reloads) this.meshFiles.clear();
     this.description = description;
     this.readings = new Readings(); // those of another rig's sensors are not theirs
     this.kinematics = new Kinematics(description);
@@ -48,23 +48,18 @@ export class Arm {
   }
 
   #newRobot() {
-    return new Robot(this.scene.scene, this.kinematics, this.description, 'robot', {
-      fetchMesh: (uri) => this.#fetchMesh(uri),
+    const robot = new Robot(this.scene.scene, this.kinematics, this.description, 'robot', {
+      fetchMesh: (uri) => this.meshFiles.get(uri),
       onChange: () => {
         this.scene.request();
-        this.onMeshes();
+        this.onMeshes(this.robot.missing);
       },
     });
+    this.onMeshes(robot.missing);
+    return robot;
   }
 
-  /** One file at a time: on a slow line each has its own time. */
-  #fetchMesh(uri) {
-    const bytes = this.fetched.catch(() => {}).then(() => this.fetchAsset(uri));
-    this.fetched = bytes;
-    return bytes.then((read) => meshOf(uri, read));
-  }
-
-  /** The server is there again: meshes that it did not give before may come now. */
+  /** Meshes that the server did not give before may come now. */
   fetchMissing(theme) {
     if (!this.robot || this.robot.missing.size === 0) return;
     this.robot.remove();

@@ -139,19 +139,6 @@ export class Connection {
     bytes.set(encoding, 13);
     bytes.set(payload, 13 + encoding.length);
     this.socket.send(bytes);
-    return this.#answerOf(call);
-  }
-
-  /** A file that the server has, as a mesh of the robot. @returns {Promise<ArrayBuffer>} rejected with a sentence */
-  fetchAsset(uri) {
-    if (!this.hasAssets || this.socket.readyState !== WebSocket.OPEN)
-      return Promise.reject(new Error('octoskin serves no files'));
-    const requestId = this.nextCall++;
-    this.socket.send(JSON.stringify({ op: 'fetchAsset', uri, requestId }));
-    return this.#answerOf(requestId);
-  }
-
-  #answerOf(call) {
     return new Promise((resolve, reject) => {
       const timer = setTimeout(
         () => this.#settle(call, { failure: `no answer within ${ANSWER_MS / 1000} s` }),
@@ -159,6 +146,16 @@ export class Connection {
       );
       this.calls.set(call, { resolve, reject, timer });
     });
+  }
+
+  /** A file that the server has, as a mesh of the robot. @returns {Promise<ArrayBuffer>} rejected with a sentence */
+  fetchAsset(uri) {
+    if (this.socket.readyState !== WebSocket.OPEN) return Promise.reject(new Error('octoskin is not connected'));
+    if (!this.hasAssets) return Promise.reject(new Error('octoskin serves no files'));
+    const requestId = this.nextCall++;
+    this.socket.send(JSON.stringify({ op: 'fetchAsset', uri, requestId }));
+    // However long it takes: the server cannot be stopped from sending a file.
+    return new Promise((resolve, reject) => this.calls.set(requestId, { resolve, reject }));
   }
 }
 

@@ -19,10 +19,11 @@ export function inspection(page) {
     linkPoses: () =>
       Object.fromEntries([...(page.arm.robot?.drawnPoses() ?? [])].map(([name, matrix]) => [name, poseOf(matrix)])),
 
-    /** Triangles of the robot's visuals by link, and why other links have their capsules. */
+    /** The robot's visuals by link, why other links have their capsules, and how many files came. */
     visuals: () => ({
-      triangles: Object.fromEntries(page.arm.robot?.drawnTriangles() ?? []),
+      drawn: page.arm.robot?.drawnVisuals() ?? {},
       missing: Object.fromEntries(page.arm.robot?.missing ?? []),
+      fetched: page.arm.meshFiles.fetched,
     }),
 
     /** "#rrggbb" of the drawn cones, by "node sensor". */

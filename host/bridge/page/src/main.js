@@ -28,7 +28,7 @@ class Page {
     this.layer = new MapLayer(this.scene.scene);
     this.arm = new Arm(this.scene, {
       fetchAsset: (uri) => this.connection.fetchAsset(uri),
-      onMeshes: () => this.panels.showMeshes(this.arm.robot.missing),
+      onMeshes: (missing) => this.panels.showMeshes(missing),
     });
     this.panels = new Panels();
     this.details = new Details();
@@ -119,7 +119,10 @@ class Page {
 
   /** Another session has another map, and perhaps another bus time. */
   #serverFound({ sessionId, metadata }) {
-    if (this.session !== undefined && this.session !== sessionId) this.arm.forget();
+    if (this.session !== undefined && this.session !== sessionId) {
+      this.arm.forget();
+      this.arm.meshFiles.clear();
+    }
     this.session = sessionId;
     this.arm.fetchMissing(this.colours);
     const mode = document.getElementById('mode');
@@ -140,7 +143,7 @@ class Page {
   #robotChanged(description) {
     if (description.ok === false) return;
     const text = JSON.stringify(description);
-    if (text === this.description) return;
+    if (text === this.description) return this.arm.fetchMissing(this.colours);
     this.description = text;
     document.getElementById('rig').textContent = description.rig;
     this.arm.setDescription(description, this.colours);

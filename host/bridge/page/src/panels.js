@@ -48,12 +48,15 @@ export class Panels {
     this.#showRejected(this.samples[0].status, status);
   }
 
-  /** Links that are drawn as capsules, although the robot has meshes of them. @param {Map<string, string>} missing */
+  /** Links that are drawn as capsules, although the robot has visuals of them. @param {Map<string, string>} missing */
   showMeshes(missing) {
+    const links = new Map(); // by reason
+    for (const [link, reason] of missing) links.set(reason, [...(links.get(reason) ?? []), link]);
     const line = document.getElementById('meshes');
     line.hidden = missing.size === 0;
-    const [first] = missing.values();
-    line.textContent = `Drawn as capsules: ${[...missing.keys()].join(', ')}. ${first ?? ''}`;
+    line.textContent = [...links]
+      .map(([reason, names]) => `Drawn as capsules: ${names.join(', ')}. ${reason}`)
+      .join('\n');
   }
 
   /** Forgets earlier samples: after a restart counters begin at 0. */

@@ -16,27 +16,26 @@ function capsule({ a, b, radius_m }, material) {
 }
 
 /**
- * Visuals by link. A link whose meshes are not all there has none: its capsules remain.
+ * Visuals by link. A link whose meshes are not all there has none: its capsules remain. Throws what the URDF's loader
+ * throws.
  * @param {string} urdf @param {function(string): Promise<THREE.Object3D>} fetchMesh
  * @returns {Map<string, Promise<THREE.Object3D[]>>} rejected with the reason
  */
 function visualsOf(urdf, fetchMesh) {
   const loader = new URDFLoader();
-  const fetched = new Map(); // group of the visual -> mesh
+  const uris = new Map(); // group of the visual -> its mesh
   loader.packages = (name) => `package://${name}`;
   loader.loadMeshCb = (uri, _manager, _material, done) => {
     const group = new THREE.Group();
-    fetched.set(
-      group,
-      fetchMesh(uri).then((mesh) => group.add(mesh)),
-    );
+    uris.set(group, uri);
     done(group);
   };
   const visuals = new Map();
-  for (const [name, link] of Object.entries(parsedLinks(loader, urdf))) {
+  for (const [name, link] of Object.entries(loader.parse(urdf).links)) {
     const own = link.children.filter((child) => child.isURDFVisual);
-    const meshes = [];
-    for (const visual of own) visual.traverse((part) => fetched.has(part) && meshes.push(fetched.get(part)));
+    const groups = [];
+    for (const visual of own) visual.traverse((part) => uris.has(part) && groups.push(part));
+    const meshes = groups.map(async (group) => group.add(await fetchMesh(uris.get(group))));
     if (own.length > 0)
       visuals.set(
         name,
@@ -44,15 +43,6 @@ function visualsOf(urdf, fetchMesh) {
       );
   }
   return visuals;
-}
-
-/** Empty for a text that the loader cannot read: the capsules remain. It throws whatever it meets. */
-function parsedLinks(loader, urdf) {
-  try {
-    return loader.parse(urdf).links;
-  } catch {
-    return {};
-  }
 }
 
 function hasSurface(object) {
@@ -96,12 +86,17 @@ export class Robot {
   }
 
   #addVisuals(urdf, { fetchMesh, onChange }) {
-    for (const [name, visuals] of visualsOf(urdf, fetchMesh)) {
-      visuals
-        .then((parts) => this.links.has(name) && this.#showVisuals(name, parts))
+    let visuals;
+    try {
+      visuals = visualsOf(urdf, fetchMesh);
+    } catch {
+      return this.missing.set('all links', 'The URDF cannot be read.');
+    }
+    for (const [name, parts] of visuals)
+      parts
+        .then((come) => this.links.has(name) && this.#showVisuals(name, come))
         .catch(({ message }) => this.missing.set(name, message))
         .finally(onChange);
-    }
   }
 
   #showVisuals(name, visuals) {
@@ -143,16 +138,21 @@ export class Robot {
     return new Map(drawn.map(([name, group]) => [name, group.matrixWorld]));
   }
 
-  /** Triangles of the visuals by link. @returns {Map<string, number>} */
-  drawnTriangles() {
-    const drawn = new Map();
+  /** The visuals by link: their triangles, and the box about them, metres, link frame. */
+  drawnVisuals() {
+    const drawn = {};
+    this.root.updateMatrixWorld(true);
     for (const [name, group] of this.links) {
+      const T_link_map = group.matrixWorld.clone().invert();
+      const box = new THREE.Box3();
       let triangles = 0;
-      group.traverse((part) => {
-        if (!part.isMesh || part.geometry.type === 'CapsuleGeometry') return;
-        triangles += (part.geometry.index ?? part.geometry.attributes.position).count / 3;
+      group.traverse(({ isMesh, geometry, matrixWorld }) => {
+        if (!isMesh || geometry.type === 'CapsuleGeometry') return;
+        triangles += (geometry.index ?? geometry.attributes.position).count / 3;
+        const T_link_part = T_link_map.clone().multiply(matrixWorld);
+        box.union(new THREE.Box3().setFromBufferAttribute(geometry.attributes.position).applyMatrix4(T_link_part));
       });
-      if (triangles > 0) drawn.set(name, triangles);
+      if (triangles > 0) drawn[name] = { triangles, min: box.min.toArray(), max: box.max.toArray() };
     }
     return drawn;
   }
