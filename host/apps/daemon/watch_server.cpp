@@ -255,7 +255,9 @@ void WatchServer::welcome(std::unique_ptr<Client> client, std::uint64_t reloads)
 void WatchServer::spread(MapNow map) {
     const watch::BrickCodes changed = map_ ? watch::changed_bricks(map.map, map_->map) : watch::BrickCodes{};
     map_ = std::move(map);
-    if (clients_.size() > 1) map_->changed = watch::BrickRecords(map_->map, changed);
+    const auto readers =
+        std::ranges::count_if(clients_, [](const auto& client) { return client->output.wants().map; });
+    if (readers > 1) map_->changed = watch::BrickRecords(map_->map, changed);
     is_map_old_ = false;
     for (const auto& client : clients_) client->output.on_map(*map_, changed);
 }

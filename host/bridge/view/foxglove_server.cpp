@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <new>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -229,10 +230,15 @@ WebMessage FoxgloveServer::next_asset(ViewClient& client) {
     const foxglove::FetchAsset asked = std::move(client.assets.front());
     client.assets.pop_front();
     client.had_asset = true;
-    auto file = read_asset_(asked.uri);
-    if (!file) return {foxglove::asset_failure(asked.request, file.error()), nullptr, true};
-    return {foxglove::asset_head(asked.request), std::make_shared<const std::string>(std::move(file).value()),
-            true};
+    try {
+        auto file = read_asset_(asked.uri);
+        if (!file) return {foxglove::asset_failure(asked.request, file.error()), nullptr, true};
+        return {foxglove::asset_head(asked.request),
+                std::make_shared<const std::string>(std::move(file).value()), true};
+    } catch (const std::bad_alloc&) {  // of a file of many megabytes, not of a few bytes
+        return {foxglove::asset_failure(asked.request, "there is too little memory for this file"), nullptr,
+                true};
+    }
 }
 
 void FoxgloveServer::take(ClientId id, const foxglove::Unsupported& request) {

@@ -1,5 +1,7 @@
 #include "host/bridge/view/robot_meshes.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -24,15 +26,23 @@ bool names(const std::string& urdf, const std::string& uri) {
            urdf.find('\'' + uri + '\'') != std::string::npos;
 }
 
+/// A client need not know the folders of this machine: they are in the log.
+std::string refusal(const std::string& uri, const Error& error) {
+    spdlog::warn("a mesh is not served: {}", error.message());
+    const std::string why =
+        error.code == ErrorCode::not_found ? "there is no file " + uri : "cannot read " + uri;
+    return error.remedy.empty() ? why : why + ": " + error.remedy;
+}
+
 }  // namespace
 
 Result<std::string, std::string> RobotMeshes::read(const std::string& uri) const {
     if (!is_mesh(uri) || !names(urdf_, uri))
         return unexpected(std::string("the robot has no mesh of this name"));
     const auto place = places_.find(uri);
-    if (!place) return unexpected(place.error().message());
+    if (!place) return unexpected(refusal(uri, place.error()));
     auto bytes = place->read(kBytesMax);
-    if (!bytes) return unexpected(to_error(bytes.error()).message());
+    if (!bytes) return unexpected(refusal(uri, to_error(bytes.error())));
     if (bytes->size() > kBytesMax) return unexpected("the file has more than 32 MiB: " + uri);
     return std::move(bytes).value();
 }

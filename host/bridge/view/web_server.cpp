@@ -30,6 +30,10 @@ constexpr const char* kPolicy =
     "'self'; img-src 'self' data: blob:; style-src "
     "'self'; frame-ancestors 'none'";
 
+/// Messages up to this size are one frame: few libraries are tested with fragments.
+constexpr std::size_t kWholeBytes = std::size_t{1} << 20U;
+constexpr std::size_t kFragmentBytes = std::size_t{64} << 10U;
+
 /// A connection that Beast ends without waiting for the other end: a client that sends malformed frames and
 /// stays would else be counted as silent, after the limit of silence.
 class Stream : public beast::tcp_stream {
@@ -214,7 +218,7 @@ void Session::upgrade() {
         response.set(http::field::server, "octoskin");
     }));
     socket_.read_message_max(parts_.options.message_bytes_max);
-    socket_.auto_fragment(false);
+    socket_.write_buffer_bytes(kFragmentBytes);
     socket_.async_accept(request,
                          [self = shared_from_this()](const error_code& error) { self->on_upgraded(error); });
 }
@@ -293,6 +297,8 @@ void Session::pump() {
     is_sending_ = true;
     const std::string_view body = sending_.body ? std::string_view(*sending_.body) : std::string_view();
     socket_.binary(sending_.is_binary);
+    // Between the fragments of a large file there is room for the ping of a client that is slow.
+    socket_.auto_fragment(sending_.head.size() + body.size() > kWholeBytes);
     socket_.async_write(std::array{asio::const_buffer(sending_.head.data(), sending_.head.size()),
                                    asio::const_buffer(body.data(), body.size())},
                         [self = shared_from_this()](const error_code& failed, std::size_t) {
