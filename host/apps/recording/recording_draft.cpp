@@ -1,5 +1,7 @@
 #include "host/apps/recording/recording_draft.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -19,18 +21,6 @@ std::vector<FilePlace> files_of_cameras(const RecordingPaths& paths) {
         files.push_back(paths.depth_epoch(camera));
     }
     return files;
-}
-
-/// A recording has both files of a camera: a single .oni or .epoch.yaml is the user's own.
-std::vector<FilePlace> files_of_former_cameras(const RecordingPaths& paths) {
-    std::vector<FilePlace> files = files_of_cameras(paths);
-    std::vector<FilePlace> recorded;
-    for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
-        if (!files[i].is_there() || !files[i + 1].is_there()) continue;
-        recorded.push_back(std::move(files[i]));
-        recorded.push_back(std::move(files[i + 1]));
-    }
-    return recorded;
 }
 
 /// meta.yaml is the last.
@@ -72,6 +62,22 @@ Status<AppError> check_replaceable(const RecordingPaths& paths) {
          .remedy = "give another directory, or remove it yourself"});
 }
 
+/// A recording has both files of each camera: a film alone is the user's own, and would be one of the new
+/// recording's cameras.
+Status<AppError> check_films(const RecordingPaths& paths) {
+    const auto files = files_of_cameras(paths);
+    for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
+        const bool has_film = files[i].is_there();
+        if (has_film == files[i + 1].is_there()) continue;
+        return cannot_create(paths.directory,
+                             {.code = ErrorCode::already_exists,
+                              .what = "expected an .oni and an .epoch.yaml of each camera of the recording",
+                              .value = fmt::format("{} alone", files[has_film ? i : i + 1].name().string()),
+                              .remedy = "move it away, or give another directory"});
+    }
+    return Done{};
+}
+
 /// The maps that replay wrote into the previous recording's directory.
 std::vector<fs::path> maps_of_recording() {
     std::vector<fs::path> maps = {fs::path("maps") / kMapOriginFile};
@@ -104,6 +110,7 @@ Result<std::optional<FileLock>, AppError> check_former(const OpenFolder& folder,
     if (const auto checked = FileSet::check_places(folder, places_of(paths)); !checked)
         return unexpected(checked.error());
     if (const auto checked = check_replaceable(paths); !checked) return unexpected(checked.error());
+    if (const auto checked = check_films(paths); !checked) return unexpected(checked.error());
     auto lock = FileLock::take(paths.meta(), FileLock::Kind::exclusive);
     if (!lock) {
         return cannot_create(paths.directory, {.code = ErrorCode::in_use,
@@ -145,7 +152,7 @@ Status<AppError> RecordingDraft::commit() {
     for (const FilePlace& file : files_of(draft_)) (file.is_there() ? files : retired).push_back(file.name());
     // Those of another world, and of other cameras.
     std::vector<FilePlace> former = final_.meshes();
-    for (FilePlace& file : files_of_former_cameras(final_)) former.push_back(std::move(file));
+    for (FilePlace& file : files_of_cameras(final_)) former.push_back(std::move(file));
     for (const FilePlace& file : former) {
         const bool is_replaced = std::find(files.begin(), files.end(), file.name()) != files.end();
         const bool is_known = std::find(retired.begin(), retired.end(), file.name()) != retired.end();

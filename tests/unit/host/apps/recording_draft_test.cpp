@@ -234,21 +234,21 @@ TEST(RecordingDraftTest, replaces_the_files_of_other_cameras) {
     EXPECT_FALSE(std::filesystem::exists(folder / "depth")) << "of no camera";
 }
 
-TEST(RecordingDraftTest, leaves_a_film_in_the_folder_of_the_cameras) {
-    const ScratchFolder folder;
-    std::filesystem::create_directory(folder / "depth");
-    folder.write("meta.yaml", kSimulated);
-    for (const char* old : {"depth/left.oni", "depth/left.epoch.yaml"}) folder.write(old, "old");
-    folder.write("depth/mine.oni", "mine");
-    folder.write("depth/other.epoch.yaml", "mine");
-    auto draft = RecordingDraft::create(folder.path(), true);
-    ASSERT_TRUE(draft) << draft.error().message();
-    fill(*draft, "log");
-    ASSERT_TRUE(draft->commit());
-    EXPECT_FALSE(std::filesystem::exists(folder / "depth/left.oni"));
-    EXPECT_FALSE(std::filesystem::exists(folder / "depth/left.epoch.yaml"));
-    EXPECT_EQ(ScratchFolder::read(folder / "depth/mine.oni"), "mine") << "a recording has both files";
-    EXPECT_EQ(ScratchFolder::read(folder / "depth/other.epoch.yaml"), "mine");
+TEST(RecordingDraftTest, is_not_begun_where_a_film_of_the_user_is_among_the_cameras) {
+    for (const char* const mine : {"depth/mine.oni", "depth/mine.epoch.yaml"}) {
+        const ScratchFolder folder;
+        std::filesystem::create_directory(folder / "depth");
+        folder.write("meta.yaml", kSimulated);
+        for (const char* old : {"depth/left.oni", "depth/left.epoch.yaml"}) folder.write(old, "old");
+        folder.write(mine, "mine");
+        const auto refused = RecordingDraft::create(folder.path(), true);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().exit, ExitCode::cannot_create);
+        EXPECT_EQ(refused.error().error.code, ErrorCode::already_exists);
+        EXPECT_THAT(refused.error().error.value, HasSubstr(mine));
+        EXPECT_EQ(ScratchFolder::read(folder / mine), "mine");
+        EXPECT_EQ(ScratchFolder::read(folder / "depth/left.oni"), "old");
+    }
 }
 
 TEST(RecordingDraftTest, is_not_begun_where_the_cameras_files_cannot_come_into_their_place) {
