@@ -8,7 +8,7 @@
 
 namespace octoskin::rig {
 
-/// The first of `known` that differs from `word` by a typing error: up to two letters changed, added or
+/// The one of `known` that differs from `word` by a typing error: up to two letters changed, added or
 /// missing.
 [[nodiscard]] std::optional<std::string> nearest_word(std::string_view word,
                                                       std::span<const std::string> known);

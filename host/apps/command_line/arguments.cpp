@@ -168,10 +168,12 @@ void check_option_names(const CLI::App& app, const std::string& program) {
         const auto chosen = at->get_subcommands();
         at = chosen.empty() ? nullptr : chosen.front();
         if (at != nullptr) command += " " + at->get_name();
+        if (at != nullptr && at->get_prefix_command()) return;  // its words are another program's
     }
     for (const std::string& word : app.remaining(true)) {
         const std::string name = word.substr(0, word.find('='));
         if (!name.starts_with("--") || name.size() == 2) continue;
+        if (std::ranges::find(names, name) != names.end()) continue;
         const auto near = rig::nearest_word(name, names);
         throw CommandFailure(
             ExitCode::usage,

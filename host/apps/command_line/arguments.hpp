@@ -56,7 +56,7 @@ void check_json_errors(int argc, const char* const* argv);
 void check_command_name(const CLI::App& app, const std::string& others, int argc, const char* const* argv);
 
 /// After a failed parse: throws CommandFailure with ExitCode::usage if an option is none of the command. The
-/// remedy contains the most similar one.
+/// remedy contains the most similar one. A command that is another program has no options of its own.
 void check_option_names(const CLI::App& app, const std::string& program);
 
 /// The descriptor of "fd:N", which is used in place of an interface name; the calling program left it open.

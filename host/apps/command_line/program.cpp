@@ -89,7 +89,7 @@ void parse(CLI::App& app, const std::string& program, int argc, char** argv) {
 
 int run(const octoskin::app::Program& program, int argc, char** argv) {
     using namespace octoskin;
-    CLI::App app{program.description};
+    CLI::App app{program.description, program.name};  // not the path by which it was started
     app.set_version_flag("--version", program_version(program.name));
     app.add_flag(std::string(app::kJsonErrors), has_json_errors,
                  "Before the command: print an error as one line of JSON on standard error")

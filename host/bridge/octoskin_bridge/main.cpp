@@ -23,7 +23,8 @@ void add_commands(CLI::App& app) {
 
 int main(int argc, char** argv) {
     const int exit_code = octoskin::app::run_program(
-        {"octoskin bridge", "Speaks ROS 2 with the daemon's map, without an installation of ROS.",
+        {"octoskin bridge",
+         "Speaks ROS 2 with the daemon's map, without an installation of ROS. Without a command: run.",
          octoskin::app::exit_codes_text(false), add_commands, ". The daemon and its map: octoskin"},
         argc, argv);
     if (octoskin::LeavableThread::was_one_left()) ::_exit(exit_code);

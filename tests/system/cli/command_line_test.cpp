@@ -56,7 +56,9 @@ TEST_F(CommandLine, helps_with_options_as_they_are_typed_and_with_exit_codes) {
     for (const std::string command : {"run", "joints"}) {
         const Said said = octoskin(command + " --help");
         EXPECT_EQ(said.exit_code, 0);
-        EXPECT_THAT(said.output, AllOf(HasSubstr("Exit codes: 0 "), Not(HasSubstr("{false}")))) << command;
+        EXPECT_THAT(said.output, AllOf(HasSubstr("Usage: octoskin " + command), HasSubstr("Exit codes: 0 "),
+                                       Not(HasSubstr("{false}"))))
+            << command;
     }
 }
 

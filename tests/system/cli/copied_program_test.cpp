@@ -51,6 +51,16 @@ TEST_F(CopiedProgram, has_no_helpers_and_no_data) {
                            path_is(path("away/share/octoskin/hw/worlds/experiment.scenario.yaml"))));
 }
 
+TEST_F(CopiedProgram, names_the_package_of_a_command_that_is_another_program) {
+    std::filesystem::create_directories(path("away/bin"));
+    std::filesystem::copy_file(OCTOSKIN_PROGRAM, path("away/bin/octoskin"));
+    for (const std::string command :
+         {"view --port 8000", "view --help", "bridge --unknown-box 0", "export a b --frce"})
+        EXPECT_THAT(failure_in(run(path("away/bin/octoskin") + " --json-errors " + command)),
+                    fails_with(69, code_is(ErrorCode::no_program), what_is(HasSubstr("octoskin-bridge"))))
+            << command;
+}
+
 TEST_F(CopiedProgram, says_that_what_a_recording_began_with_is_not_there) {
     std::filesystem::copy(source("tests/data/frozen/daemon"), path("rec"),
                           std::filesystem::copy_options::recursive);
