@@ -42,7 +42,9 @@ PAGES = {
         "sudo apt install octovis": INSTALLS,
         "octovis out/demo/fused.bt": VIEWER,
         "cmake --build --preset host-release --target octoskin": BUILDS,
-        BIN + "octoskin replay out/demo/recording": Run(),
+        BIN + "octoskin replay out/demo/recording --configuration fast":
+            Run(BIN + "octoskin replay out/demo/recording --configuration fast && for map in depth proximity fused; do "
+                "cmp out/demo/$map.ot out/demo/recording/maps/$map.ot || exit 1; done"),
         BIN + "octoskin explain 0.67 0.34 0.29 --recording out/demo/recording": Run(says="the camera never saw it"),
         BIN + "octoskin query out/demo/fused.ot --rig out/demo/recording/rig.yaml "
               "--joints 0,-0.785,0,-2.356,0,1.571,0.785 --own-space 0.1 --stands=...":
@@ -101,7 +103,7 @@ PAGES = {
             Run("octoskin record $PWD/bench --seconds 1 --socket control"),
     },
     "moveit": {
-        "toolchains/install_packages product bridge": INSTALLS,
+        "toolchains/install_packages product bridge view": INSTALLS,
         "cmake --preset host-release": BUILDS,
         "cmake --build --preset host-release --target octoskin_package --parallel": BUILDS,
         "sudo apt install ./build/host-release/octoskin_0.1.0_amd64.deb "
@@ -109,6 +111,8 @@ PAGES = {
         # tests/ros publishes a robot and saves it; here nothing publishes one.
         "octoskin bridge robot arm.urdf":
             Run("octoskin bridge robot arm.urdf --seconds 1 || test $? = 69"),
+        "octoskin robot arm.urdf --out arm_fitted.urdf":
+            Run("octoskin robot hw/robots/panda.urdf --out arm_fitted.urdf", says="panda"),
         "octoskin rig my_rig.yaml": Run(f"octoskin rig {RIG}"),
         "octoskin bridge":
             Run(f"{BRIDGE} 2>bridge.log & for i in $(seq 100); do grep -q 'daemon with rig' bridge.log && break; "
@@ -136,7 +140,7 @@ PAGES = {
         "sudo cp /usr/share/doc/octoskin-bridge/examples/octoskin-bridge.sysctl "
         "/etc/sysctl.d/60-octoskin-bridge.conf": SERVICE,
         "sudo sysctl --system": SERVICE,
-        "octoskin run --rig my_cell.yaml --can can0 --joints /run/user/1000/octoskin-joints": HARDWARE,
+        "octoskin run --rig my_cell.yaml --can can0 --joints $XDG_RUNTIME_DIR/octoskin-joints": HARDWARE,
         "octoskin bridge": SERVICE,
         "octoskin bridge status": SERVICE,
         "octoskin status": Run("octoskin status --socket control", says="map:"),
