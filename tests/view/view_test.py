@@ -71,7 +71,7 @@ class Handshakes(Shared):
                 self.assertEqual(connected.subprotocol, expected)
                 info = connected.receive()
                 self.assertEqual((info["op"], info["capabilities"], info["metadata"]["mode"]),
-                                 ("serverInfo", ["services"], "live"))
+                                 ("serverInfo", ["services", "assets"], "live"))
                 connected.close()
 
     def test_foreign_origins_are_refused_and_the_remedy_is_named(self):

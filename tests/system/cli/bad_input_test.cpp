@@ -38,7 +38,10 @@ TEST_F(BadInput, the_command_line_is_refused_with_a_hint) {
     EXPECT_EQ(octoskin("").exit_code, 64);
     EXPECT_EQ(octoskin("reply").exit_code, 64);
     EXPECT_THAT(failure_of("replay somewhere --fast"),
-                fails_with(64, code_is(ErrorCode::bad_argument), what_is(HasSubstr("--fast")),
+                fails_with(64, code_is(ErrorCode::unknown_word), value_is("'--fast'"),
+                           remedy_is(HasSubstr("--help"))));
+    EXPECT_THAT(failure_of("replay somewhere else"),
+                fails_with(64, code_is(ErrorCode::bad_argument), what_is(HasSubstr("else")),
                            remedy_is(HasSubstr("--help"))));
     EXPECT_EQ(octoskin("simulate out --seed many").exit_code, 64);
     EXPECT_EQ(octoskin("simulate out --seed -1").exit_code, 64);
