@@ -89,7 +89,11 @@ TEST(JsonErrors, include_those_of_the_command_line) {
     EXPECT_EQ(unknown.at("value"), "'fial'");
     EXPECT_THAT(unknown.at("remedy").get<std::string>(), HasSubstr("'fail'"));
     EXPECT_EQ(error_of(run({"--json-errors"})).at("code"), "bad_argument");
-    EXPECT_EQ(error_of(run({"--json-errors", "take", "--counts", "1"})).at("code"), "bad_argument");
+    EXPECT_EQ(error_of(run({"--json-errors", "take", "1"})).at("code"), "bad_argument");
+    const Json misspelt = error_of(run({"--json-errors", "take", "--counts", "1"}));
+    EXPECT_EQ(misspelt.at("code"), "unknown_word");
+    EXPECT_EQ(misspelt.at("value"), "'--counts'");
+    EXPECT_THAT(misspelt.at("remedy").get<std::string>(), HasSubstr("'--count'"));
 }
 
 TEST(JsonErrors, include_defects) {
