@@ -28,7 +28,8 @@ class QueryTest : public DaemonTest {
   protected:
     [[nodiscard]] std::string socket() const { return (folder_ / "control").string(); }
     [[nodiscard]] Json ask(const QueryRequest& request) const {
-        const auto answer = ask_daemon(socket(), to_line(request), 30s);
+        // Four may wait for each other, with ten seconds of processor time each, under a sanitizer.
+        const auto answer = ask_daemon(socket(), to_line(request), 90s);
         EXPECT_TRUE(answer) << answer.error().message();
         return answer ? Json::parse(*answer) : Json();
     }
