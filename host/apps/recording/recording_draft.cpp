@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the named ones, both of each.
+/// Of the named ones.
 std::vector<FilePlace> files_of_cameras(const RecordingPaths& paths) {
     std::vector<FilePlace> files;
     for (const std::string& camera : paths.cameras()) {
@@ -65,14 +65,16 @@ Status<AppError> check_replaceable(const RecordingPaths& paths) {
 /// A recording has both files of each camera: a film alone is the user's own, and would be one of the new
 /// recording's cameras.
 Status<AppError> check_films(const RecordingPaths& paths) {
-    const auto files = files_of_cameras(paths);
-    for (std::size_t i = 0; i + 1 < files.size(); i += 2) {
-        const bool has_film = files[i].is_there();
-        if (has_film == files[i + 1].is_there()) continue;
+    for (const std::string& camera : paths.cameras()) {
+        if (camera.empty()) continue;
+        const FilePlace film = paths.depth(camera);
+        const FilePlace epoch = paths.depth_epoch(camera);
+        if (film.is_there() && epoch.is_there()) continue;
+        const FilePlace& alone = film.is_there() ? film : epoch;
         return cannot_create(paths.directory,
                              {.code = ErrorCode::already_exists,
                               .what = "expected an .oni and an .epoch.yaml of each camera of the recording",
-                              .value = fmt::format("{} alone", files[has_film ? i : i + 1].name().string()),
+                              .value = fmt::format("{} alone", alone.name().string()),
                               .remedy = "move it away, or give another directory"});
     }
     return Done{};
