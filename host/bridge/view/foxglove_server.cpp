@@ -169,12 +169,11 @@ void FoxgloveServer::subscribe(ClientId id, const foxglove::Subscription& wanted
     const auto channel = channels_.find(wanted.channel);
     if (channel == channels_.end())  // closed while the request was on its way, or wrong
         return warn(id, fmt::format("there is no channel {}", wanted.channel));
-    const std::string in_use =
-        fmt::format("channel {} or subscription {} is in use", wanted.channel, wanted.id);
-    if (clients_[id].has_subscription(wanted.channel, wanted.id)) return warn(id, in_use);
+    ViewClient& client = clients_[id];
+    if (client.has_subscription(wanted.channel, wanted.id))
+        return warn(id, fmt::format("channel {} or subscription {} is in use", wanted.channel, wanted.id));
     auto stream = channel->second.source != nullptr ? channel->second.source->stream() : nullptr;
-    if (!clients_[id].subscribe(wanted.channel, wanted.id, channel->second.newest, std::move(stream)))
-        return warn(id, in_use);
+    client.subscribe(wanted.channel, wanted.id, channel->second.newest, std::move(stream));
     ++channel->second.readers;
 }
 

@@ -25,11 +25,9 @@ bool ViewClient::has_subscription(std::uint32_t channel, std::uint32_t id) const
            std::ranges::any_of(subscriptions_, [id](const auto& one) { return one.second.id == id; });
 }
 
-bool ViewClient::subscribe(std::uint32_t channel, std::uint32_t id, NewestMessages newest,
+void ViewClient::subscribe(std::uint32_t channel, std::uint32_t id, NewestMessages newest,
                            std::unique_ptr<MessageStream> stream) {
-    if (has_subscription(channel, id)) return false;
     subscriptions_.emplace(channel, Subscription{id, std::move(newest), std::move(stream)});
-    return true;
 }
 
 std::optional<std::uint32_t> ViewClient::unsubscribe(std::uint32_t id) {

@@ -35,9 +35,9 @@ class ViewClient {
     [[nodiscard]] bool put(WebMessage message);
     /// Whether the channel or the identifier is subscribed to already.
     [[nodiscard]] bool has_subscription(std::uint32_t channel, std::uint32_t id) const;
-    /// False: it is.
-    [[nodiscard]] bool subscribe(std::uint32_t channel, std::uint32_t id, NewestMessages newest,
-                                 std::unique_ptr<MessageStream> stream);
+    /// There must be no such subscription yet.
+    void subscribe(std::uint32_t channel, std::uint32_t id, NewestMessages newest,
+                   std::unique_ptr<MessageStream> stream);
     /// The channel; empty: there is no such subscription.
     std::optional<std::uint32_t> unsubscribe(std::uint32_t id);
     /// The channel has gone.

@@ -42,6 +42,10 @@ export class Arm {
     this.robot = this.#newRobot();
     this.sensors = new Sensors(this.scene.scene, description);
     this.cameras = new Cameras(this.scene.scene, description);
+    this.#showAnew(theme);
+  }
+
+  #showAnew(theme) {
     this.setTheme(theme);
     this.#applyVisible();
     this.showAt(null);
@@ -64,9 +68,7 @@ export class Arm {
     if (!this.robot || this.robot.missing.size === 0) return;
     this.robot.remove();
     this.robot = this.#newRobot();
-    this.setTheme(theme);
-    this.#applyVisible();
-    this.showAt(null);
+    this.#showAnew(theme);
   }
 
   setTheme(theme) {
